@@ -1,0 +1,1 @@
+"""Flexible solid rotors about one fixed axis, for Exudyn multibody scenes."""

@@ -1,0 +1,96 @@
+"""Interfaces of a rotor: node sets whose weighted mean motion carries bearings and loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.axis import read_only
+from exudyn_rotor.nodal import skew
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """A named node set with weights.
+
+    Parameters
+    ----------
+    name : str
+    nodes : ndarray of int, shape (k,)
+        Node numbers in the mesh.
+    weights : ndarray, shape (k,)
+        Shares of the interface's area, positive, summing to one.
+    positions : ndarray, shape (k, 3)
+        Reference positions of these nodes in mesh coordinates [m].
+    reference : ndarray, shape (3,), optional
+        The point whose motion is reported. By default the weighted centre; move it onto the spin
+        axis with :meth:`centered_on` so that an uneven mesh does not make a false eccentricity.
+    """
+
+    name: str
+    nodes: np.ndarray
+    weights: np.ndarray
+    positions: np.ndarray
+    reference: np.ndarray | None = None
+    center: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        nodes = np.array(self.nodes, dtype=np.int64)
+        nodes.flags.writeable = False
+        weights = read_only(self.weights)
+        if nodes.size == 0:
+            raise ValueError(
+                f"interface {self.name!r} has no nodes; check the face name or the node list"
+            )
+        if weights.shape != nodes.shape or not np.all(np.isfinite(weights)) or weights.sum() <= 0:
+            raise ValueError(
+                f"interface {self.name!r}: needs one finite weight per node with a positive sum, "
+                f"got {weights.shape} weights for {nodes.shape} nodes"
+            )
+        weights = read_only(weights / weights.sum())
+        center = read_only(weights @ self.positions)
+        reference = center if self.reference is None else read_only(self.reference)
+        for key, value in {
+            "nodes": nodes,
+            "weights": weights,
+            "positions": read_only(self.positions),
+            "center": center,
+            "reference": reference,
+        }.items():
+            object.__setattr__(self, key, value)
+
+    @property
+    def radius(self) -> float:
+        """Root mean square distance of the nodes from the weighted centre [m]."""
+        arms = self.positions - self.center
+        return float(np.sqrt(self.weights @ np.sum(arms**2, axis=1)))
+
+    def centered_on(self, point: np.ndarray) -> Interface:
+        """Return the interface with its reference point moved to `point`, weights unchanged."""
+        return Interface(self.name, self.nodes, self.weights, self.positions, point)
+
+    def mean_motion(self, node_count: int) -> sp.csr_array:
+        """Return the averaging operator, shape (6, 3·node_count), mesh axes.
+
+        Rows 0–2 give the displacement of the reference point and rows 3–5 the rotation
+        ``θ = W⁻¹ Σ w p̃ (u − ū)`` with ``W = −Σ w p̃ p̃``: the least-squares rigid motion that
+        Exudyn's ``MarkerSuperElementRigid`` uses (``useAlternativeApproach=True``). Directions in
+        which the nodes have no arm (a single node, nodes on a line) get no rotation.
+        """
+        arms = self.positions - self.center
+        tildes = np.array([skew(arm) for arm in arms])
+        inertia = -np.einsum("k,kab,kbc->ac", self.weights, tildes, tildes)
+        lever = np.linalg.pinv(inertia, rcond=1e-9, hermitian=True)
+        turn = np.einsum("ab,k,kbc->kac", lever, self.weights, tildes)
+        shift = self.weights[:, None, None] * np.eye(3)
+        shift = shift - skew(self.reference - self.center) @ turn
+        blocks = np.concatenate([shift, turn], axis=1)
+        columns = (3 * self.nodes[:, None] + np.arange(3)).ravel()
+        dense = blocks.transpose(1, 0, 2).reshape(6, -1)
+        selector = sp.csr_array(
+            (np.ones(columns.size), (np.arange(columns.size), columns)),
+            shape=(columns.size, 3 * node_count),
+        )
+        return sp.csr_array(sp.csr_array(dense) @ selector)
