@@ -1,1 +1,41 @@
-"""Flexible solid rotors about one fixed axis, for Exudyn multibody scenes."""
+"""Flexible solid rotors about one fixed axis, for Exudyn multibody scenes.
+
+Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exudyn.
+"""
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.body.adding import add_rotor
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.twin import MainSystemCreateFixedAxisFFRFReducedOrderObject
+from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.campbell import Campbell, campbell
+from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes
+from exudyn_rotor.modes.selection import select_modes
+from exudyn_rotor.motion import Motion
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid import Interface, PointMass, SolidRotor
+from exudyn_rotor.stiffening import Stiffening
+
+__all__ = [
+    "Campbell",
+    "ConstantSpeed",
+    "Formulation",
+    "Interface",
+    "Invariants",
+    "MainSystemCreateFixedAxisFFRFReducedOrderObject",
+    "ModeBasis",
+    "Motion",
+    "PointMass",
+    "PrescribedMotion",
+    "ReducedRotor",
+    "RotorBody",
+    "SolidRotor",
+    "SpinAxis",
+    "Stiffening",
+    "add_rotor",
+    "campbell",
+    "craig_bampton_modes",
+    "free_modes",
+    "select_modes",
+]

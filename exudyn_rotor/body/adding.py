@@ -1,0 +1,341 @@
+"""Adding a reduced rotor to an Exudyn ``mbs``: checks first, then nodes, objects, markers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    LoadMassProportional,
+    MarkerBodyMass,
+    MarkerSuperElementPosition,
+    MarkerSuperElementRigid,
+    NodeGenericODE2,
+    NodeRigidBodyRxyz,
+    ObjectGenericODE2,
+    VNodeRigidBodyRxyz,
+)
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.body import inputs
+from exudyn_rotor.body.frame import ShellFrame
+from exudyn_rotor.body.locking import (
+    LOCKINGS,
+    SPIN,
+    Locks,
+    add_constraints,
+    layout,
+    servo_force,
+)
+from exudyn_rotor.body.physics import Layout, constant_object, user_function_object
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.shell import ShellMesh, shell_mesh, shell_object
+from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.modes.selection import Selection, select_modes
+from exudyn_rotor.motion import Motion
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.stiffening import stiffening as second_order
+
+DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """Everything about the new body, checked, before the system is touched."""
+
+    name: str
+    formulation: Formulation
+    stiffening: str
+    selection: Selection
+    placement: inputs.Placement
+    frame: ShellFrame
+    locks: Locks
+    layout: Layout
+    motion: Motion
+    by_mass: bool
+    modal: tuple[np.ndarray, np.ndarray]
+
+
+def add_rotor(
+    mbs: exudyn.MainSystem,
+    reduced: ReducedRotor,
+    *,
+    name: str = "rotor",
+    translation: str | PrescribedMotion = "free",
+    spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+    drive: str = "rigid",
+    stiffening: str = "tilt",
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    rotation: ArrayLike | None = None,
+    initial_velocity: ArrayLike = (0.0, 0.0, 0.0),
+    initial_angle: float | None = None,
+    initial_speed: float | None = None,
+    modal_coordinates: ArrayLike | None = None,
+    modal_velocities: ArrayLike | None = None,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    mass_damping: float = 0.0,
+    stiffness_damping: float = 0.0,
+    markers: Mapping[str, str] | None = None,
+    marker_offsets: Mapping[str, ArrayLike] | None = None,
+    show_markers: bool = True,
+    locking: str = "auto",
+    native_shell: bool = True,
+    color: Sequence[float] = DEFAULT_COLOR,
+) -> RotorBody:
+    """Add a fixed-axis rotor to `mbs`.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    reduced : ReducedRotor
+    name : str
+        Unique name; items are called like those of Exudyn's own flexible body.
+    translation, spin, drive
+        The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
+        speed [rad/s].
+    stiffening : {'tilt', 'none'}
+        Centrifugal stiffening; ``'none'`` gives the paper's own equations.
+    position : array_like, shape (3,)
+        Place of the mesh origin, inertial axes [m].
+    rotation : array_like, shape (3, 3), optional
+        Mesh axes → inertial axes at θ = 0.
+    initial_velocity : array_like, shape (3,)
+        Of the frame origin (the centre of mass), inertial axes [m/s].
+    initial_angle, initial_speed : float, optional
+        Of a free spin [rad], [rad/s].
+    modal_coordinates, modal_velocities : array_like, optional
+        Initial values of the modes named by ``body.selection.labels`` (√kg m, √kg m/s).
+    gravity : array_like, shape (3,)
+        Inertial axes [m/s²].
+    mass_damping, stiffness_damping : float
+        Rayleigh factors of the component modes [1/s], [s], acting in the rotor frame.
+    markers : mapping of str to {'rigid', 'position'}, optional
+        Interfaces that get a marker; all of them, rigid, by default. A position marker costs a
+        fraction of a rigid one.
+    marker_offsets : mapping of str to array_like, shape (3,), optional
+        Offset of a rigid marker from the interface's reference point, mesh axes [m].
+    show_markers : bool
+        Whether markers are drawn.
+    locking : {'auto', 'mass', 'constraints'}
+        How coordinates of the shell that the formulation does not have are held; see
+        :mod:`exudyn_rotor.body.locking`. ``'auto'`` takes constraints for time-varying prescribed
+        motions and for in-plane translation in a plane skew to the inertial axes, masses else.
+    native_shell : bool
+        False leaves out markers, mesh sensors and drawing, and with them every locked coordinate.
+    color : sequence of 4 floats
+
+    Returns
+    -------
+    RotorBody
+
+    Raises
+    ------
+    ValueError, TypeError
+        For bad input; nothing has been added then.
+    """
+    inputs.check_mbs(mbs)
+    formulation = Formulation(translation, spin, drive)
+    place = inputs.placement(
+        formulation, position, rotation, initial_velocity, initial_angle, initial_speed
+    )
+    gravity = inputs.vector(gravity, "gravity", "m/s²")
+    requests = inputs.marker_requests(
+        reduced, markers if native_shell else markers or {}, marker_offsets or {}, show_markers
+    )
+    if requests and not native_shell:
+        raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
+    inputs.check_free_names(mbs, name, requests)
+    plan = _plan(
+        reduced,
+        name,
+        formulation,
+        stiffening,
+        place,
+        None if native_shell else gravity,
+        (
+            inputs.damping_factor(mass_damping, "mass_damping"),
+            inputs.damping_factor(stiffness_damping, "stiffness_damping"),
+        ),
+        (modal_coordinates, modal_velocities),
+        locking,
+    )
+    if not native_shell:
+        return _add_bare(mbs, plan)
+    mesh = shell_mesh(reduced, plan.selection, plan.frame)
+    return _add_with_shell(mbs, plan, mesh, requests, gravity, list(color))
+
+
+def _plan(
+    reduced: ReducedRotor,
+    name: str,
+    formulation: Formulation,
+    stiffening: str,
+    place: inputs.Placement,
+    gravity: np.ndarray | None,
+    rayleigh: tuple[float, float],
+    modal: tuple[ArrayLike | None, ArrayLike | None],
+    locking: str,
+) -> _Plan:
+    if locking not in LOCKINGS:
+        raise ValueError(f"locking {locking!r} is unknown; use one of {', '.join(LOCKINGS)}")
+    selection = select_modes(reduced, formulation)
+    invariants = selection.invariants
+    mode_mass = selection.T.T @ reduced.mode_mass @ selection.T
+    damping = invariants.D + rayleigh[0] * mode_mass + rayleigh[1] * invariants.K
+    invariants = replace(invariants, D=damping)
+    direction = reduced.axis.direction
+    frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
+    locks = Locks.of(formulation, place.rotation @ direction)
+    needs_constraint = locks.varying or locks.normal is not None
+    if locking == "mass" and locks.normal is not None:
+        raise ValueError(
+            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
+            "use locking='constraints', translation='free', or native_shell=False"
+        )
+    by_mass = locking == "mass" or (locking == "auto" and not needs_constraint)
+    own = np.repeat([invariants.mass, max(invariants.Theta, 1e-300)], 3)
+    count = invariants.size
+    # a skew plane of rotation keeps all three translations and adds one linear constraint
+    unknown = formulation if locks.normal is None else replace(formulation, translation="free")
+    return _Plan(
+        name=name,
+        formulation=unknown,
+        stiffening=stiffening,
+        selection=selection,
+        placement=place,
+        frame=frame,
+        locks=locks,
+        layout=layout(locks, count, own, by_mass),
+        motion=Motion(
+            invariants,
+            unknown,
+            second_order(invariants, stiffening),
+            orientation=place.rotation,
+            plane=locks.plane,
+            gravity=gravity,
+        ),
+        by_mass=by_mass,
+        modal=tuple(
+            np.zeros(count) if v is None else inputs.vector(v, "modal initial values", "", count)
+            for v in modal
+        ),
+    )
+
+
+def _add_bare(mbs: exudyn.MainSystem, plan: _Plan) -> RotorBody:
+    """Add only the unknowns of the formulation, on one generic node."""
+    motion, count = plan.motion, plan.formulation.translation_count
+    spin = int(plan.formulation.has_spin)
+    start = [*np.zeros(count), *([plan.placement.angle] * spin), *plan.modal[0]]
+    rate = [
+        *(motion.free_directions.T @ plan.placement.velocity),
+        *([plan.placement.speed] * spin),
+        *plan.modal[1],
+    ]
+    node = mbs.AddNode(_generic_node(plan.name, start, rate))
+    none = np.zeros(motion.size)
+    place = Layout(motion.size, np.arange(motion.size), none, none, none)
+    physics = mbs.AddObject(_physics(plan, place, [node]))
+    return _body(mbs, plan, layout=place, nodes={"coordinates": node}, objects={"physics": physics})
+
+
+def _add_with_shell(
+    mbs: exudyn.MainSystem,
+    plan: _Plan,
+    mesh: ShellMesh,
+    requests: dict[str, inputs.MarkerRequest],
+    gravity: np.ndarray,
+    color: list[float],
+) -> RotorBody:
+    """Add nodes, equations, native shell, markers, locks and gravity."""
+    rigid, modes = (
+        mbs.AddNode(_rigid_node(plan)),
+        mbs.AddNode(_generic_node(plan.name, *plan.modal)),
+    )
+    physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes]))
+    invariants, frame = plan.motion.invariants, plan.frame
+    shell = mbs.AddObject(shell_object(plan.name, [rigid, modes], mesh, invariants, frame, color))
+    load = None
+    if np.any(gravity):
+        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
+        load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=gravity))
+    return _body(
+        mbs,
+        plan,
+        nodes={"rigid": rigid, "modes": modes},
+        objects={"physics": physics, "shell": shell},
+        markers=_add_markers(mbs, plan, shell, mesh, requests),
+        constraints={} if plan.by_mass else add_constraints(mbs, plan.locks, rigid),
+        gravity_load=load,
+        mesh_node_count=mesh.mesh_node_count,
+    )
+
+
+def _physics(plan: _Plan, place: Layout, nodes: list) -> ObjectGenericODE2:
+    servo = servo_force(plan.locks, place)
+    if plan.motion.is_constant and servo is None:
+        return constant_object(plan.motion, place, nodes)
+    return user_function_object(plan.motion, place, nodes, servo)
+
+
+def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:
+    start, rate = np.zeros(6), np.zeros(6)
+    start[SPIN], rate[SPIN] = plan.placement.angle, plan.placement.speed
+    rate[:3] = plan.placement.velocity
+    if plan.formulation.moves_origin:
+        start[:3] = plan.formulation.translation.value(0.0)
+    return NodeRigidBodyRxyz(
+        name=f"NodeRigidBody:{plan.name}",
+        referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
+        initialCoordinates=start,
+        initialVelocities=rate,
+        visualization=VNodeRigidBodyRxyz(show=False),
+    )
+
+
+def _generic_node(name: str, start: list, rate: list) -> NodeGenericODE2:
+    return NodeGenericODE2(
+        name=f"NodeGeneric:{name}",
+        numberOfODE2Coordinates=len(start),
+        referenceCoordinates=np.zeros(len(start)),
+        initialCoordinates=start,
+        initialCoordinates_t=rate,
+    )
+
+
+def _add_markers(
+    mbs: exudyn.MainSystem,
+    plan: _Plan,
+    shell: exudyn.ObjectIndex,
+    mesh: ShellMesh,
+    requests: dict[str, inputs.MarkerRequest],
+) -> dict[str, exudyn.MarkerIndex]:
+    """Add one marker per interface; rigid markers have the mesh axes as their frame."""
+    markers = {}
+    for interface, request in requests.items():
+        common = {
+            "name": f"{plan.name}:{interface}",
+            "bodyNumber": shell,
+            "meshNodeNumbers": mesh.interface_nodes[interface],
+            "weightingFactors": [1.0 / 3.0] * 3,
+            "visualization": {"show": request.show, "showMarkerNodes": False},
+        }
+        if request.kind == "rigid":
+            turn = np.eye(4)
+            turn[:3, :3], turn[:3, 3] = plan.frame.B, plan.frame.B @ request.offset
+            item = MarkerSuperElementRigid(**common, localHT=turn)
+        else:
+            common["visualization"] = {"show": request.show}
+            item = MarkerSuperElementPosition(**common)
+        markers[interface] = mbs.AddMarker(item)
+    return markers
+
+
+def _body(mbs: exudyn.MainSystem, plan: _Plan, **added) -> RotorBody:
+    shared = {name: getattr(plan, name) for name in _SHARED}
+    return RotorBody(mbs=mbs, **(shared | added))
+
+
+_SHARED = ("name", "formulation", "stiffening", "selection", "motion", "frame", "layout", "locks")

@@ -1,0 +1,199 @@
+"""Holding the coordinates of the native shell that a formulation does not have.
+
+Two ways:
+
+``'mass'``
+    A huge mass on the diagonal. No Lagrange multiplier, and explicit solvers work. A coordinate
+    with a time-varying prescribed motion follows it by a stiff servo of finite mass, so it is
+    accurate to the integrator's error and about ``1 / SERVO_RATIO``.
+``'constraints'``
+    ``CoordinateConstraint`` objects: exact for implicit and static solvers, one multiplier each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    CoordinateConstraint,
+    MarkerNodeCoordinate,
+    MarkerNodeCoordinates,
+    NodePointGround,
+    ObjectConnectorCoordinateVector,
+)
+
+from exudyn_rotor.body.physics import Layout, LockedForce
+from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+
+LOCKINGS = ("auto", "mass", "constraints")
+COORDINATE_NAMES = ("x", "y", "z", "tilt a", "tilt b", "spin")
+TILTS, SPIN, MODES = (3, 4), 5, 6
+
+LOCK_RATIO = 1e18  # of the rotor's own inertia
+SERVO_RATIO = 1e9
+SERVO_RATE = 100.0  # rad/s, critically damped
+LOCK_RATE = 1.0  # rad/s: stiffness of a locked coordinate for static solvers, per lock mass
+
+
+@dataclass(frozen=True, eq=False)
+class Locks:
+    """What happens to the six rigid coordinates of the shell.
+
+    Attributes
+    ----------
+    unknown : tuple of int
+        Rigid coordinates that are unknowns of the formulation.
+    fixed : tuple of int
+    prescribed : dict of int to PrescribedMotion or ConstantSpeed
+        Scalar motion of every prescribed coordinate.
+    plane : ndarray or None
+        Inertial directions of in-plane unknowns, shape (3, 2).
+    normal : ndarray or None
+        Set when the plane of translation is skew in space: all three translations are unknowns,
+        and one linear constraint along this direction holds them in the plane.
+    """
+
+    unknown: tuple[int, ...]
+    fixed: tuple[int, ...]
+    prescribed: dict[int, PrescribedMotion | ConstantSpeed]
+    plane: np.ndarray | None = None
+    normal: np.ndarray | None = None
+
+    @classmethod
+    def of(cls, formulation: Formulation, spin_direction: np.ndarray) -> Locks:
+        """Sort the coordinates for a spin axis along `spin_direction` in inertial axes."""
+        translations, plane, normal = _unknown_translations(formulation, spin_direction)
+        rest = [i for i in range(3) if i not in translations]
+        prescribed: dict[int, PrescribedMotion | ConstantSpeed] = {}
+        if formulation.moves_origin:
+            prescribed = {i: _component(formulation.translation, i) for i in rest}
+            rest = []
+        if formulation.has_spin:
+            return cls((*translations, SPIN), (*rest, *TILTS), prescribed, plane, normal)
+        prescribed[SPIN] = formulation.spin
+        return cls(tuple(translations), (*rest, *TILTS), prescribed, plane, normal)
+
+    @property
+    def varying(self) -> bool:
+        """True when some coordinate has a time-varying prescribed motion."""
+        return any(isinstance(m, PrescribedMotion) for m in self.prescribed.values())
+
+    @property
+    def locked_names(self) -> tuple[str, ...]:
+        """Names of the coordinates that exist only for the shell."""
+        return tuple(COORDINATE_NAMES[i] for i in (*self.fixed, *self.prescribed))
+
+
+def _unknown_translations(
+    formulation: Formulation, direction: np.ndarray
+) -> tuple[list[int], np.ndarray | None, np.ndarray | None]:
+    if formulation.translation_count == 3:
+        return [0, 1, 2], None, None
+    if formulation.translation_count == 0:
+        return [], None, None
+    along = np.flatnonzero(np.abs(direction) > 1.0 - 1e-14)
+    if along.size == 0:
+        return [0, 1, 2], None, direction
+    across = [i for i in range(3) if i != along[0]]
+    return across, np.eye(3)[:, across], None
+
+
+def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
+    """Return one coordinate of a prescribed translation."""
+    return PrescribedMotion(
+        lambda t: float(motion.value(t)[index]),
+        lambda t: float(motion.rate(t)[index]),
+        lambda t: float(motion.acceleration(t)[index]),
+    )
+
+
+def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) -> Layout:
+    """Return where the unknowns stand and the diagonals that lock the rest.
+
+    `inertia` holds the rotor's mass (three times) and moment of inertia (three times).
+    """
+    size = MODES + mode_count
+    mass, stiffness, damping = np.zeros(size), np.zeros(size), np.zeros(size)
+    fixed = list(locks.fixed)
+    if by_mass:
+        mass[fixed] = LOCK_RATIO * inertia[fixed]
+        stiffness[fixed] = LOCK_RATE**2 * mass[fixed]
+        for index, motion in locks.prescribed.items():
+            if isinstance(motion, ConstantSpeed):
+                mass[index] = LOCK_RATIO * inertia[index]
+            else:
+                mass[index] = SERVO_RATIO * inertia[index]
+                stiffness[index] = SERVO_RATE**2 * mass[index]
+                damping[index] = 2.0 * SERVO_RATE * mass[index]
+    else:
+        held = [*fixed, *locks.prescribed]
+        mass[held] = inertia[held]
+    unknowns = np.array([*locks.unknown, *range(MODES, size)])
+    return Layout(size, unknowns, mass, stiffness, damping)
+
+
+def servo_force(locks: Locks, place: Layout) -> LockedForce | None:
+    """Return the forces that make servo-driven coordinates follow their prescribed motion."""
+    servos = {
+        index: motion
+        for index, motion in locks.prescribed.items()
+        if isinstance(motion, PrescribedMotion)
+    }
+    if not servos or not np.any(place.lock_damping):
+        return None
+
+    def force(t: float) -> np.ndarray:
+        total = np.zeros(place.size)
+        for index, motion in servos.items():
+            total[index] = (
+                place.lock_mass[index] * motion.acceleration(t)
+                + place.lock_damping[index] * motion.rate(t)
+                + place.lock_stiffness[index] * motion.value(t)
+            )
+        return total
+
+    return force
+
+
+def add_constraints(
+    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex
+) -> dict[str, exudyn.ObjectIndex]:
+    """Hold the locked coordinates of the shell's node by constraints; return them by name."""
+    ground = mbs.AddNode(NodePointGround())
+    origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+    constraints = {}
+    for index in (*locks.fixed, *locks.prescribed):
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+        motion = locks.prescribed.get(index)
+        constraints[COORDINATE_NAMES[index]] = mbs.AddObject(
+            CoordinateConstraint(markerNumbers=[origin, marker], **_offset(motion))
+        )
+    if locks.normal is not None:
+        constraints["plane"] = mbs.AddObject(_plane_constraint(mbs, ground, node, locks.normal))
+    return constraints
+
+
+def _offset(motion: PrescribedMotion | ConstantSpeed | None) -> dict:
+    """Return the constraint's settings; index-2 solvers need the velocity beside the position."""
+    if motion is None:
+        return {}
+    if isinstance(motion, ConstantSpeed):
+        return {"velocityLevel": True, "offset": motion.speed}
+    return {
+        "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t),
+        "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
+    }
+
+
+def _plane_constraint(
+    mbs: exudyn.MainSystem, ground: exudyn.NodeIndex, node: exudyn.NodeIndex, normal: np.ndarray
+) -> ObjectConnectorCoordinateVector:
+    """Return ``eᵀτ = 0`` for a plane that is skew to the inertial axes."""
+    markers = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
+    row = np.zeros((1, 6))
+    row[0, :3] = normal
+    return ObjectConnectorCoordinateVector(
+        markerNumbers=markers, scalingMarker0=np.zeros((1, 3)), scalingMarker1=row
+    )

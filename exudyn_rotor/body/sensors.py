@@ -1,0 +1,116 @@
+"""Sensors of a rotor body: native ones by mesh node and interface, spin, and drive torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
+
+from exudyn_rotor.body.locking import SPIN, servo_force
+
+if TYPE_CHECKING:
+    from exudyn_rotor.body.rotor_body import RotorBody
+
+_KINDS = exudyn.OutputVariableType
+
+
+def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.SensorIndex:
+    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
+    shell = _shell(body)
+    count = body.mesh_node_count
+    if not 0 <= node < count:
+        raise ValueError(
+            f"rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+            + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
+        )
+    settings = {"storeInternal": True, "writeToFile": False} | options
+    return body.mbs.AddSensor(
+        SensorSuperElement(
+            bodyNumber=shell, meshNodeNumber=int(node), outputVariableType=output, **settings
+        )
+    )
+
+
+def add_interface_sensor(body: RotorBody, interface: str, output, **options):
+    """Add a ``SensorMarker`` at an interface, stored internally by default."""
+    settings = {"storeInternal": True, "writeToFile": False} | options
+    return body.mbs.AddSensor(
+        SensorMarker(markerNumber=body.marker(interface), outputVariableType=output, **settings)
+    )
+
+
+def add_spin_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
+    """Add a sensor of θ [rad] and ω [rad/s]."""
+    node = body.nodes["rigid"] if "rigid" in body.nodes else body.nodes["coordinates"]
+    index = SPIN if "rigid" in body.nodes else body.formulation.translation_count
+    if "rigid" not in body.nodes and not body.formulation.has_spin:
+        raise ValueError(f"rotor {body.name!r}: without the shell a prescribed spin has no node")
+
+    def spin(mbs, t, sensors, factors, configuration):
+        angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
+        speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
+        return [float(angle), float(speed)]
+
+    return _add_function_sensor(body, spin, options)
+
+
+def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
+    """Add a sensor of the drive torque about e [N m].
+
+    The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
+    forces, which the locked coordinate of the shell collects.
+    """
+    _shell(body)
+    if body.formulation.has_spin:
+        raise ValueError(
+            f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
+        )
+    external = _external_moment(body)
+
+    def torque(mbs, t, sensors, factors, configuration):
+        q, q_t, q_tt = body.coordinates(configuration)
+        modes = slice(body.formulation.translation_count, None)
+        own = body.motion.drive_torque(t, q, q_t, q_tt[modes])
+        return [own - external(t, configuration)]
+
+    return _add_function_sensor(body, torque, options)
+
+
+def _external_moment(body: RotorBody):
+    """Return a function that reads the external moment about e on the shell's spin coordinate."""
+    place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
+    servo = servo_force(body.locks, place)
+    constraint = body.constraints.get("spin")
+
+    def moment(t, configuration) -> float:
+        kinds = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
+        theta, omega, omega_t = (
+            float(mbs.GetNodeOutput(node, kind, configuration)[SPIN]) for kind in kinds
+        )
+        held = (
+            place.lock_mass[SPIN] * omega_t
+            + place.lock_damping[SPIN] * omega
+            + place.lock_stiffness[SPIN] * theta
+        )
+        if servo is not None:
+            held -= servo(t)[SPIN]
+        if constraint is not None:
+            held += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
+        return held
+
+    return moment
+
+
+def _shell(body: RotorBody) -> exudyn.ObjectIndex:
+    if "shell" not in body.objects:
+        raise ValueError(
+            f"rotor {body.name!r} was added with native_shell=False; this sensor needs the shell"
+        )
+    return body.objects["shell"]
+
+
+def _add_function_sensor(body: RotorBody, function, options: dict) -> exudyn.SensorIndex:
+    settings = {"storeInternal": True, "writeToFile": False} | options
+    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))

@@ -1,0 +1,124 @@
+"""The native shell: a massless ``ObjectFFRFreducedOrder`` that gives markers, sensors, pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import ObjectFFRFreducedOrder, VObjectFFRFreducedOrder
+
+from exudyn_rotor.body.frame import ShellFrame
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.modes.selection import Selection
+from exudyn_rotor.reduced import ReducedInterface, ReducedRotor
+
+
+@dataclass(frozen=True, eq=False)
+class ShellMesh:
+    """Nodes of the shell: mesh nodes first, then three virtual nodes per interface.
+
+    The virtual nodes move as the interface's mean rigid motion says, so a marker on them is exact
+    and its cost does not depend on the mesh.
+
+    Attributes
+    ----------
+    positions : ndarray, shape (N, 3)
+        Shell axes, from the frame origin [m].
+    modes : ndarray, shape (3N, m)
+        Displacement columns, shell axes.
+    triangles : ndarray of int
+    stress : ndarray, shape (N, 6 m) or (0, 0)
+        Stress columns in Exudyn's layout, mesh axes [Pa].
+    interface_nodes : dict of str to list of int
+    mesh_node_count : int
+        Number of leading nodes that are mesh nodes.
+    """
+
+    positions: np.ndarray
+    modes: np.ndarray
+    triangles: np.ndarray
+    stress: np.ndarray
+    interface_nodes: dict[str, list[int]]
+    mesh_node_count: int
+
+
+def shell_mesh(reduced: ReducedRotor, selection: Selection, frame: ShellFrame) -> ShellMesh:
+    """Return the nodes of the shell for one formulation."""
+    positions, modes = [np.zeros((0, 3))], [np.zeros((0, selection.T.shape[1]))]
+    triangles, stress = np.zeros((0, 3), dtype=int), np.zeros((0, 0))
+    if reduced.shapes is not None:
+        positions.append(reduced.shapes.nodes)
+        modes.append(reduced.shapes.matrix @ selection.T)
+        triangles = reduced.shapes.triangles
+    mesh_count = count = sum(map(len, positions))
+    interface_nodes = {}
+    for name, interface in reduced.interfaces.items():
+        points, columns = _virtual_nodes(interface, selection.T, reduced.axis.plane)
+        positions.append(points)
+        modes.append(columns)
+        interface_nodes[name] = [count, count + 1, count + 2]
+        count += 3
+    if reduced.shapes is not None and reduced.shapes.stress is not None:
+        stress = _stress_columns(reduced.shapes.stress @ selection.T, count)
+    return ShellMesh(
+        positions=frame.points(np.vstack(positions)),
+        modes=frame.columns(np.vstack(modes)),
+        triangles=triangles,
+        stress=stress,
+        interface_nodes=interface_nodes,
+        mesh_node_count=mesh_count,
+    )
+
+
+def _virtual_nodes(
+    interface: ReducedInterface, T: np.ndarray, plane: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return three points around the reference point and their columns, mesh axes."""
+    motion = interface.motion @ T
+    angles = 2.0 * np.pi / 3.0 * np.arange(3)
+    radius = interface.radius or 1.0  # a single node has no rotation, so any radius serves
+    arms = radius * np.column_stack([np.cos(angles), np.sin(angles)]) @ plane.T
+    columns = [motion[:3] + np.cross(motion[3:], arm, axisa=0, axisc=0) for arm in arms]
+    return interface.reference + arms, np.vstack(columns)
+
+
+def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
+    """Return (n, 6, m) stress as Exudyn's (N, 6 m), zero at virtual nodes."""
+    full = np.zeros((node_count, 6 * stress.shape[2]))
+    full[: len(stress)] = stress.transpose(0, 2, 1).reshape(len(stress), -1)
+    return full
+
+
+def shell_object(
+    name: str, nodes: list, mesh: ShellMesh, invariants: Invariants, frame: ShellFrame, color: list
+) -> ObjectFFRFreducedOrder:
+    """Return the shell without inertia or stiffness of its own.
+
+    Mass, centre of mass and ``ΦᵀMΨ`` are given for gravity by ``MarkerBodyMass`` alone.
+    """
+    size = invariants.size
+    empty = exudyn.MatrixContainer()
+    empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
+    stress = {}
+    if mesh.stress.size:
+        stress = {
+            "outputVariableModeBasis": mesh.stress,
+            "outputVariableTypeModeBasis": exudyn.OutputVariableType.StressLocal,
+        }
+    return ObjectFFRFreducedOrder(
+        name=name,
+        nodeNumbers=nodes,
+        massMatrixReduced=empty,
+        stiffnessMatrixReduced=empty,
+        computeFFRFterms=False,
+        modeBasis=mesh.modes,
+        referencePositions=mesh.positions.ravel(),
+        mass=invariants.mass,
+        centerOfMass=frame.B @ invariants.center,
+        mPhitTPsi=frame.B @ invariants.S,
+        **stress,
+        visualization=VObjectFFRFreducedOrder(
+            triangleMesh=mesh.triangles.tolist(), color=color, showNodes=False
+        ),
+    )

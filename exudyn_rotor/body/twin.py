@@ -1,0 +1,189 @@
+"""``mbs.CreateFixedAxisFFRFReducedOrderObject``: the twin of Exudyn's own call.
+
+Argument names, defaults and returned keys are those of
+``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
+"""
+
+from __future__ import annotations
+
+import exudyn
+import numpy as np
+from exudyn.FEM import FEMinterface
+from exudyn.misc.extensionRegistry import extends, install
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.body import inputs
+from exudyn_rotor.body.adding import add_rotor
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.solid.rotor import SolidRotor
+
+
+@extends(exudyn.MainSystem)
+def MainSystemCreateFixedAxisFFRFReducedOrderObject(
+    mbs: exudyn.MainSystem,
+    name: str | None,
+    femInterface: FEMinterface,
+    referencePosition: ArrayLike = (0.0, 0.0, 0.0),
+    initialVelocity: ArrayLike = (0.0, 0.0, 0.0),
+    referenceRotationMatrix: ArrayLike | None = None,
+    initialAngularVelocity: ArrayLike = (0.0, 0.0, 0.0),
+    massProportionalDamping: float = 0.0,
+    stiffnessProportionalDamping: float = 0.0,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    color: ArrayLike = exudyn.graphics.color.defaultFFRF,
+    superElementRigidMarkersOffsets: ArrayLike | None = None,
+    showMarkers: bool = True,
+    verbose: bool = False,
+    axis: SpinAxis | str | ArrayLike | None = None,
+    translation: str | PrescribedMotion = "free",
+    spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+    stiffening: str = "tilt",
+    locking: str = "auto",
+) -> dict:
+    """Create a flexible rotor that spins about one fixed axis.
+
+    The twin of CreateFFRFReducedOrderObject; the arguments after verbose are its own.
+
+    Args:
+        mbs: the MainSystem to which the rotor is added
+        name: name of the rotor; markers are called name + ':' + boundaryName, nodes
+            'NodeRigidBody:' + name and 'NodeGeneric:' + name; None: the items are called 'rotor'
+            and the returned dictionary has the boundary names alone
+        femInterface: FEMinterface with mesh, mass and stiffness matrix and a mode basis; its named
+            node sets become markers
+        referencePosition: position of the mesh origin (3D vector)
+        initialVelocity: initial velocity of the mesh origin (3D vector)
+        referenceRotationMatrix: rotation from mesh axes to global axes; None is the unit matrix
+        initialAngularVelocity: initial angular velocity (3D vector, global); must lie along the
+            spin axis
+        massProportionalDamping: Rayleigh factor of the component modes' mass matrix
+        stiffnessProportionalDamping: Rayleigh factor of the component modes' stiffness matrix
+        gravity: gravity (3D vector, global)
+        color: RGBA color if no contour is drawn
+        superElementRigidMarkersOffsets: local offset per marker, N x 3, mesh axes
+        showMarkers: if True, the markers are drawn
+        verbose: if True, a report of the new body is printed
+        axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);
+            None takes the direction of initialAngularVelocity, through the mesh origin
+        translation: 'free', 'in-plane', 'none' or a PrescribedMotion
+        spin: 'free', a constant speed in rad/s, or a PrescribedMotion
+        stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations)
+        locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.body.locking
+
+    Returns:
+        :dict: marker number of every boundary under its marker name, and under
+            'FFRFReducedOrderObjectDict' the entries 'nRigidBody', 'nGenericODE2',
+            'oFFRFreducedOrder', 'loadGravity' and 'rotorBody'
+
+    Note:
+        The node 'nRigidBody' sits in the centre of mass (translation free) or on the spin axis,
+        and carries only spin and translation: apply loads at the boundary markers. Sensor output
+        in local axes (DisplacementLocal) has z along the spin axis; stress is in mesh axes.
+
+    Example:
+        import exudyn_rotor #adds the method to MainSystem
+        rotor = mbs.CreateFixedAxisFFRFReducedOrderObject(
+            name='rotor', femInterface=fem, axis='z', initialAngularVelocity=[0, 0, 100])
+        mLeft = rotor['rotor:left']
+    """
+    rotation = inputs.rotation_matrix(referenceRotationMatrix)
+    omega = inputs.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
+    velocity = inputs.vector(initialVelocity, "initialVelocity", "m/s")
+    rotor = SolidRotor.from_fem_interface(femInterface, _axis(axis, rotation, omega))
+    reduced = rotor.reduce(femInterface)
+    formulation = Formulation(translation, spin)
+    speed = _speed_along(rotation @ rotor.axis.direction, omega)
+    if formulation.translation_count:
+        velocity = velocity + np.cross(omega, rotation @ reduced.center_of_mass)
+    body = add_rotor(
+        mbs,
+        reduced,
+        name="rotor" if name is None else name,
+        translation=translation,
+        spin=spin,
+        stiffening=stiffening,
+        position=inputs.vector(referencePosition, "referencePosition", "m"),
+        rotation=rotation,
+        initial_velocity=velocity,
+        initial_speed=_initial_speed(formulation, speed),
+        gravity=gravity,
+        mass_damping=massProportionalDamping,
+        stiffness_damping=stiffnessProportionalDamping,
+        marker_offsets=_offsets(list(reduced.interfaces), superElementRigidMarkersOffsets),
+        locking=locking,
+        color=color,
+        show_markers=showMarkers,
+    )
+    if verbose:
+        exudyn.Print(body.report())
+    return _dictionary(body, name)
+
+
+def _axis(
+    axis: SpinAxis | str | ArrayLike | None, rotation: np.ndarray, omega: np.ndarray
+) -> SpinAxis:
+    if axis is not None:
+        return SpinAxis.of(axis)
+    if not np.any(omega):
+        raise ValueError(
+            "the spin axis is not known: give axis='x', 'y', 'z', a direction in mesh coordinates, "
+            "or an initialAngularVelocity"
+        )
+    return SpinAxis(rotation.T @ omega)
+
+
+def _speed_along(direction: np.ndarray, omega: np.ndarray) -> float:
+    """Return the spin speed of an angular velocity that must lie along the axis."""
+    speed = float(direction @ omega)
+    across = np.linalg.norm(omega - speed * direction)
+    if across > 1e-9 * np.linalg.norm(omega):
+        raise ValueError(
+            f"initialAngularVelocity {omega.tolist()} has {across:.3g} rad/s across the spin axis "
+            f"{direction.tolist()}: a fixed-axis rotor cannot tumble; start it with modal "
+            "velocities of its tilt modes (exudyn_rotor.add_rotor), or use the 3D body"
+        )
+    return speed
+
+
+def _initial_speed(formulation: Formulation, speed: float) -> float | None:
+    """Return the initial speed of a free spin; a prescribed one must agree with what is given."""
+    if formulation.has_spin:
+        return speed
+    prescribed = formulation.spin.rate(0.0)
+    if speed and abs(speed - prescribed) > 1e-9 * abs(prescribed):
+        raise ValueError(
+            f"spin given twice: initialAngularVelocity is {speed} rad/s along the axis, "
+            f"the prescribed spin starts with {prescribed} rad/s"
+        )
+    return None
+
+
+def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
+    if offsets is None:
+        return {}
+    table = np.atleast_2d(np.asarray(offsets, dtype=float))
+    if table.shape != (len(interfaces), 3) or not np.all(np.isfinite(table)):
+        raise ValueError(
+            f"superElementRigidMarkersOffsets: needs {len(interfaces)} × 3 finite numbers for the "
+            f"interfaces {', '.join(interfaces)}, got shape {table.shape}"
+        )
+    return dict(zip(interfaces, table, strict=True))
+
+
+def _dictionary(body: RotorBody, name: str | None) -> dict:
+    prefix = "" if name is None else f"{name}:"
+    result = {
+        "FFRFReducedOrderObjectDict": {
+            "nRigidBody": body.nodes["rigid"],
+            "nGenericODE2": body.nodes["modes"],
+            "oFFRFreducedOrder": body.objects["shell"],
+            "loadGravity": body.gravity_load,
+            "rotorBody": body,
+        }
+    }
+    return result | {f"{prefix}{key}": marker for key, marker in body.markers.items()}
+
+
+install()

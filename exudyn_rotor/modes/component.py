@@ -1,0 +1,134 @@
+"""Component modes of a rotor: the columns of ``Ψ`` in ``c_f = Ψ ζ`` (16)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.axis import read_only
+from exudyn_rotor.modes import eigen
+from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions, relative_rounding
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+
+@dataclass(frozen=True, eq=False)
+class ModeBasis:
+    """Displacement modes of one mesh.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3n, k)
+        One displacement field per column, mesh axes, ordered x0 y0 z0 x1 …
+    labels : tuple of str
+        What each column is: 'eigenmode 1', 'left translation x', …
+    nodes : ndarray, shape (n, 3)
+        Node positions of the mesh that the modes belong to [m].
+    frequencies : ndarray, shape (k,), optional
+        Angular eigenfrequency of each column [rad/s]; NaN where it is not an eigenmode.
+    stress : ndarray, shape (n, 6, k), optional
+        Nodal stress of each column per unit modal coordinate, components xx, yy, zz, yz, xz, xy
+        in mesh axes.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit or a number that must be finite is not.
+    """
+
+    matrix: np.ndarray
+    labels: tuple[str, ...]
+    nodes: np.ndarray
+    frequencies: np.ndarray | None = None
+    stress: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "labels", tuple(self.labels))
+        if self.frequencies is None:
+            object.__setattr__(self, "frequencies", np.full(len(self.labels), np.nan))
+        for key in ("matrix", "nodes", "frequencies", "stress"):
+            if getattr(self, key) is not None:
+                object.__setattr__(self, key, read_only(getattr(self, key)))
+        self._check_shapes()
+        for key in ("matrix", "nodes", "stress"):
+            if getattr(self, key) is not None and not np.all(np.isfinite(getattr(self, key))):
+                raise ValueError(f"mode basis: {key} has entries that are not finite")
+
+    def _check_shapes(self) -> None:
+        nodes, modes = len(self.nodes), len(self.labels)
+        expected = {
+            "matrix": (3 * nodes, modes),
+            "nodes": (nodes, 3),
+            "frequencies": (modes,),
+            "stress": (nodes, 6, modes),
+        }
+        for key, shape in expected.items():
+            value = getattr(self, key)
+            if value is not None and value.shape != shape:
+                raise ValueError(
+                    f"mode basis: {key} has the shape {value.shape}, but {nodes} nodes and "
+                    f"{modes} labels need {shape}"
+                )
+
+
+def free_modes(rotor: SolidRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
+    """Return the lowest flexible eigenmodes of the rotor at rest, without bearings.
+
+    Rigid motions that the stiffness leaves free are not among them (``rotor.rigid_motions`` says
+    how many there are).
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+    count : int
+        Number of modes.
+    tolerance : float, optional
+        Relative accuracy of the iteration (not used for small models, which are solved directly).
+
+    Returns
+    -------
+    ModeBasis
+        Mass-normalised, ascending frequencies, largest component of each mode positive.
+
+    Raises
+    ------
+    ValueError
+        If there are not that many modes, parts are loose, or the iteration misses the tolerance.
+
+    Notes
+    -----
+    The iteration needs ``K⁻¹`` on the motions without a rigid part. Inertia relief gives it with
+    no shift, so that nothing depends on a guess of the lowest frequency.
+    """
+    stiffness, mass = rotor.stiffness, rotor.mass
+    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
+    size, rigid_count = rigid.shape
+    check_count(count, size - rigid_count, smallest=1)
+    if eigen.is_small(size, count):
+        values, modes = eigen.dense_modes(
+            stiffness.toarray(), mass.toarray(), count, skip=rigid_count
+        )
+    else:
+        inverse = InertiaRelief(stiffness, mass, rigid).solve
+        values, modes = eigen.lanczos_modes(stiffness, mass, inverse, count, tolerance)
+    precision = relative_rounding(stiffness, rigid)
+    eigen.check_modes(stiffness, mass, values, modes, precision=precision)
+    return ModeBasis(
+        eigen.with_fixed_sign(modes), eigenmode_labels(count), rotor.nodes, np.sqrt(values)
+    )
+
+
+def eigenmode_labels(count: int) -> tuple[str, ...]:
+    """Return 'eigenmode 1', 'eigenmode 2', …"""
+    return tuple(f"eigenmode {number}" for number in range(1, count + 1))
+
+
+def check_count(count: int, available: int, *, smallest: int) -> None:
+    """Refuse a number of eigenmodes that the model cannot have."""
+    if not smallest <= count <= available:
+        raise ValueError(
+            f"{count} eigenmodes asked for; this model has between {smallest} and {available}"
+        )

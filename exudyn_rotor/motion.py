@@ -1,0 +1,292 @@
+"""Equations of motion of every formulation: mass matrix, forces, Jacobian.
+
+Coordinates ``q = (τ, θ, ζ)``, of which only the unknown ones exist. Every term stands here once
+and serves dense component modes as well as the sparse full model (Ψ = I).
+
+The kinetic energy behind the terms, with ``W = G + B`` and ``Ĉ = C − K2``
+(:mod:`exudyn_rotor.stiffening`; the paper's equations are B = K2 = 0), is
+
+    T = ½m|τ̇|² + τ̇·A(ω(mχ* + S*ζ) + Sζ̇) + ½ω²(Θ + 2hᵀζ + ζᵀĈζ) + ωζ̇ᵀ(g + Wζ) + ½ζ̇ᵀMζ̇
+
+Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.formulation import Formulation
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.nodal import skew
+from exudyn_rotor.stiffening import Stiffening
+
+
+@dataclass(frozen=True)
+class _State:
+    """One instant, split into its parts."""
+
+    omega: float
+    omega_t: float  # prescribed part of the spin acceleration
+    zeta: np.ndarray
+    zeta_t: np.ndarray
+    A: np.ndarray  # NᵀA(θ), rows: unknown translations
+    push: np.ndarray  # gravity minus frame acceleration, rotor axes
+
+
+class Motion:
+    """Equations of motion ``M(q) q̈ = f(t, q, q̇)`` of one formulation.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        With the origin on the spin axis.
+    formulation : Formulation
+    second_order : Stiffening
+    orientation : ndarray, shape (3, 3), optional
+        Rotation from rotor axes at θ = 0 to inertial axes.
+    plane : ndarray, shape (3, 2), optional
+        Inertial directions of the in-plane translations, ``N`` (89).
+    gravity : array_like, shape (3,), optional
+        Acceleration, inertial axes [m/s²] (App. A).
+
+    Attributes
+    ----------
+    size : int
+        Number of unknowns: translations, then θ, then modal coordinates.
+    free_directions : ndarray, shape (3, 0…3)
+        Inertial directions of the unknown translations, ``N`` (89).
+    """
+
+    def __init__(
+        self,
+        invariants: Invariants,
+        formulation: Formulation,
+        second_order: Stiffening,
+        orientation: np.ndarray | None = None,
+        plane: np.ndarray | None = None,
+        gravity: np.ndarray | None = None,
+    ) -> None:
+        self.invariants = invariants
+        self.formulation = formulation
+        self.orientation = np.eye(3) if orientation is None else np.asarray(orientation, float)
+        self.gravity = np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float)
+        self._e = skew(invariants.direction)
+        self._turn = SpinAxis(invariants.direction)
+        self.free_directions = self._free_directions(plane)
+        self._C = invariants.C - second_order.K2
+        self._B = second_order.B
+        self._W = invariants.G + second_order.B
+        counts = (formulation.translation_count, int(formulation.has_spin), invariants.size)
+        ends = np.cumsum(counts)
+        self._t, self._r, self._f = (
+            slice(end - count, end) for end, count in zip(ends, counts, strict=True)
+        )
+        self.size = int(ends[-1])
+
+    def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
+        count = self.formulation.translation_count
+        if count == 3:
+            return np.eye(3)
+        if count == 2:
+            return self.orientation @ self._turn.plane if plane is None else plane
+        return np.zeros((3, 0))
+
+    @cached_property
+    def _lever(self) -> np.ndarray:
+        """``mχ*`` (67)."""
+        return self.invariants.mass * self._e @ self.invariants.center
+
+    @cached_property
+    def _S1(self) -> np.ndarray:
+        """``S* = ẽS`` (69)."""
+        return self._e @ self.invariants.S
+
+    @property
+    def couples_translation(self) -> bool:
+        """True when ``mχ*`` or S couple the translation with the other coordinates."""
+        return bool(np.any(self._lever) or np.any(self.invariants.S))
+
+    @property
+    def is_constant(self) -> bool:
+        """True when all matrices and forces are constant: Eq. (109) and its uncoupled kin."""
+        form = self.formulation
+        uncoupled = form.translation_count == 0 or not self.couples_translation
+        return (
+            form.is_constant_speed
+            and uncoupled
+            and not form.moves_origin
+            and not np.any(self.gravity)
+        )
+
+    def mass_matrix(self, t: float, q: np.ndarray) -> np.ndarray | sp.csr_array:
+        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
+        inv = self.invariants
+        now = self._state(t, q, np.zeros(self.size))
+        blocks = {("f", "f"): inv.M}
+        if self.formulation.translation_count:
+            blocks["t", "t"] = inv.mass * np.eye(self.formulation.translation_count)
+            blocks["t", "f"] = now.A @ inv.S
+            blocks["f", "t"] = blocks["t", "f"].T
+        if self.formulation.has_spin:
+            blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
+            blocks["r", "f"] = (inv.g + self._W @ now.zeta)[None, :]
+            blocks["f", "r"] = blocks["r", "f"].T
+            if self.formulation.translation_count:
+                blocks["t", "r"] = (now.A @ self._imbalance(now.zeta))[:, None]
+                blocks["r", "t"] = blocks["t", "r"].T
+        return self._assemble(blocks)
+
+    def forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return velocity-dependent, elastic, damping and gravity forces, shape (size,).
+
+        (66), (86), (87), the prescribed accelerations of (108), and App. A.
+        """
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
+        force = np.empty(self.size)
+        force[self._f] = (
+            (inv.h + self._C @ zeta) * omega**2
+            - 2.0 * omega * (inv.G @ zeta_t)
+            - inv.K @ zeta
+            - inv.D @ zeta_t
+            + inv.S.T @ now.push
+        )
+        if now.omega_t:
+            force[self._f] -= (inv.g + self._W @ zeta) * now.omega_t
+        if self.formulation.has_spin:
+            force[self._r] = (
+                -2.0 * omega * (inv.h + self._C @ zeta) @ zeta_t
+                - zeta_t @ (self._B @ zeta_t)
+                + self._imbalance(zeta) @ now.push
+            )
+        if self.formulation.translation_count:
+            force[self._t] = self._translational_force(now)
+        return force
+
+    def jacobian(
+        self, t: float, q: np.ndarray, q_t: np.ndarray
+    ) -> tuple[np.ndarray | sp.csr_array, np.ndarray | sp.csr_array]:
+        """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
+        by_q = {("f", "f"): omega**2 * self._C - inv.K}
+        by_v = {("f", "f"): -2.0 * omega * inv.G - inv.D}
+        if now.omega_t:
+            by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self._W
+        if self.formulation.has_spin:
+            softening = inv.h + self._C @ zeta
+            turned = -self._e @ now.push
+            by_q["f", "r"] = (inv.S.T @ turned)[:, None]
+            by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
+            by_q["r", "f"] = (-2.0 * omega * (self._C @ zeta_t) + self._S1.T @ now.push)[None, :]
+            by_v["f", "r"] = (2.0 * omega * softening - 2.0 * (inv.G @ zeta_t))[:, None]
+            by_v["r", "r"] = [[-2.0 * softening @ zeta_t]]
+            by_v["r", "f"] = (-2.0 * omega * softening - 2.0 * (self._B @ zeta_t))[None, :]
+        if self.formulation.translation_count:
+            self._add_translational_jacobian(now, by_q, by_v)
+        return self._assemble(by_q), self._assemble(by_v)
+
+    def energy(self, t: float, q: np.ndarray, q_t: np.ndarray) -> float:
+        """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
+        zeta = q[self._f]
+        kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
+        return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
+
+    def momentum(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return the generalised momenta ``M(q) q̇``, shape (size,).
+
+        With a free spin, the entry of θ is the angular momentum about the spin axis relative to
+        the frame origin.
+        """
+        return self.mass_matrix(t, q) @ q_t
+
+    def drive_torque(self, t: float, q: np.ndarray, q_t: np.ndarray, zeta_tt: np.ndarray) -> float:
+        """Return the torque about e that a prescribed spin needs, external loads left out [N m].
+
+        The row of θ that a prescribed spin removes: (84–86) times the accelerations.
+        """
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        inertia = (
+            self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self._W @ now.zeta) @ zeta_tt
+        )
+        coriolis = 2.0 * now.omega * (inv.h + self._C @ now.zeta) @ now.zeta_t
+        return float(
+            inertia
+            + coriolis
+            + now.zeta_t @ (self._B @ now.zeta_t)
+            - self._imbalance(now.zeta) @ now.push
+        )
+
+    def _spin_inertia(self, zeta: np.ndarray) -> float:
+        """(85)."""
+        inv = self.invariants
+        return inv.Theta + (2.0 * inv.h + self._C @ zeta) @ zeta
+
+    def _imbalance(self, zeta: np.ndarray) -> np.ndarray:
+        """``mχ* + S*ζ``, the bracket of (65), rotor axes."""
+        return self._lever + self._S1 @ zeta
+
+    def _translational_force(self, now: _State) -> np.ndarray:
+        """(66), the Euler part of a prescribed spin, and gravity."""
+        arm = self._imbalance(now.zeta)
+        local = (self._e @ arm) * now.omega**2 + 2.0 * now.omega * (self._S1 @ now.zeta_t)
+        if now.omega_t:
+            local = local + arm * now.omega_t
+        return self.invariants.mass * (self.free_directions.T @ self.gravity) - now.A @ local
+
+    def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
+        omega, arm = now.omega, self._imbalance(now.zeta)
+        turning = omega**2 * self._e + now.omega_t * np.eye(3)
+        by_q["t", "f"] = -now.A @ turning @ self._S1
+        by_v["t", "f"] = -2.0 * omega * now.A @ self._S1
+        if self.formulation.has_spin:
+            local = omega**2 * (self._e @ arm) + 2.0 * omega * (self._S1 @ now.zeta_t)
+            by_q["t", "r"] = -(now.A @ self._e @ local)[:, None]
+            swing = 2.0 * omega * (self._e @ arm) + 2.0 * (self._S1 @ now.zeta_t)
+            by_v["t", "r"] = -(now.A @ swing)[:, None]
+
+    def _state(self, t: float, q: np.ndarray, q_t: np.ndarray) -> _State:
+        form = self.formulation
+        if form.has_spin:
+            theta, omega, omega_t = float(q[self._r][0]), float(q_t[self._r][0]), 0.0
+        else:
+            theta, omega = form.spin.value(t), form.spin.rate(t)
+            omega_t = form.spin.acceleration(t)
+        rotation = self.orientation @ self._turn.rotation(theta)
+        push = self.gravity
+        if form.moves_origin:
+            push = push - np.asarray(form.translation.acceleration(t), dtype=float)
+        return _State(
+            omega=omega,
+            omega_t=omega_t,
+            zeta=q[self._f],
+            zeta_t=q_t[self._f],
+            A=self.free_directions.T @ rotation,
+            push=rotation.T @ push,
+        )
+
+    def _assemble(self, blocks: dict) -> np.ndarray | sp.csr_array:
+        """Put the blocks of t, r, f into one matrix, sparse where the invariants are."""
+        places = {"t": self._t, "r": self._r, "f": self._f}
+        if not self.invariants.is_sparse:
+            matrix = np.zeros((self.size, self.size))
+            for (row, column), block in blocks.items():
+                matrix[places[row], places[column]] = block
+            return matrix
+        matrix = sp.csr_array((self.size, self.size))
+        for (row, column), block in blocks.items():
+            part = sp.coo_array(block)
+            rows, columns = part.coords
+            matrix = matrix + sp.csr_array(
+                (part.data, (rows + places[row].start, columns + places[column].start)),
+                shape=matrix.shape,
+            )
+        return matrix

@@ -1,0 +1,137 @@
+"""Reduction of a solid rotor: component modes plus rigid motions → :class:`ReducedRotor`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg
+from exudyn.FEM import FEMinterface
+
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.modes.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
+from exudyn_rotor.modes.component import ModeBasis, free_modes
+from exudyn_rotor.modes.fem_interface import fem_interface_modes
+from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+ModeSource = int | ModeBasis | FEMinterface | np.ndarray
+
+
+def reduce_rotor(
+    rotor: SolidRotor,
+    modes: ModeSource,
+    *,
+    stress: bool = False,
+    keep_shapes: bool = True,
+    rank_tolerance: float = 1e-7,
+) -> ReducedRotor:
+    """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
+    component = _component_modes(rotor, modes)
+    center = rotor.center_of_mass
+    rigid, names = _rigid_motions(rotor, center)
+    basis = orthonormal_basis(rigid, names, component, rotor.mass, rotor.stiffness, rank_tolerance)
+    if basis.matrix.shape[1] == 0:
+        raise ValueError("the reduced basis is empty: ask for at least one component mode")
+    invariants = Invariants.of(
+        rotor.nodes - center,
+        rotor.mass,
+        rotor.stiffness,
+        rotor.damping,
+        basis.matrix,
+        rotor.axis.direction,
+    )
+    raw_mass = component.matrix.T @ (rotor.mass @ component.matrix)
+    return ReducedRotor(
+        axis=rotor.axis,
+        center_of_mass=center,
+        invariants=_cleaned(invariants, len(basis.rigid)),
+        rigid=basis.rigid,
+        interfaces=_interfaces(rotor, basis.matrix),
+        mode_mass=basis.from_modes.T @ raw_mass @ basis.from_modes,
+        dropped=basis.dropped,
+        grounded=rotor.grounded,
+        shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
+    )
+
+
+def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
+    if isinstance(modes, ModeBasis):
+        _check_same_mesh(rotor, modes)
+        return modes
+    if isinstance(modes, FEMinterface):
+        return fem_interface_modes(rotor, modes)
+    if isinstance(modes, np.ndarray):
+        labels = tuple(f"column {i + 1}" for i in range(modes.shape[-1]))
+        return ModeBasis(modes, labels, nodes=rotor.nodes)
+    if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
+        return free_modes(rotor, int(modes))
+    raise TypeError(
+        f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
+        f"an array of displacement columns, got {type(modes).__name__}"
+    )
+
+
+def _check_same_mesh(rotor: SolidRotor, modes: ModeBasis) -> None:
+    size = np.ptp(rotor.nodes, axis=0).max()
+    same = modes.nodes.shape == rotor.nodes.shape
+    if not same or np.abs(modes.nodes - rotor.nodes).max() > 1e-9 * size:
+        raise ValueError(
+            f"the modal basis is from another mesh: {len(modes.nodes)} nodes in the basis, "
+            f"{rotor.node_count} in the rotor; compute the modes from this rotor"
+        )
+
+
+def _rigid_motions(rotor: SolidRotor, center: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the rigid motions that the stiffness matrix leaves free, with their names."""
+    rigid = rigid_columns(rotor.nodes, rotor.axis, center)
+    if not rotor.grounded:
+        return rigid, RIGID
+    if rotor.rigid_motions == 0:
+        return rigid[:, :0], ()
+    scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
+    _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
+    free = scaled @ vt[6 - rotor.rigid_motions :].T
+    return free, tuple(f"free motion {i + 1}" for i in range(rotor.rigid_motions))
+
+
+def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
+    """Put in exactly what holds by construction, so that round-off excites nothing."""
+    free = slice(None, rigid_count)
+    invariants.M[:] = np.eye(invariants.size)
+    invariants.K[:] = np.diag(np.maximum(np.diag(invariants.K), 0.0))
+    invariants.K[free, free] = 0.0
+    invariants.center[:] = 0.0
+    invariants.G[:] = 0.5 * (invariants.G - invariants.G.T)
+    invariants.C[:] = 0.5 * (invariants.C + invariants.C.T)
+    return invariants
+
+
+def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
+    return {
+        name: ReducedInterface(
+            reference=interface.reference,
+            center=interface.center,
+            radius=interface.radius,
+            motion=interface.mean_motion(rotor.node_count) @ basis,
+        )
+        for name, interface in rotor.interfaces.items()
+    }
+
+
+def _shapes(
+    rotor: SolidRotor, component: ModeBasis, basis: OrthonormalBasis, stress: bool
+) -> ModeShapes:
+    columns = None
+    if component.stress is not None:
+        columns = component.stress @ basis.from_modes
+    elif stress:
+        if rotor.stress_recovery is None:
+            raise ValueError(
+                "stress=True: this rotor has no stress recovery; make it with from_ngsolve, or "
+                "give a FEMinterface with post-processing modes"
+            )
+        columns = rotor.stress_recovery(basis.matrix)
+    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, columns)

@@ -1,0 +1,172 @@
+"""Finite-element models assembled by NGSolve; displacement-based tetrahedra of order 1 or 2."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import ngsolve as ngs
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.solid import units
+from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.stress import TetrahedronStress
+from exudyn_rotor.solid.surface import area_weights
+
+# Face names that Netgen invents for faces without a name.
+_INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
+_TETRAHEDRON_TYPES = {1: 20, 2: 21}
+
+
+def is_named(face: str) -> bool:
+    """Tell whether a user gave this face name, rather than Netgen."""
+    return _INVENTED_NAME.fullmatch(face) is None
+
+
+def assemble_model(
+    mesh: ngs.Mesh,
+    materials: Mapping[str, Any],
+    *,
+    order: int = 2,
+    interfaces: Sequence[str] | None = None,
+    check_units: bool = True,
+) -> FiniteElementModel:
+    """Return the model of an NGSolve mesh; parameters as ``SolidRotor.from_ngsolve``."""
+    _prepare_mesh(mesh, order)
+    regions = mesh.GetMaterials()
+    by_region = units.materials_by_region(regions, materials)
+    if check_units:
+        for name, material in by_region.items():
+            units.check_material_units(name, material)
+    tetrahedra, region_numbers = _tetrahedra(mesh)
+    nodes = np.array(mesh.ngmesh.Coordinates(), dtype=float)
+    nodes = nodes if order == 2 else nodes[: mesh.nv]
+    _check_used(tetrahedra, len(nodes))
+    lame = np.array([_lame_parameters(by_region[name]) for name in regions])
+    densities = [by_region[name]["density"] for name in regions]
+    space = ngs.NodalFESpace(mesh, order=2) if order == 2 else ngs.H1(mesh, order=1)
+    triangles, faces = _triangles(mesh, order)
+    return FiniteElementModel(
+        nodes=nodes,
+        mass=_assemble_mass(space, densities),
+        stiffness=_assemble_stiffness(space, lame),
+        node_sets=_node_sets(nodes, triangles, faces, interfaces),
+        triangles=triangles,
+        stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),
+    )
+
+
+def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
+    """Check the mesh and give it the mid nodes that `order` needs."""
+    if not isinstance(mesh, ngs.Mesh):
+        raise TypeError(
+            f"mesh: needs an ngsolve.Mesh, got {type(mesh).__name__}; wrap a Netgen mesh with "
+            "ngsolve.Mesh(...)"
+        )
+    if order not in (1, 2):
+        raise ValueError(f"order: must be 1 or 2, got {order!r}")
+    types = set(mesh.ngmesh.Elements3D().NumPy()["type"].tolist()) if mesh.ne else set()
+    if not types or not types <= set(_TETRAHEDRON_TYPES.values()):
+        raise ValueError(
+            "mesh: needs volume elements, and tetrahedra only; generate a 3D tetrahedral mesh"
+        )
+    is_quadratic = types == {_TETRAHEDRON_TYPES[2]}
+    if order == 1 and (is_quadratic or mesh.GetCurveOrder() > 1):
+        raise ValueError(
+            "mesh: its elements are curved, where linear displacements (order=1) cannot even "
+            "describe a rigid rotation; use order=2 or a new mesh that is not made second order"
+        )
+    # a second call would add the mid nodes once more and leave the first ones without elements
+    if order == 2 and not is_quadratic:
+        mesh.ngmesh.SecondOrder()
+
+
+def _tetrahedra(mesh: ngs.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return node numbers (t, 4) or (t, 10) and region numbers (t,), counted from zero."""
+    elements = mesh.ngmesh.Elements3D().NumPy()
+    return elements["nodes"].astype(np.int64) - 1, elements["index"].astype(np.int64) - 1
+
+
+def _check_used(tetrahedra: np.ndarray, node_count: int) -> None:
+    unused = node_count - np.unique(tetrahedra).size
+    if unused:
+        raise ValueError(
+            f"mesh: {unused} of {node_count} points belong to no volume element (SecondOrder() "
+            "called twice?); generate the mesh anew"
+        )
+
+
+def _triangles(mesh: ngs.Mesh, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the surface triangles (t, 3) or (t, 6) and the name of the face of each."""
+    netgen = mesh.ngmesh
+    elements = netgen.Elements2D().NumPy()
+    numbers = elements["nodes"].astype(np.int64) - 1
+    if order == 2:
+        # Netgen puts the mid node opposite to corner i at 3 + i
+        numbers = numbers[:, [0, 1, 2, 5, 3, 4]]
+    count = netgen.GetNFaceDescriptors()
+    names = np.array([netgen.FaceDescriptor(i + 1).bcname for i in range(count)])
+    return numbers, names[elements["index"] - 1]
+
+
+def _node_sets(
+    nodes: np.ndarray,
+    triangles: np.ndarray,
+    faces: np.ndarray,
+    interfaces: Sequence[str] | None,
+) -> dict[str, NodeSet]:
+    """Return node numbers and area weights of the faces named in `interfaces`."""
+    known = sorted(name for name in set(faces.tolist()) if is_named(name))
+    if isinstance(interfaces, str):
+        raise TypeError(f"interfaces: needs a list of face names, got the text {interfaces!r}")
+    wanted = known if interfaces is None else list(interfaces)
+    unknown = [name for name in wanted if name not in known]
+    if unknown:
+        raise ValueError(f"interfaces: the mesh has no faces named {unknown}; it has {known}")
+    if len(set(wanted)) < len(wanted):
+        raise ValueError(f"interfaces: a face name is repeated in {wanted}")
+    return {name: area_weights(nodes, triangles[faces == name]) for name in wanted}
+
+
+def _lame_parameters(material: units.Material) -> tuple[float, float]:
+    """Return λ and μ [Pa]."""
+    modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
+    shear = modulus / (2 * (1 + ratio))
+    return 2 * shear * ratio / (1 - 2 * ratio), shear
+
+
+def _assemble_mass(space: ngs.FESpace, densities: list[float]) -> sp.csr_array:
+    """Return the consistent mass matrix; one direction is assembled, all three have the same."""
+    u, v = space.TnT()
+    form = ngs.BilinearForm(space)
+    form += ngs.CoefficientFunction(densities) * u * v * ngs.dx
+    return sp.csr_array(sp.kron(_assembled(form), sp.eye_array(3), format="csr"))
+
+
+def _assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
+    """Return the stiffness matrix of linear isotropic elasticity."""
+    displacement = space**3
+    u, v = displacement.TnT()
+    first, second = (ngs.CoefficientFunction(values.tolist()) for values in lame.T)
+    strain = ngs.Sym(ngs.Grad(u))
+    stress = 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
+    form = ngs.BilinearForm(displacement)
+    form += ngs.InnerProduct(stress, ngs.Sym(ngs.Grad(v))) * ngs.dx
+    return _node_by_node(_assembled(form))
+
+
+def _assembled(form: ngs.BilinearForm) -> sp.csr_array:
+    with ngs.TaskManager():
+        form.Assemble()
+    # the arrays belong to the form, which ends here
+    return sp.csr_array(form.mat.CSR(), copy=True)
+
+
+def _node_by_node(matrix: sp.csr_array) -> sp.csr_array:
+    """Return `matrix` reordered from x0 x1 … y0 y1 … z0 z1 … to x0 y0 z0 x1 …."""
+    count = matrix.shape[0] // 3
+    entries = matrix.tocoo()
+    rows, columns = (3 * (index % count) + index // count for index in entries.coords)
+    return sp.csr_array((entries.data, (rows, columns)), shape=matrix.shape)

@@ -1,0 +1,53 @@
+"""A short readable table of a rotor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.interface import Interface
+    from exudyn_rotor.solid.point_mass import PointMass
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+
+def summary(rotor: SolidRotor) -> str:
+    """Return size, mass, supports, interfaces and point masses of `rotor` as lines of text."""
+    axis = rotor.axis
+    support = "grounded" if rotor.grounded else "not supported"
+    lines = [
+        f"nodes            {rotor.node_count}",
+        f"mass             {rotor.total_mass:.6g} kg ({rotor.mass_kind} mass matrix)",
+        f"centre of mass   {_vector(rotor.center_of_mass)} m",
+        f"spin axis        direction {_vector(axis.direction)}, point {_vector(axis.point)} m",
+        f"rigid motions    {rotor.rigid_motions} of 6 free ({support})",
+    ]
+    lines += [_interface_line(rotor, interface) for interface in rotor.interfaces.values()]
+    lines += [_point_mass_line(point_mass) for point_mass in rotor.point_masses]
+    return "\n".join(lines)
+
+
+def _interface_line(rotor: SolidRotor, interface: Interface) -> str:
+    offset = np.linalg.norm(rotor.axis.radial(interface.center))
+    left = np.linalg.norm(rotor.axis.radial(interface.reference))
+    rounding = 1e-12 * np.abs(interface.positions).max()
+    if offset <= rounding:
+        place = "on the axis"
+    else:
+        place = f"{offset:.3g} m off the axis ({'removed' if left <= rounding else 'kept'})"
+    return (
+        f"interface        {interface.name}: {interface.nodes.size} nodes, centre "
+        f"{_vector(interface.center)} m, {place}"
+    )
+
+
+def _point_mass_line(point_mass: PointMass) -> str:
+    return (
+        f"point mass       {point_mass.mass:.6g} kg at {_vector(point_mass.position)} m, "
+        f"on node {point_mass.node}, {point_mass.distance:.3g} m away"
+    )
+
+
+def _vector(values: np.ndarray) -> str:
+    return "[" + ", ".join(f"{value:.5g}" for value in values) + "]"

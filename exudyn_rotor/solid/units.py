@@ -1,0 +1,132 @@
+"""Materials, and units that cannot be SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+Material = Mapping[str, float]
+MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")
+
+# Bar wave speed √(E/ρ) [m/s] from soft foam (about 30) to diamond (18 000), with a wide margin.
+WAVE_SPEED_RANGE = (10.0, 1e5)
+# Solids from aerogel (about 1) to osmium (22 600) [kg/m³].
+DENSITY_RANGE = (1.0, 1e5)
+# Mass over bounding box [kg/m³]; a bladed wheel may fill a thousandth of its box.
+MEAN_DENSITY_RANGE = (1e-2, 1e5)
+# Ten thousand tonnes [kg]; the heaviest turbine-generator rotors have about two thousand.
+LARGEST_MASS = 1e7
+
+_ADVICE = (
+    "convert to SI (m, kg, s, N, Pa), or pass check_units=False if the units of all inputs agree"
+)
+
+
+def materials_by_region(
+    regions: Sequence[str], materials: Mapping[str, Any]
+) -> dict[str, Material]:
+    """Return one checked material for every region name of a mesh.
+
+    Parameters
+    ----------
+    regions : sequence of str
+        Region names of the mesh.
+    materials : mapping
+        Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``, or one such
+        dict by itself for a mesh with one material.
+
+    Raises
+    ------
+    TypeError
+        If `materials` is not a dictionary.
+    ValueError
+        If a region has no material, or a material cannot be.
+    """
+    if not isinstance(materials, Mapping):
+        raise TypeError(
+            f"materials: needs a dictionary by region name, got {type(materials).__name__}"
+        )
+    names = sorted(set(regions))
+    if any(key in materials for key in MATERIAL_KEYS):
+        if len(names) > 1:
+            raise ValueError(
+                f"materials: one material was given, but the mesh has {len(names)} regions "
+                f"{names}; give a dictionary by region name"
+            )
+        materials = {names[0]: materials}
+    missing = [name for name in names if name not in materials]
+    if missing:
+        raise ValueError(
+            f"materials: the mesh regions {missing} have no material; "
+            f"given are {sorted(materials)}, the mesh has {names}"
+        )
+    for name in names:
+        _check_material(name, materials[name])
+    return {name: materials[name] for name in names}
+
+
+def check_material_units(name: str, material: Material) -> None:
+    """Raise ValueError if the material `name` cannot be in SI units."""
+    density = material["density"]
+    speed = np.sqrt(material["youngsModulus"] / density)
+    if not _inside(density, DENSITY_RANGE):
+        raise ValueError(
+            f"material {name!r}: a density of {density:g} kg/m³ cannot be; "
+            f"{_guess(density)} {_ADVICE}"
+        )
+    if not _inside(speed, WAVE_SPEED_RANGE):
+        raise ValueError(
+            f"material {name!r}: Young's modulus and density give a wave speed of {speed:.3g} m/s "
+            f"(steel: 5200), which cannot be; {_ADVICE}"
+        )
+
+
+def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
+    """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI units.
+
+    The mean density is not checked where the bounding box has no volume.
+    """
+    extent = np.ptp(nodes, axis=0)
+    size = f"{total_mass:.3g} kg in a box of {' × '.join(f'{side:.3g}' for side in extent)} m"
+    if total_mass > LARGEST_MASS:
+        raise ValueError(f"units: {size} cannot be a rotor; lengths in mm? {_ADVICE}")
+    volume = float(np.prod(extent))
+    if volume <= 1e-12 * np.max(extent) ** 3:
+        return
+    density = total_mass / volume
+    if not _inside(density, MEAN_DENSITY_RANGE):
+        raise ValueError(
+            f"units: {size}, {density:.3g} kg/m³, cannot be; {_guess(density)} {_ADVICE}"
+        )
+
+
+def _check_material(name: str, material: Any) -> None:
+    if not isinstance(material, Mapping) or set(material) != set(MATERIAL_KEYS):
+        found = sorted(material) if isinstance(material, Mapping) else type(material).__name__
+        raise ValueError(
+            f"material {name!r}: needs exactly the keys {list(MATERIAL_KEYS)}, got {found}"
+        )
+    modulus, ratio, density = (material[key] for key in MATERIAL_KEYS)
+    if not (np.isfinite(modulus) and modulus > 0.0):
+        raise ValueError(f"material {name!r}: youngsModulus must be positive, got {modulus:g} Pa")
+    if not -1.0 < ratio < 0.5:
+        raise ValueError(
+            f"material {name!r}: poissonsRatio must lie between -1 and 0.5 (exclusive), "
+            f"got {ratio:g}"
+        )
+    if not (np.isfinite(density) and density > 0.0):
+        raise ValueError(f"material {name!r}: density must be positive, got {density:g} kg/m³")
+
+
+def _inside(value: float, limits: tuple[float, float]) -> bool:
+    return limits[0] <= value <= limits[1]
+
+
+def _guess(density: float) -> str:
+    if density < 1e-7:
+        return "mm and tonnes?"
+    if density < 1e-3:
+        return "mm and kg?"
+    return "mixed units?"

@@ -1,0 +1,107 @@
+"""Centrifugal stiffening: the work of the centrifugal field on second-order displacements.
+
+The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only. The centrifugal load
+``ω² M x_⊥`` also does work on the second-order part u₂ of a displacement, a stiffness of the same
+order. Without it a rigid rotor tilting in the rotating frame has the stiffness
+``k − ω²(I_t − I_p/2)`` instead of ``k − ω²(I_t − I_p)`` and turns falsely unstable.
+
+Levels
+------
+``'none'``
+    The paper's equations.
+``'tilt'``
+    Exact for the rigid rotations contained in the basis, from M and x alone.
+
+Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
+φ about the centre of mass and a flexible rest ψ; composing them gives
+``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
+``f = M F x`` on it is a quadratic form in (φ, ψ) that needs only the invariants J, S and P.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.nodal import skew
+
+LEVELS = ("none", "tilt")
+
+_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffening:
+    """Second-order inertia terms in a basis of k columns.
+
+    Attributes
+    ----------
+    K2 : ndarray, shape (k, k)
+        Stiffness per ω² from the centrifugal field; C − K2 replaces C in (85–87).
+    B : ndarray, shape (k, k)
+        Symmetric matrix of the Euler field: stiffness ``ω̇ B`` and, where θ is a coordinate,
+        ``(Bζ)ᵀ`` added to ``M_θζ``. Zero for the tilts of an axisymmetric rotor.
+    """
+
+    K2: np.ndarray
+    B: np.ndarray
+
+
+def stiffening(invariants: Invariants, level: str) -> Stiffening:
+    """Return the second-order terms of `level` for a basis.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        With the origin on the spin axis.
+    level : {'none', 'tilt'}
+
+    Raises
+    ------
+    ValueError
+        For an unknown level.
+    """
+    if level not in LEVELS:
+        raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
+    if level == "none":
+        shape = (invariants.size, invariants.size)
+        zero = sp.csr_array(shape) if invariants.is_sparse else np.zeros(shape)
+        return Stiffening(zero, zero)
+    e = skew(invariants.direction)
+    split = _rigid_split(invariants)
+    return Stiffening(K2=-_work_hessian(split, -e @ e), B=_work_hessian(split, e))
+
+
+@dataclass(frozen=True, eq=False)
+class _RigidSplit:
+    """Columns split into rotation about the centre of mass and a flexible rest."""
+
+    rotation: np.ndarray  # (3, k) rotation vector of every column
+    P_flexible: np.ndarray  # (3, 3, k) mixed moments Σ M y ψᵀ of the flexible rest
+    J: np.ndarray  # (3, 3) second moments about the centre of mass
+
+
+def _rigid_split(invariants: Invariants) -> _RigidSplit:
+    """Split every column by mass-orthogonality (Tisserand)."""
+    central = invariants.moved(invariants.center)
+    inertia = np.trace(central.J) * np.eye(3) - central.J
+    momentum = np.einsum("aib,abk->ik", _EPSILON, central.P)
+    rotation = np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum
+    P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, central.J)
+    return _RigidSplit(rotation, central.P - P_rigid, central.J)
+
+
+def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:
+    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k).
+
+    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and
+    ``f·(φ×ψ) = −φ·Σ f×ψ``.
+    """
+    H = field @ split.J
+    own = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
+    mixed = -np.einsum("aib,ac,cbk->ik", _EPSILON, field, split.P_flexible)
+    cross = split.rotation.T @ mixed
+    return split.rotation.T @ own @ split.rotation + cross + cross.T

@@ -1,0 +1,88 @@
+"""Lossless storage in ``.npz`` files without pickle: loading never executes code."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+
+_FORMAT = "exudyn_rotor reduced rotor 1"
+_INVARIANTS = ("direction", "mass", "center", "J", "S", "P", "M", "K", "D", "G", "C")
+_SHAPES = ("nodes", "matrix", "triangles", "stress")
+_INTERFACE = ("reference", "center", "radius", "motion")
+
+
+def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
+    """Write `rotor` to `path`; a file of that name is replaced only by a complete one."""
+    data = {
+        "format": _FORMAT,
+        "axis": np.vstack([rotor.axis.direction, rotor.axis.point]),
+        "center_of_mass": rotor.center_of_mass,
+        "rigid": np.array(rotor.rigid, dtype=str),
+        "interface_names": np.array(list(rotor.interfaces), dtype=str),
+        "mode_mass": rotor.mode_mass,
+        "dropped": np.array(rotor.dropped, dtype=str),
+        "grounded": rotor.grounded,
+    }
+    data |= {f"invariants.{key}": getattr(rotor.invariants, key) for key in _INVARIANTS}
+    for index, interface in enumerate(rotor.interfaces.values()):
+        data |= {f"interface{index}.{key}": getattr(interface, key) for key in _INTERFACE}
+    if rotor.shapes is not None:
+        values = {key: getattr(rotor.shapes, key) for key in _SHAPES}
+        data |= {f"shapes.{key}": value for key, value in values.items() if value is not None}
+    target = Path(path)
+    draft = target.with_name(target.name + ".part")
+    with open(draft, "wb") as file:
+        np.savez_compressed(file, allow_pickle=False, **data)
+    os.replace(draft, target)
+
+
+def load_reduced(path: str | PathLike) -> ReducedRotor:
+    """Read a rotor from `path`.
+
+    Raises
+    ------
+    ValueError
+        When the file is not a reduced rotor of this package, or is damaged.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            data = {key: file[key] for key in file.files}
+    except (zipfile.BadZipFile, EOFError, ValueError) as error:
+        raise ValueError(f"{path}: not a readable .npz file without pickle ({error})") from error
+    if str(data.get("format")) != _FORMAT:
+        raise ValueError(f"{path}: holds no reduced rotor; write one with ReducedRotor.save")
+    try:
+        return _rotor_from(data)
+    except KeyError as error:
+        raise ValueError(f"{path}: the entry {error} is missing; the file is damaged") from error
+
+
+def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
+    invariants = {key: data[f"invariants.{key}"] for key in _INVARIANTS}
+    invariants["mass"] = float(invariants["mass"])
+    interfaces = {}
+    for index, name in enumerate(data["interface_names"]):
+        values = {key: data[f"interface{index}.{key}"] for key in _INTERFACE}
+        interfaces[str(name)] = ReducedInterface(**values | {"radius": float(values["radius"])})
+    shapes = None
+    if "shapes.matrix" in data:
+        shapes = ModeShapes(**{key: data.get(f"shapes.{key}") for key in _SHAPES})
+    return ReducedRotor(
+        axis=SpinAxis(*data["axis"]),
+        center_of_mass=data["center_of_mass"],
+        invariants=Invariants(**invariants),
+        rigid=tuple(str(name) for name in data["rigid"]),
+        interfaces=interfaces,
+        mode_mass=data["mode_mass"],
+        dropped=tuple(str(name) for name in data["dropped"]),
+        grounded=bool(data["grounded"]),
+        shapes=shapes,
+    )

@@ -1,0 +1,54 @@
+"""Small rotors that several tests share."""
+
+import ngsolve as ngs
+import numpy as np
+from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, Z
+
+STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
+ALUMINIUM = {"youngsModulus": 7.0e10, "poissonsRatio": 0.33, "density": 2700.0}
+
+
+def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0) -> ngs.Mesh:
+    """Return a steel disc (radius 0.15 m) on a shaft (radius 0.02 m, z from 0 to 0.5 m).
+
+    Material 'steel'; the end faces of the shaft are named 'left' and 'right'.
+    """
+    shaft = Cylinder(Pnt(0, 0, 0), Z, 0.02 * scale, 0.5 * scale)
+    disc = Cylinder(Pnt(0, 0, 0.2 * scale), Z, 0.15 * scale, 0.03 * scale)
+    solid = shaft + disc
+    solid.mat("steel")
+    solid.faces.Min(Z).name = "left"
+    solid.faces.Max(Z).name = "right"
+    return ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=maxh * scale))
+
+
+def two_material_cylinder(maxh: float = 0.06) -> ngs.Mesh:
+    """Return a cylinder of radius 0.1 m: 'steel' for z below 0.3 m, 'aluminium' up to 0.4 m.
+
+    The face z = 0 is named 'left', the face between the materials 'joint'.
+    """
+    lower = Cylinder(Pnt(0, 0, 0), Z, 0.1, 0.3)
+    lower.mat("steel")
+    lower.faces.Min(Z).name = "left"
+    lower.faces.Max(Z).name = "joint"
+    upper = Cylinder(Pnt(0, 0, 0.3), Z, 0.1, 0.1)
+    upper.mat("aluminium")
+    return ngs.Mesh(OCCGeometry(Glue([lower, upper])).GenerateMesh(maxh=maxh))
+
+
+def block_beam(maxh: float = 0.05, scale: float = 1.0) -> ngs.Mesh:
+    """Return a beam of 0.04 × 0.06 × 0.3 m along z with the end faces 'left' and 'right'."""
+    corner = 0.02 * scale, 0.03 * scale
+    solid = Box(Pnt(-corner[0], -corner[1], 0), Pnt(corner[0], corner[1], 0.3 * scale))
+    solid.mat("steel")
+    solid.faces.Min(Z).name = "left"
+    solid.faces.Max(Z).name = "right"
+    return ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=maxh * scale))
+
+
+def two_masses() -> dict[str, np.ndarray]:
+    """Return M, K and nodes of the two masses on springs in the paper's Appendix B (122, 123)."""
+    stiffness = 1e4 * np.diag([228.0, 196.0, 100.0, 272.0, 196.0, 100.0])
+    stiffness[0, 3] = stiffness[3, 0] = -128e4
+    nodes = np.array([[1.0, 0.0, 0.0], [1.75, 0.0, 0.0]])
+    return {"mass": np.eye(6), "stiffness": stiffness, "nodes": nodes}

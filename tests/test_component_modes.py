@@ -1,0 +1,378 @@
+"""Component modes against Exudyn's FEMinterface, beam theory and dense linear algebra."""
+
+from types import SimpleNamespace
+
+import netgen.occ as occ
+import ngsolve
+import numpy as np
+import pytest
+import scipy.linalg as la
+import scipy.sparse as sp
+from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
+
+from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, fem_interface_modes, free_modes
+from exudyn_rotor.modes.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.nodal import rotations, translations
+from exudyn_rotor.solid.rotor import SolidRotor
+
+STEEL = {"density": 7800.0, "youngsModulus": 2.1e11, "poissonsRatio": 0.3}
+
+
+def stepped_shaft(size: float = 0.02) -> ngsolve.Mesh:
+    """Return a shaft along z with a disc off its middle and named end faces."""
+    shaft = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, r=0.02, h=0.3)
+    disc = occ.Cylinder(occ.Pnt(0, 0, 0.1), occ.Z, r=0.08, h=0.03)
+    solid = shaft + disc
+    solid.faces.Min(occ.Z).name = "left"
+    solid.faces.Max(occ.Z).name = "right"
+    return ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=size))
+
+
+@pytest.fixture(scope="module")
+def shaft() -> SimpleNamespace:
+    """Return the FEMinterface, its finite-element space and the rotor of one linear mesh."""
+    fem = FEMinterface()
+    _, _, space = fem.ImportMeshFromNGsolve(stepped_shaft(), meshOrder=1, **STEEL)
+    rotor = SolidRotor.from_fem_interface(fem, "z")
+    wanted = {name: rotor.interfaces[name] for name in ("left", "right")}
+    assert rotor.mass.shape[0] > DENSE_SIZE
+    return SimpleNamespace(fem=fem, space=space, rotor=with_interfaces(rotor, wanted))
+
+
+@pytest.fixture(scope="module")
+def short_shaft() -> SolidRotor:
+    """Return a rotor that is just large enough for the sparse path and quick with dense ones."""
+    solid = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, r=0.02, h=0.1)
+    solid.faces.Min(occ.Z).name = "left"
+    solid.faces.Max(occ.Z).name = "right"
+    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.009))
+    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z", order=1)
+    assert DENSE_SIZE < rotor.mass.shape[0] < 1500
+    return rotor
+
+
+def with_interfaces(rotor, interfaces) -> SimpleNamespace:
+    """Return what the mode functions read of a rotor, with other interfaces."""
+    return SimpleNamespace(
+        nodes=rotor.nodes,
+        mass=rotor.mass,
+        stiffness=rotor.stiffness,
+        rigid_motions=rotor.rigid_motions,
+        interfaces=dict(interfaces),
+    )
+
+
+def supported(rotor, springs: dict[int, float], rigid_motions: int) -> SimpleNamespace:
+    """Return the rotor with springs [N/m] from nodes to ground in x, y and z."""
+    diagonal = np.zeros(rotor.mass.shape[0])
+    for node, value in springs.items():
+        diagonal[3 * node : 3 * node + 3] = value
+    held = with_interfaces(rotor, rotor.interfaces)
+    held.stiffness = sp.csr_array(rotor.stiffness + sp.diags_array(diagonal))
+    held.rigid_motions = rigid_motions
+    return held
+
+
+def nearest(rotor, point) -> int:
+    return int(np.argmin(np.linalg.norm(rotor.nodes - point, axis=1)))
+
+
+def rigid_columns(nodes: np.ndarray) -> np.ndarray:
+    return np.hstack([translations(len(nodes)), rotations(nodes, nodes.mean(axis=0))])
+
+
+def largest_angle(first: np.ndarray, second: np.ndarray) -> float:
+    """Return the largest principal angle between two spans [rad]."""
+    first, second = (matrix / np.linalg.norm(matrix, axis=0) for matrix in (first, second))
+    return la.subspace_angles(first, second).max()
+
+
+# ---- free modes
+
+
+def test_free_modes_are_those_of_fem_interface(shaft):
+    modes = free_modes(shaft.rotor, 8)
+    shaft.fem.ComputeEigenmodes(8, excludeRigidBodyModes=6)
+    # rounding of K leaves eps · (highest / lowest eigenvalue) = 1e-16 · 1e6
+    np.testing.assert_allclose(modes.frequencies**2, shaft.fem.eigenValues, rtol=1e-9)
+    assert largest_angle(modes.matrix, shaft.fem.modeBasis["matrix"]) < 1e-6
+    assert modes.labels[0] == "eigenmode 1"
+
+
+def test_free_modes_are_normalised_and_have_no_rigid_part(shaft):
+    modes = free_modes(shaft.rotor, 6).matrix
+    momentum = shaft.rotor.mass @ modes
+    np.testing.assert_allclose(modes.T @ momentum, np.eye(6), atol=1e-10)
+    rigid = rigid_columns(shaft.rotor.nodes)
+    np.testing.assert_allclose(rigid.T @ momentum, 0.0, atol=1e-10)
+    largest = np.argmax(np.abs(modes), axis=0)
+    assert np.all(modes[largest, range(6)] > 0.0)
+
+
+def test_free_modes_repeat(shaft):
+    first, second = free_modes(shaft.rotor, 6), free_modes(shaft.rotor, 6)
+    # threads sum in any order: rounding, amplified by the nearness of bending pairs
+    np.testing.assert_allclose(first.matrix, second.matrix, atol=1e-6)
+
+
+def test_direct_and_iterative_modes_agree(short_shaft):
+    few = free_modes(short_shaft, 5)
+    many = free_modes(short_shaft, short_shaft.mass.shape[0] - 6)
+    np.testing.assert_allclose(few.frequencies, many.frequencies[:5], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("points", "rigid_motions"),
+    [
+        ([(0.02, 0, 0)], 3),
+        ([(0.02, 0, 0), (0.02, 0, 0.1)], 1),
+        ([(0.02, 0, 0), (0.02, 0, 0.1), (-0.02, 0, 0)], 0),
+    ],
+)
+def test_modes_of_supported_rotors(short_shaft, points, rigid_motions):
+    nodes = [nearest(short_shaft, point) for point in points]
+    rotor = supported(short_shaft, dict.fromkeys(nodes, 1e8), rigid_motions)
+    expected = la.eigh(rotor.stiffness.toarray(), rotor.mass.toarray(), eigvals_only=True)
+    found = free_modes(rotor, 6).frequencies ** 2
+    # the reference loses eps times highest over lowest eigenvalue, 1e8
+    np.testing.assert_allclose(found, expected[rigid_motions : rigid_motions + 6], rtol=1e-7)
+
+
+def test_first_bending_frequency_of_a_beam():
+    length, side = 1.0, 0.04
+    mesh = ngsolve.Mesh(
+        occ.OCCGeometry(occ.Box((0, 0, 0), (side, side, length))).GenerateMesh(maxh=0.025)
+    )
+    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z", interfaces=[])
+    expected = timoshenko_frequency(length, side)
+    # 2e-4 from the mesh (finer ones: 1e-4), 3e-5 because the correction is of first order
+    np.testing.assert_allclose(free_modes(rotor, 2).frequencies, expected, rtol=3e-4)
+
+
+def timoshenko_frequency(length: float, side: float) -> float:
+    """Return the first free-free bending frequency of a square beam [rad/s].
+
+    Euler–Bernoulli with β L = 4.730041, then Rayleigh's quotient of that mode shape with rotary
+    inertia and shear. Sources: Blevins, "Formulas for Natural Frequency and Mode Shape", 1979,
+    table 8-1; shear factor: Cowper, J. Appl. Mech. 33 (1966).
+    """
+    young, poisson, density = STEEL["youngsModulus"], STEEL["poissonsRatio"], STEEL["density"]
+    beta, sigma = 4.730041 / length, 0.982502
+    x = beta * np.linspace(0.0, length, 20001)
+    shape = np.cosh(x) + np.cos(x) - sigma * (np.sinh(x) + np.sin(x))
+    slope = beta * (np.sinh(x) - np.sin(x) - sigma * (np.cosh(x) + np.cos(x)))
+    moment = beta**2 * (np.cosh(x) - np.cos(x) - sigma * (np.sinh(x) - np.sin(x)))
+    shear = beta**3 * (np.sinh(x) + np.sin(x) - sigma * (np.cosh(x) - np.cos(x)))
+    gyration = side**2 / 12.0
+    factor = 10.0 * (1.0 + poisson) / (12.0 + 11.0 * poisson)
+    ratio = 2.0 * (1.0 + poisson) / factor
+    rotary = gyration * np.mean(slope**2) / np.mean(shape**2)
+    sliding = gyration * ratio * np.mean(shear**2) / np.mean(moment**2)
+    euler = beta**2 * np.sqrt(young * gyration / density)
+    return euler / np.sqrt((1.0 + rotary) * (1.0 + sliding))
+
+
+def two_masses() -> SolidRotor:
+    """Return the example of the paper's Appendix B (122, 123): two masses on springs."""
+    stiffness = 1e4 * np.diag([272.0, 196.0, 100.0, 272.0, 196.0, 100.0])
+    stiffness[0, 3] = stiffness[3, 0] = -128e4
+    nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    return SolidRotor.from_matrices(
+        np.eye(6), stiffness, nodes, "x", interfaces={"first": [0], "second": [1]}
+    )
+
+
+def test_all_modes_of_two_masses():
+    rotor = two_masses()
+    expected = [1000.0, 1000.0, 1200.0, 1400.0, 1400.0, 2000.0]
+    np.testing.assert_allclose(free_modes(rotor, 6).frequencies, expected, rtol=1e-12)
+    with pytest.raises(ValueError, match="between 1 and 6"):
+        free_modes(rotor, 7)
+
+
+# ---- Hurty–Craig–Bampton modes
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_craig_bampton_spans_that_of_fem_interface(shaft, coupling):
+    modes = craig_bampton_modes(shaft.rotor, 6, coupling=coupling)
+    interfaces = shaft.rotor.interfaces.values()
+    shaft.fem.ComputeHurtyCraigBamptonModes(
+        [interface.nodes for interface in interfaces],
+        6,
+        computationMode=getattr(HCBstaticModeSelection, coupling),
+        boundaryNodesWeights=[interface.weights for interface in interfaces],
+    )
+    # FEMinterface leaves out the first interface: the rigid motions take its place
+    theirs = np.hstack([rigid_columns(shaft.rotor.nodes), shaft.fem.modeBasis["matrix"]])
+    assert modes.matrix.shape == theirs.shape
+    # angles grow from rounding by the condition of the columns, at most 1e4 here
+    assert largest_angle(modes.matrix, theirs) < 1e-8
+    np.testing.assert_allclose(modes.frequencies[12:] ** 2, shaft.fem.eigenValues[:6], rtol=1e-9)
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_static_modes_are_unit_motions_and_eigenmodes_have_none(shaft, coupling):
+    modes = craig_bampton_modes(shaft.rotor, 4, coupling=coupling)
+    means = [
+        interface.mean_motion(len(shaft.rotor.nodes)) @ modes.matrix
+        for interface in shaft.rotor.interfaces.values()
+    ]
+    np.testing.assert_allclose(np.vstack(means)[:, :12], np.eye(12), atol=1e-9)
+    # eigenmodes are of size 1/sqrt(kg); their rotations are larger by 1/radius
+    np.testing.assert_allclose(np.vstack(means)[:, 12:], 0.0, atol=1e-7)
+    assert modes.labels[:4] == (
+        "left translation x",
+        "left translation y",
+        "left translation z",
+        "left rotation x",
+    )
+    assert np.all(np.isnan(modes.frequencies[:12]))
+    assert np.all(modes.frequencies[12:] > 0.0)
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_static_modes_contain_the_rigid_motions(shaft, coupling):
+    static = craig_bampton_modes(shaft.rotor, 0, ["right"], coupling=coupling)
+    assert static.labels[-1] == "right rotation z"
+    assert largest_angle(static.matrix, rigid_columns(shaft.rotor.nodes)) < 1e-8
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_direct_and_iterative_craig_bampton_agree(short_shaft, coupling):
+    few = craig_bampton_modes(short_shaft, 3, coupling=coupling)
+    many = craig_bampton_modes(short_shaft, short_shaft.mass.shape[0] // 3, coupling=coupling)
+    np.testing.assert_allclose(few.frequencies[12:], many.frequencies[12:15], rtol=1e-9)
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_single_nodes_have_translations_only(coupling):
+    modes = craig_bampton_modes(two_masses(), 3, ["second"], coupling=coupling)
+    assert modes.labels[2:4] == ("second translation z", "eigenmode 1")
+    # with the second mass fixed the first has its own springs
+    np.testing.assert_allclose(modes.frequencies[3:], [1000.0, 1400.0, np.sqrt(272e4)])
+    all_fixed = craig_bampton_modes(two_masses(), 0, coupling=coupling)
+    np.testing.assert_allclose(all_fixed.matrix, np.eye(6), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"interfaces": ["middle"]}, "no interface 'middle'; the rotor has left, right"),
+        ({"interfaces": ["left", "left"]}, "each of them once"),
+        ({"interfaces": []}, "at least one interface"),
+        ({"coupling": "RBE4"}, "use 'RBE2' or 'RBE3'"),
+        ({"count": 100_000}, "100000 eigenmodes asked for"),
+        ({"count": -1}, "between 0 and"),
+    ],
+)
+def test_wrong_requests_are_refused(shaft, change, message):
+    with pytest.raises(ValueError, match=message):
+        craig_bampton_modes(shaft.rotor, **{"count": 2, **change})
+
+
+def test_shared_nodes_need_rbe3(shaft):
+    left = shaft.rotor.interfaces["left"]
+    rotor = with_interfaces(shaft.rotor, {"left": left, "again": left})
+    with pytest.raises(ValueError, match="use coupling='RBE3'"):
+        craig_bampton_modes(rotor, 2)
+    with pytest.raises(ValueError, match="depend on each other"):
+        craig_bampton_modes(rotor, 2, coupling="RBE3")
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_interfaces_that_cannot_hold_the_rotor_are_refused(shaft, coupling):
+    rotor = SolidRotor.from_fem_interface(shaft.fem, "z")
+    single = rotor.with_interface("single", [0])
+    with pytest.raises(ValueError, match="do not hold the rotor"):
+        craig_bampton_modes(single, 2, ["single"], coupling=coupling)
+    line = [nearest(rotor, (0, 0, 0)), nearest(rotor, (0, 0, 0.3))]
+    with pytest.raises(ValueError, match="nodes on one line"):
+        craig_bampton_modes(rotor.with_interface("line", line), 2, ["line"], coupling=coupling)
+
+
+def test_wrong_number_of_rigid_motions_is_refused(shaft):
+    loose = with_interfaces(shaft.rotor, {})
+    loose.rigid_motions = 5
+    with pytest.raises(ValueError, match="loose parts"):
+        free_modes(loose, 2)
+    held = supported(shaft.rotor, {0: 1e8}, rigid_motions=6)
+    with pytest.raises(ValueError, match="claims 6 free rigid motions"):
+        free_modes(held, 2)
+
+
+# ---- modes of a FEMinterface
+
+
+def test_fem_interface_modes_with_stress(shaft):
+    shaft.fem.ComputeEigenmodes(3, excludeRigidBodyModes=6)
+    shaft.fem.postProcessingModes = {}
+    assert fem_interface_modes(shaft.rotor, shaft.fem).stress is None
+    material = KirchhoffMaterial(2.1e11, 0.3, 7800.0)
+    shaft.fem.ComputePostProcessingModesNGsolve(shaft.space, material=material)
+    modes = fem_interface_modes(shaft.rotor, shaft.fem)
+    np.testing.assert_array_equal(modes.matrix, shaft.fem.modeBasis["matrix"])
+    # FEMinterface: six columns for every mode
+    stored = shaft.fem.postProcessingModes["matrix"]
+    np.testing.assert_array_equal(modes.stress[:, 4, 2], stored[:, 6 * 2 + 4])
+    assert modes.labels[-1] == "FEMinterface mode 3"
+
+
+def test_unfit_fem_interface_modes_are_refused(shaft):
+    with pytest.raises(ValueError, match="ComputeEigenmodes"):
+        fem_interface_modes(shaft.rotor, FEMinterface())
+    nodes = shaft.rotor.nodes
+    fem = SimpleNamespace(
+        modeBasis={"matrix": np.ones((nodes.size, 2))},
+        nodes={"Position": nodes + 1e-6},
+        postProcessingModes={},
+    )
+    with pytest.raises(ValueError, match="modal basis from another mesh: node positions"):
+        fem_interface_modes(shaft.rotor, fem)
+    fem.nodes = {"Position": nodes[1:]}
+    with pytest.raises(ValueError, match="modal basis from another mesh: the rotor has"):
+        fem_interface_modes(shaft.rotor, fem)
+    fem.nodes = {"Position": nodes}
+    fem.postProcessingModes = {
+        "matrix": np.ones((len(nodes), 6)),
+        "outputVariableType": "OutputVariableType.StressLocal",
+    }
+    with pytest.raises(ValueError, match="after the modes"):
+        fem_interface_modes(shaft.rotor, fem)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"matrix": np.ones((6, 2))},
+        {"matrix": np.full((6, 1), np.nan)},
+        {"nodes": np.zeros((2, 2))},
+        {"frequencies": np.ones(2)},
+        {"stress": np.ones((2, 6, 3))},
+    ],
+)
+def test_mode_basis_checks_its_arrays(change):
+    fields = {"matrix": np.ones((6, 1)), "labels": ("a",), "nodes": np.zeros((2, 3))}
+    assert np.isnan(ModeBasis(**fields).frequencies[0])
+    with pytest.raises(ValueError, match="mode basis: "):
+        ModeBasis(**{**fields, **change})
+
+
+# ---- factorisation
+
+
+@pytest.mark.parametrize("size", [50, 2000])
+def test_factor_solves_and_recognises_bad_matrices(size):
+    chain = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(size, size)).tocsr()
+    right = np.random.default_rng(1).standard_normal((size, 3))
+    factor = SparseCholesky(chain)
+    np.testing.assert_allclose(chain @ factor.solve(right), right, atol=1e-8)
+    np.testing.assert_array_equal(factor.solve(right)[:, 1], factor.solve(right[:, 1]))
+    with pytest.raises(NotPositiveDefiniteError):
+        SparseCholesky(sp.csr_array(chain - 0.1 * sp.eye_array(size)))
+    ends = np.zeros(size)
+    ends[[0, -1]] = 1.0
+    with pytest.raises(NotPositiveDefiniteError):
+        SparseCholesky(sp.csr_array(chain - sp.diags_array(ends)))
+    with pytest.raises(NotPositiveDefiniteError, match="diagonal"):
+        SparseCholesky(sp.csr_array(chain - 2.0 * sp.eye_array(size)))
