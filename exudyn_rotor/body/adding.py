@@ -26,8 +26,9 @@ from exudyn_rotor.body.locking import (
     SPIN,
     Locks,
     add_constraints,
+    add_spin_guide,
+    guiding_force,
     layout,
-    servo_force,
 )
 from exudyn_rotor.body.physics import Layout, constant_object, user_function_object
 from exudyn_rotor.body.rotor_body import RotorBody
@@ -56,6 +57,11 @@ class _Plan:
     motion: Motion
     by_mass: bool
     modal: tuple[np.ndarray, np.ndarray]
+
+    @property
+    def constant(self) -> bool:
+        """True when the rotor needs no Python call in a time step."""
+        return self.motion.is_constant and not self.locks.varying
 
 
 def add_rotor(
@@ -269,15 +275,15 @@ def _add_with_shell(
         markers=_add_markers(mbs, plan, shell, mesh, requests),
         constraints={} if plan.by_mass else add_constraints(mbs, plan.locks, rigid),
         gravity_load=load,
+        kept_alive=add_spin_guide(mbs, plan.locks, plan.layout, rigid) if plan.constant else None,
         mesh_node_count=mesh.mesh_node_count,
     )
 
 
 def _physics(plan: _Plan, place: Layout, nodes: list) -> ObjectGenericODE2:
-    servo = servo_force(plan.locks, place)
-    if plan.motion.is_constant and servo is None:
+    if plan.constant:
         return constant_object(plan.motion, place, nodes)
-    return user_function_object(plan.motion, place, nodes, servo)
+    return user_function_object(plan.motion, place, nodes, guiding_force(plan.locks, place))
 
 
 def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:

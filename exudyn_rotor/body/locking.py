@@ -16,8 +16,10 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import (
     CoordinateConstraint,
+    LoadCoordinate,
     MarkerNodeCoordinate,
     MarkerNodeCoordinates,
     NodePointGround,
@@ -35,6 +37,8 @@ LOCK_RATIO = 1e18  # of the rotor's own inertia
 SERVO_RATIO = 1e9
 SERVO_RATE = 100.0  # rad/s, critically damped
 LOCK_RATE = 1.0  # rad/s: stiffness of a locked coordinate for static solvers, per lock mass
+# a spin angle grows without bound, so its stiffness must leave digits for the drive torque
+SPIN_HOLD_RATE = 1e3  # rad/s, per own inertia
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +127,7 @@ def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) ->
         for index, motion in locks.prescribed.items():
             if isinstance(motion, ConstantSpeed):
                 mass[index] = LOCK_RATIO * inertia[index]
+                stiffness[index] = SPIN_HOLD_RATE**2 * inertia[index]
             else:
                 mass[index] = SERVO_RATIO * inertia[index]
                 stiffness[index] = SERVO_RATE**2 * mass[index]
@@ -134,19 +139,19 @@ def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) ->
     return Layout(size, unknowns, mass, stiffness, damping)
 
 
-def servo_force(locks: Locks, place: Layout) -> LockedForce | None:
-    """Return the forces that make servo-driven coordinates follow their prescribed motion."""
-    servos = {
-        index: motion
-        for index, motion in locks.prescribed.items()
-        if isinstance(motion, PrescribedMotion)
-    }
-    if not servos or not np.any(place.lock_damping):
+def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
+    """Return the forces, shape (size,), that belong to the prescribed motion of locked coordinates.
+
+    None where constraints do this, or nothing is prescribed.
+    """
+    guided = [index for index in locks.prescribed if place.lock_stiffness[index]]
+    if not guided:
         return None
 
     def force(t: float) -> np.ndarray:
         total = np.zeros(place.size)
-        for index, motion in servos.items():
+        for index in guided:
+            motion = locks.prescribed[index]
             total[index] = (
                 place.lock_mass[index] * motion.acceleration(t)
                 + place.lock_damping[index] * motion.rate(t)
@@ -155,6 +160,27 @@ def servo_force(locks: Locks, place: Layout) -> LockedForce | None:
         return total
 
     return force
+
+
+def add_spin_guide(
+    mbs: exudyn.MainSystem, locks: Locks, place: Layout, node: exudyn.NodeIndex
+) -> exudyn.symbolic.UserFunction | None:
+    """Add the guiding force of a constant spin as a load without Python calls.
+
+    A locked spin needs a stiffness for static solvers, and this load takes it along with the
+    angle. Returns the expression, which must be kept alive, or None where nothing is to be guided.
+    """
+    motion, stiffness = locks.prescribed.get(SPIN), place.lock_stiffness[SPIN]
+    if not stiffness or not (motion.speed or motion.angle):
+        return None
+    start, slope = stiffness * motion.angle, stiffness * motion.speed
+    marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=SPIN))
+    load = mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=0.0))
+    guide = CreateSymbolicUserFunction(
+        mbs, lambda mbs, t, load: start + slope * t, "loadUserFunction", load
+    )
+    mbs.SetLoadParameter(load, "loadUserFunction", guide)
+    return guide
 
 
 def add_constraints(

@@ -45,6 +45,8 @@ class RotorBody:
     gravity_load : LoadIndex or None
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
+    kept_alive : object
+        Expressions that Exudyn refers to and does not own.
     """
 
     mbs: exudyn.MainSystem
@@ -62,6 +64,7 @@ class RotorBody:
     constraints: dict = field(default_factory=dict)
     gravity_load: exudyn.LoadIndex | None = None
     mesh_node_count: int = 0
+    kept_alive: object = field(default=None, repr=False)
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:
         """Return the marker of an interface.

@@ -8,7 +8,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
-from exudyn_rotor.body.locking import SPIN, servo_force
+from exudyn_rotor.body.locking import SPIN, guiding_force
 
 if TYPE_CHECKING:
     from exudyn_rotor.body.rotor_body import RotorBody
@@ -81,7 +81,7 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
 def _external_moment(body: RotorBody):
     """Return a function that reads the external moment about e on the shell's spin coordinate."""
     place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
-    servo = servo_force(body.locks, place)
+    guide = guiding_force(body.locks, place)
     constraint = body.constraints.get("spin")
 
     def moment(t, configuration) -> float:
@@ -94,8 +94,8 @@ def _external_moment(body: RotorBody):
             + place.lock_damping[SPIN] * omega
             + place.lock_stiffness[SPIN] * theta
         )
-        if servo is not None:
-            held -= servo(t)[SPIN]
+        if guide is not None:
+            held -= guide(t)[SPIN]
         if constraint is not None:
             held += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
         return held

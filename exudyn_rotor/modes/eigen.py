@@ -112,7 +112,7 @@ def check_modes(
     """Check ``K φ − ω² M φ + Cᵀ λ = 0`` for the best ``λ``.
 
     The residual may reach 1e-6 of ``ω² M φ`` plus what the relative `precision` of the stiffness
-    leaves in ``K φ`` at best. Eigenvalues err by the square of it.
+    leaves in ``K φ`` at best.
 
     Raises
     ------

@@ -9,8 +9,9 @@ import scipy.sparse as sp
 from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.nodal import rotations, translations
 
-# of ‖K‖∞ ‖r‖∞. A free motion r leaves 1e-16, or 0.2·10⁻ᵈ if K was rounded to d digits in an
-# export, which moves the lowest frequencies by 1e-4 at 8 digits; supports leave 1e-4 or more
+# Largest |K r| of a free motion r, as a share of ‖K‖∞ ‖r‖∞. Full precision leaves 1e-16, rounding
+# to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
+# k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
 
 
