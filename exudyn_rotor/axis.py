@@ -12,9 +12,12 @@ from exudyn_rotor.nodal import skew
 _NAMED_DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def read_only(array: ArrayLike) -> np.ndarray:
-    """Return a float copy of `array` that cannot be written to."""
-    copy = np.array(array, dtype=float)
+def read_only(array: ArrayLike, dtype: type = float) -> np.ndarray:
+    """Return `array` such that it cannot be written to: as it is if so already, else a copy."""
+    shared = isinstance(array, np.ndarray) and array.dtype == dtype
+    if shared and array.flags.owndata and not array.flags.writeable:
+        return array
+    copy = np.array(array, dtype=dtype)
     copy.flags.writeable = False
     return copy
 

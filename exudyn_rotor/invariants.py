@@ -9,12 +9,13 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.axis import read_only
 from exudyn_rotor.nodal import block_diagonal, skew
 
 Matrix = np.ndarray | sp.csr_array
@@ -24,7 +25,7 @@ Matrix = np.ndarray | sp.csr_array
 class Invariants:
     """Inertia, stiffness and damping of a rotor in a basis Ψ of k displacement columns.
 
-    All arrays are constant and refer to rotor-fixed axes; the matrices of size k are dense for
+    All arrays are read-only and refer to rotor-fixed axes; the matrices of size k are dense for
     component modes and sparse for the full model (Ψ = I).
 
     Attributes
@@ -60,6 +61,14 @@ class Invariants:
     D: Matrix
     G: Matrix
     C: Matrix
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                object.__setattr__(self, field.name, read_only(value))
+            elif sp.issparse(value):
+                value.data.flags.writeable = False
 
     @classmethod
     def of(

@@ -9,7 +9,7 @@ from os import PathLike
 
 import numpy as np
 
-from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.axis import SpinAxis, read_only
 from exudyn_rotor.invariants import Invariants
 
 
@@ -32,6 +32,9 @@ class ReducedInterface:
     radius: float
     motion: np.ndarray
 
+    def __post_init__(self) -> None:
+        _freeze(self, "reference", "center", "motion")
+
 
 @dataclass(frozen=True, eq=False)
 class ModeShapes:
@@ -52,6 +55,10 @@ class ModeShapes:
     matrix: np.ndarray
     triangles: np.ndarray
     stress: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        _freeze(self, "nodes", "matrix", "stress")
+        object.__setattr__(self, "triangles", read_only(self.triangles, np.int64))
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +99,9 @@ class ReducedRotor:
     grounded: bool = False
     shapes: ModeShapes | None = None
 
+    def __post_init__(self) -> None:
+        _freeze(self, "center_of_mass", "mode_mass")
+
     @property
     def size(self) -> int:
         """Number of columns k, rigid motions included."""
@@ -130,3 +140,10 @@ class ReducedRotor:
             f"ReducedRotor({len(self.rigid)} rigid + {self.size - len(self.rigid)} flexible modes, "
             f"{self.invariants.mass:.4g} kg, interfaces: {', '.join(self.interfaces) or 'none'})"
         )
+
+
+def _freeze(owner: object, *names: str) -> None:
+    """Make arrays of a frozen dataclass read-only; None stays."""
+    for name in names:
+        if getattr(owner, name) is not None:
+            object.__setattr__(owner, name, read_only(getattr(owner, name)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -99,14 +100,16 @@ def _rigid_motions(rotor: SolidRotor, center: np.ndarray) -> tuple[np.ndarray, t
 
 def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
-    free = slice(None, rigid_count)
-    invariants.M[:] = np.eye(invariants.size)
-    invariants.K[:] = np.diag(np.maximum(np.diag(invariants.K), 0.0))
-    invariants.K[free, free] = 0.0
-    invariants.center[:] = 0.0
-    invariants.G[:] = 0.5 * (invariants.G - invariants.G.T)
-    invariants.C[:] = 0.5 * (invariants.C + invariants.C.T)
-    return invariants
+    stiffness = np.maximum(np.diag(invariants.K), 0.0)
+    stiffness[:rigid_count] = 0.0
+    return replace(
+        invariants,
+        M=np.eye(invariants.size),
+        K=np.diag(stiffness),
+        center=np.zeros(3),
+        G=0.5 * (invariants.G - invariants.G.T),
+        C=0.5 * (invariants.C + invariants.C.T),
+    )
 
 
 def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:

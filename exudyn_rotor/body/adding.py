@@ -24,13 +24,19 @@ from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.body.locking import (
     LOCKINGS,
     SPIN,
+    ConstraintWatch,
     Locks,
     add_constraints,
     add_spin_guide,
     guiding_force,
     layout,
 )
-from exudyn_rotor.body.physics import Layout, constant_object, user_function_object
+from exudyn_rotor.body.physics import (
+    Layout,
+    LockedForce,
+    constant_object,
+    user_function_object,
+)
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.shell import ShellMesh, shell_mesh, shell_object
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
@@ -46,7 +52,7 @@ DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 class _Plan:
     """Everything about the new body, checked, before the system is touched."""
 
-    name: str
+    name: str | None
     formulation: Formulation
     stiffening: str
     selection: Selection
@@ -58,17 +64,12 @@ class _Plan:
     by_mass: bool
     modal: tuple[np.ndarray, np.ndarray]
 
-    @property
-    def constant(self) -> bool:
-        """True when the rotor needs no Python call in a time step."""
-        return self.motion.is_constant and not self.locks.varying
-
 
 def add_rotor(
     mbs: exudyn.MainSystem,
     reduced: ReducedRotor,
     *,
-    name: str = "rotor",
+    name: str | None = "rotor",
     translation: str | PrescribedMotion = "free",
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     drive: str = "rigid",
@@ -96,8 +97,9 @@ def add_rotor(
     ----------
     mbs : exudyn.MainSystem
     reduced : ReducedRotor
-    name : str
-        Unique name; items are called like those of Exudyn's own flexible body.
+    name : str or None
+        Unique name; items are called like those of Exudyn's own flexible body. None leaves them
+        without names; markers are then called like their interfaces.
     translation, spin, drive
         The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
         speed [rad/s].
@@ -108,7 +110,8 @@ def add_rotor(
     rotation : array_like, shape (3, 3), optional
         Mesh axes → inertial axes at θ = 0.
     initial_velocity : array_like, shape (3,)
-        Of the frame origin (the centre of mass), inertial axes [m/s].
+        Of the frame origin (the centre of mass), inertial axes [m/s]; in the plane of rotation
+        where the translation is in-plane.
     initial_angle, initial_speed : float, optional
         Of a free spin [rad], [rad/s].
     modal_coordinates, modal_velocities : array_like, optional
@@ -125,12 +128,14 @@ def add_rotor(
     show_markers : bool
         Whether markers are drawn.
     locking : {'auto', 'mass', 'constraints'}
-        How coordinates of the shell that the formulation does not have are held; see
-        :mod:`exudyn_rotor.body.locking`. ``'auto'`` takes constraints for time-varying prescribed
-        motions and for in-plane translation in a plane skew to the inertial axes, masses else.
+        How coordinates of the shell that the formulation does not have are held; see the notes
+        and :mod:`exudyn_rotor.body.locking`. ``'auto'`` takes constraints for time-varying
+        prescribed motions and for in-plane translation in a plane skew to the inertial axes,
+        masses else.
     native_shell : bool
         False leaves out markers, mesh sensors and drawing, and with them every locked coordinate.
     color : sequence of 4 floats
+        RGBA.
 
     Returns
     -------
@@ -140,16 +145,42 @@ def add_rotor(
     ------
     ValueError, TypeError
         For bad input; nothing has been added then.
+
+    Notes
+    -----
+    Locking and solvers:
+
+    ============================  =======================  =====================================
+    rotor                         implicit solvers         explicit solvers (RK44, DOPRI5, …)
+    ============================  =======================  =====================================
+    free or constant spin         any locking              any locking
+    θ(t) or τ(t)                  any; ``'constraints'``   ``'mass'``; a run with constraints
+                                  is exact                 stops with an error
+    in-plane, plane skew to the   ``'constraints'``        none; use ``native_shell=False`` or
+    inertial axes                                          translation ``'free'``
+    ============================  =======================  =====================================
+
+    The static solver keeps the initial velocities: the spin speed, too, so that a constant spin
+    gives the steady state in the rotating frame. θ is then that of the solver's load time (1 s by
+    default). Static solutions with θ(t) make sense only while its speed is the initial one.
     """
     inputs.check_mbs(mbs)
+    inputs.check_reduced(reduced)
     formulation = Formulation(translation, spin, drive)
     place = inputs.placement(
-        formulation, position, rotation, initial_velocity, initial_angle, initial_speed
+        formulation,
+        reduced.axis.direction,
+        position,
+        rotation,
+        initial_velocity,
+        initial_angle,
+        initial_speed,
     )
     gravity = inputs.vector(gravity, "gravity", "m/s²")
     requests = inputs.marker_requests(
         reduced, markers if native_shell else markers or {}, marker_offsets or {}, show_markers
     )
+    color = inputs.vector(color, "color", "RGBA", 4).tolist()
     if requests and not native_shell:
         raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
     inputs.check_free_names(mbs, name, requests)
@@ -159,30 +190,32 @@ def add_rotor(
         formulation,
         stiffening,
         place,
-        None if native_shell else gravity,
+        gravity,
         (
             inputs.damping_factor(mass_damping, "mass_damping"),
             inputs.damping_factor(stiffness_damping, "stiffness_damping"),
         ),
         (modal_coordinates, modal_velocities),
         locking,
+        native_shell,
     )
     if not native_shell:
         return _add_bare(mbs, plan)
     mesh = shell_mesh(reduced, plan.selection, plan.frame)
-    return _add_with_shell(mbs, plan, mesh, requests, gravity, list(color))
+    return _add_with_shell(mbs, plan, mesh, requests, gravity, color)
 
 
 def _plan(
     reduced: ReducedRotor,
-    name: str,
+    name: str | None,
     formulation: Formulation,
     stiffening: str,
     place: inputs.Placement,
-    gravity: np.ndarray | None,
+    gravity: np.ndarray,
     rayleigh: tuple[float, float],
     modal: tuple[ArrayLike | None, ArrayLike | None],
     locking: str,
+    native_shell: bool,
 ) -> _Plan:
     if locking not in LOCKINGS:
         raise ValueError(f"locking {locking!r} is unknown; use one of {', '.join(LOCKINGS)}")
@@ -194,47 +227,45 @@ def _plan(
     direction = reduced.axis.direction
     frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction)
-    needs_constraint = locks.varying or locks.normal is not None
-    if locking == "mass" and locks.normal is not None:
+    skew = native_shell and locks.normal is not None
+    if locking == "mass" and skew:
         raise ValueError(
             "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
             "use locking='constraints', translation='free', or native_shell=False"
         )
-    by_mass = locking == "mass" or (locking == "auto" and not needs_constraint)
+    by_mass = locking == "mass" or (locking == "auto" and not locks.varying and not skew)
     own = np.repeat([invariants.mass, max(invariants.Theta, 1e-300)], 3)
-    count = invariants.size
-    # a skew plane of rotation keeps all three translations and adds one linear constraint
-    unknown = formulation if locks.normal is None else replace(formulation, translation="free")
     return _Plan(
         name=name,
-        formulation=unknown,
+        formulation=formulation,
         stiffening=stiffening,
         selection=selection,
         placement=place,
         frame=frame,
         locks=locks,
-        layout=layout(locks, count, own, by_mass),
+        layout=layout(locks, invariants.size, own, by_mass),
         motion=Motion(
             invariants,
-            unknown,
+            # a skew plane of rotation keeps all three translations and adds a linear constraint
+            replace(formulation, translation="free") if skew else formulation,
             second_order(invariants, stiffening),
             orientation=place.rotation,
             plane=locks.plane,
-            gravity=gravity,
+            gravity=None if native_shell else gravity,  # the shell brings its own
         ),
         by_mass=by_mass,
-        modal=tuple(
-            np.zeros(count) if v is None else inputs.vector(v, "modal initial values", "", count)
-            for v in modal
+        modal=(
+            inputs.modal_values(modal[0], "modal_coordinates", selection.labels),
+            inputs.modal_values(modal[1], "modal_velocities", selection.labels),
         ),
     )
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: _Plan) -> RotorBody:
     """Add only the unknowns of the formulation, on one generic node."""
-    motion, count = plan.motion, plan.formulation.translation_count
-    spin = int(plan.formulation.has_spin)
-    start = [*np.zeros(count), *([plan.placement.angle] * spin), *plan.modal[0]]
+    motion, spin = plan.motion, int(plan.formulation.has_spin)
+    translations = np.zeros(plan.formulation.translation_count)
+    start = [*translations, *([plan.placement.angle] * spin), *plan.modal[0]]
     rate = [
         *(motion.free_directions.T @ plan.placement.velocity),
         *([plan.placement.speed] * spin),
@@ -243,7 +274,7 @@ def _add_bare(mbs: exudyn.MainSystem, plan: _Plan) -> RotorBody:
     node = mbs.AddNode(_generic_node(plan.name, start, rate))
     none = np.zeros(motion.size)
     place = Layout(motion.size, np.arange(motion.size), none, none, none)
-    physics = mbs.AddObject(_physics(plan, place, [node]))
+    physics = mbs.AddObject(_physics(plan, place, [node], None))
     return _body(mbs, plan, layout=place, nodes={"coordinates": node}, objects={"physics": physics})
 
 
@@ -256,13 +287,22 @@ def _add_with_shell(
     color: list[float],
 ) -> RotorBody:
     """Add nodes, equations, native shell, markers, locks and gravity."""
-    rigid, modes = (
-        mbs.AddNode(_rigid_node(plan)),
-        mbs.AddNode(_generic_node(plan.name, *plan.modal)),
+    rigid = mbs.AddNode(_rigid_node(plan))
+    modes = mbs.AddNode(_generic_node(plan.name, *plan.modal))
+    guide = guiding_force(plan.locks, plan.layout)
+    constraints = {}
+    if not plan.by_mass:
+        if plan.locks.varying:
+            guide = ConstraintWatch(guide, plan.layout.size)
+        constraints = add_constraints(mbs, plan.locks, rigid, guide)
+    physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes], guide))
+    if plan.motion.is_constant:
+        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
+    shell = mbs.AddObject(
+        shell_object(
+            plan.name or "", [rigid, modes], mesh, plan.motion.invariants, plan.frame, color
+        )
     )
-    physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes]))
-    invariants, frame = plan.motion.invariants, plan.frame
-    shell = mbs.AddObject(shell_object(plan.name, [rigid, modes], mesh, invariants, frame, color))
     load = None
     if np.any(gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
@@ -273,17 +313,18 @@ def _add_with_shell(
         nodes={"rigid": rigid, "modes": modes},
         objects={"physics": physics, "shell": shell},
         markers=_add_markers(mbs, plan, shell, mesh, requests),
-        constraints={} if plan.by_mass else add_constraints(mbs, plan.locks, rigid),
+        constraints=constraints,
         gravity_load=load,
-        kept_alive=add_spin_guide(mbs, plan.locks, plan.layout, rigid) if plan.constant else None,
         mesh_node_count=mesh.mesh_node_count,
     )
 
 
-def _physics(plan: _Plan, place: Layout, nodes: list) -> ObjectGenericODE2:
-    if plan.constant:
+def _physics(
+    plan: _Plan, place: Layout, nodes: list, guide: LockedForce | None
+) -> ObjectGenericODE2:
+    if plan.motion.is_constant:
         return constant_object(plan.motion, place, nodes)
-    return user_function_object(plan.motion, place, nodes, guiding_force(plan.locks, place))
+    return user_function_object(plan.motion, place, nodes, guide)
 
 
 def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:
@@ -293,7 +334,7 @@ def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:
     if plan.formulation.moves_origin:
         start[:3] = plan.formulation.translation.value(0.0)
     return NodeRigidBodyRxyz(
-        name=f"NodeRigidBody:{plan.name}",
+        name=inputs.item_name("NodeRigidBody:", plan.name),
         referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
         initialCoordinates=start,
         initialVelocities=rate,
@@ -301,9 +342,9 @@ def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:
     )
 
 
-def _generic_node(name: str, start: list, rate: list) -> NodeGenericODE2:
+def _generic_node(name: str | None, start: list, rate: list) -> NodeGenericODE2:
     return NodeGenericODE2(
-        name=f"NodeGeneric:{name}",
+        name=inputs.item_name("NodeGeneric:", name),
         numberOfODE2Coordinates=len(start),
         referenceCoordinates=np.zeros(len(start)),
         initialCoordinates=start,
@@ -322,7 +363,7 @@ def _add_markers(
     markers = {}
     for interface, request in requests.items():
         common = {
-            "name": f"{plan.name}:{interface}",
+            "name": inputs.marker_name(plan.name, interface),
             "bodyNumber": shell,
             "meshNodeNumbers": mesh.interface_nodes[interface],
             "weightingFactors": [1.0 / 3.0] * 3,
@@ -333,7 +374,6 @@ def _add_markers(
             turn[:3, :3], turn[:3, 3] = plan.frame.B, plan.frame.B @ request.offset
             item = MarkerSuperElementRigid(**common, localHT=turn)
         else:
-            common["visualization"] = {"show": request.show}
             item = MarkerSuperElementPosition(**common)
         markers[interface] = mbs.AddMarker(item)
     return markers

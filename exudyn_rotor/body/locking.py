@@ -8,6 +8,8 @@ Two ways:
     accurate to the integrator's error and about ``1 / SERVO_RATIO``.
 ``'constraints'``
     ``CoordinateConstraint`` objects: exact for implicit and static solvers, one multiplier each.
+
+A constant spin is held by mass in both: that is exact, in every solver.
 """
 
 from __future__ import annotations
@@ -30,6 +32,7 @@ from exudyn_rotor.body.physics import Layout, LockedForce
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
 
 LOCKINGS = ("auto", "mass", "constraints")
+_PATIENCE = 4  # times that forces may be evaluated at while no constraint is
 COORDINATE_NAMES = ("x", "y", "z", "tilt a", "tilt b", "spin")
 TILTS, SPIN, MODES = (3, 4), 5, 6
 
@@ -80,9 +83,9 @@ class Locks:
         return cls(tuple(translations), (*rest, *TILTS), prescribed, plane, normal)
 
     @property
-    def varying(self) -> bool:
-        """True when some coordinate has a time-varying prescribed motion."""
-        return any(isinstance(m, PrescribedMotion) for m in self.prescribed.values())
+    def varying(self) -> dict[int, PrescribedMotion]:
+        """Coordinates with a time-varying prescribed motion."""
+        return {i: m for i, m in self.prescribed.items() if isinstance(m, PrescribedMotion)}
 
     @property
     def locked_names(self) -> tuple[str, ...]:
@@ -120,21 +123,18 @@ def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) ->
     """
     size = MODES + mode_count
     mass, stiffness, damping = np.zeros(size), np.zeros(size), np.zeros(size)
-    fixed = list(locks.fixed)
+    fixed, varying = list(locks.fixed), list(locks.varying)
     if by_mass:
         mass[fixed] = LOCK_RATIO * inertia[fixed]
         stiffness[fixed] = LOCK_RATE**2 * mass[fixed]
-        for index, motion in locks.prescribed.items():
-            if isinstance(motion, ConstantSpeed):
-                mass[index] = LOCK_RATIO * inertia[index]
-                stiffness[index] = SPIN_HOLD_RATE**2 * inertia[index]
-            else:
-                mass[index] = SERVO_RATIO * inertia[index]
-                stiffness[index] = SERVO_RATE**2 * mass[index]
-                damping[index] = 2.0 * SERVO_RATE * mass[index]
+        mass[varying] = SERVO_RATIO * inertia[varying]
+        stiffness[varying] = SERVO_RATE**2 * mass[varying]
+        damping[varying] = 2.0 * SERVO_RATE * mass[varying]
     else:
-        held = [*fixed, *locks.prescribed]
-        mass[held] = inertia[held]
+        mass[fixed + varying] = inertia[fixed + varying]
+    if isinstance(locks.prescribed.get(SPIN), ConstantSpeed):
+        mass[SPIN] = LOCK_RATIO * inertia[SPIN]
+        stiffness[SPIN] = SPIN_HOLD_RATE**2 * inertia[SPIN]
     unknowns = np.array([*locks.unknown, *range(MODES, size)])
     return Layout(size, unknowns, mass, stiffness, damping)
 
@@ -142,7 +142,7 @@ def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) ->
 def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
     """Return the forces, shape (size,), that belong to the prescribed motion of locked coordinates.
 
-    None where constraints do this, or nothing is prescribed.
+    None where constraints do all of this, or nothing is prescribed.
     """
     guided = [index for index in locks.prescribed if place.lock_stiffness[index]]
     if not guided:
@@ -164,15 +164,15 @@ def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
 
 def add_spin_guide(
     mbs: exudyn.MainSystem, locks: Locks, place: Layout, node: exudyn.NodeIndex
-) -> exudyn.symbolic.UserFunction | None:
+) -> None:
     """Add the guiding force of a constant spin as a load without Python calls.
 
     A locked spin needs a stiffness for static solvers, and this load takes it along with the
-    angle. Returns the expression, which must be kept alive, or None where nothing is to be guided.
+    angle.
     """
-    motion, stiffness = locks.prescribed.get(SPIN), place.lock_stiffness[SPIN]
-    if not stiffness or not (motion.speed or motion.angle):
-        return None
+    motion, stiffness = locks.prescribed[SPIN], place.lock_stiffness[SPIN]
+    if not (motion.speed or motion.angle):
+        return
     start, slope = stiffness * motion.angle, stiffness * motion.speed
     marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=SPIN))
     load = mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=0.0))
@@ -180,37 +180,69 @@ def add_spin_guide(
         mbs, lambda mbs, t, load: start + slope * t, "loadUserFunction", load
     )
     mbs.SetLoadParameter(load, "loadUserFunction", guide)
-    return guide
+
+
+class ConstraintWatch:
+    """Stops explicit solvers, which set a constrained coordinate to zero without a word.
+
+    They never evaluate the constraints' prescribed motion, implicit and static solvers do at every
+    time. An object of this class stands in for the guiding force (see :func:`guiding_force`),
+    which is evaluated in all solvers.
+    """
+
+    def __init__(self, force: LockedForce | None, size: int) -> None:
+        self._force = force
+        self._size = size
+        self._last = 0.0
+        self._unseen = 0
+
+    def seen(self) -> None:
+        """Take note that a constraint has been evaluated."""
+        self._unseen = 0
+
+    def __call__(self, t: float) -> np.ndarray:
+        """Return the guiding force; raise RuntimeError in a solver that skips constraints."""
+        self._unseen = 0 if t < self._last else self._unseen + (t > self._last)
+        self._last = t
+        if self._unseen > _PATIENCE:
+            self._unseen = 0
+            raise RuntimeError(
+                "this solver ignores the constraints that prescribe the rotor's motion, as "
+                "explicit solvers do: add the rotor with locking='mass', or use an implicit solver"
+            )
+        return np.zeros(self._size) if self._force is None else self._force(t)
 
 
 def add_constraints(
-    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex
+    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, watch: ConstraintWatch
 ) -> dict[str, exudyn.ObjectIndex]:
     """Hold the locked coordinates of the shell's node by constraints; return them by name."""
     ground = mbs.AddNode(NodePointGround())
     origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
     constraints = {}
-    for index in (*locks.fixed, *locks.prescribed):
+    for index in (*locks.fixed, *locks.varying):
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
-        motion = locks.prescribed.get(index)
+        offset = _offset(locks.varying[index], watch) if index in locks.varying else {}
         constraints[COORDINATE_NAMES[index]] = mbs.AddObject(
-            CoordinateConstraint(markerNumbers=[origin, marker], **_offset(motion))
+            CoordinateConstraint(markerNumbers=[origin, marker], **offset)
         )
     if locks.normal is not None:
         constraints["plane"] = mbs.AddObject(_plane_constraint(mbs, ground, node, locks.normal))
     return constraints
 
 
-def _offset(motion: PrescribedMotion | ConstantSpeed | None) -> dict:
+def _offset(motion: PrescribedMotion, watch: ConstraintWatch) -> dict:
     """Return the constraint's settings; index-2 solvers need the velocity beside the position."""
-    if motion is None:
-        return {}
-    if isinstance(motion, ConstantSpeed):
-        return {"velocityLevel": True, "offset": motion.speed}
-    return {
-        "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t),
-        "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
-    }
+
+    def value(mbs, t, item, offset):
+        watch.seen()
+        return motion.value(t)
+
+    def rate(mbs, t, item, offset):
+        watch.seen()
+        return motion.rate(t)
+
+    return {"offsetUserFunction": value, "offsetUserFunction_t": rate}
 
 
 def _plane_constraint(
@@ -221,5 +253,5 @@ def _plane_constraint(
     row = np.zeros((1, 6))
     row[0, :3] = normal
     return ObjectConnectorCoordinateVector(
-        markerNumbers=markers, scalingMarker0=np.zeros((1, 3)), scalingMarker1=row
+        markerNumbers=markers, scalingMarker0=np.zeros((1, 0)), scalingMarker1=row
     )

@@ -23,13 +23,14 @@ class RotorBody:
     Attributes
     ----------
     mbs : exudyn.MainSystem
-    name : str
+    name : str or None
     formulation : Formulation
     stiffening : str
     selection : Selection
         The component modes in use; ``selection.labels`` names the modal coordinates.
     motion : Motion
-        Equations of motion, inertial and mesh axes.
+        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
+        inertial axes they have three translations, and a constraint holds the plane.
     frame : ShellFrame
         Where mesh, shell and scene stand to each other.
     nodes : dict
@@ -45,12 +46,10 @@ class RotorBody:
     gravity_load : LoadIndex or None
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
-    kept_alive : object
-        Expressions that Exudyn refers to and does not own.
     """
 
     mbs: exudyn.MainSystem
-    name: str
+    name: str | None
     formulation: Formulation
     stiffening: str
     selection: Selection
@@ -64,7 +63,6 @@ class RotorBody:
     constraints: dict = field(default_factory=dict)
     gravity_load: exudyn.LoadIndex | None = None
     mesh_node_count: int = 0
-    kept_alive: object = field(default=None, repr=False)
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:
         """Return the marker of an interface.
@@ -84,7 +82,7 @@ class RotorBody:
     @property
     def uses_python(self) -> bool:
         """True when a time step calls Python user functions."""
-        return not self.motion.is_constant or self.locks.varying
+        return not self.motion.is_constant
 
     @property
     def locked(self) -> tuple[str, ...]:

@@ -43,9 +43,11 @@ def add_interface_sensor(body: RotorBody, interface: str, output, **options):
 
 def add_spin_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
     """Add a sensor of θ [rad] and ω [rad/s]."""
-    node = body.nodes["rigid"] if "rigid" in body.nodes else body.nodes["coordinates"]
-    index = SPIN if "rigid" in body.nodes else body.formulation.translation_count
-    if "rigid" not in body.nodes and not body.formulation.has_spin:
+    if "rigid" in body.nodes:
+        node, index = body.nodes["rigid"], SPIN
+    elif body.formulation.has_spin:
+        node, index = body.nodes["coordinates"], body.formulation.translation_count
+    else:
         raise ValueError(f"rotor {body.name!r}: without the shell a prescribed spin has no node")
 
     def spin(mbs, t, sensors, factors, configuration):
@@ -60,7 +62,9 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
     """Add a sensor of the drive torque about e [N m].
 
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
-    forces, which the locked coordinate of the shell collects.
+    forces, which the locked coordinate of the shell collects. In static solutions it is right for
+    a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver returns
+    multipliers with the opposite sign.
     """
     _shell(body)
     if body.formulation.has_spin:
@@ -71,7 +75,7 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
 
     def torque(mbs, t, sensors, factors, configuration):
         q, q_t, q_tt = body.coordinates(configuration)
-        modes = slice(body.formulation.translation_count, None)
+        modes = slice(body.motion.formulation.translation_count, None)
         own = body.motion.drive_torque(t, q, q_t, q_tt[modes])
         return [own - external(t, configuration)]
 

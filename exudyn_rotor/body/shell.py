@@ -8,10 +8,11 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectFFRFreducedOrder, VObjectFFRFreducedOrder
 
+from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.modes.selection import Selection
-from exudyn_rotor.reduced import ReducedInterface, ReducedRotor
+from exudyn_rotor.reduced import ReducedRotor
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +55,9 @@ def shell_mesh(reduced: ReducedRotor, selection: Selection, frame: ShellFrame) -
     mesh_count = count = sum(map(len, positions))
     interface_nodes = {}
     for name, interface in reduced.interfaces.items():
-        points, columns = _virtual_nodes(interface, selection.T, reduced.axis.plane)
+        points, columns = virtual_nodes(
+            interface.reference, interface.radius, interface.motion @ selection.T, reduced.axis
+        )
         positions.append(points)
         modes.append(columns)
         interface_nodes[name] = [count, count + 1, count + 2]
@@ -71,16 +74,18 @@ def shell_mesh(reduced: ReducedRotor, selection: Selection, frame: ShellFrame) -
     )
 
 
-def _virtual_nodes(
-    interface: ReducedInterface, T: np.ndarray, plane: np.ndarray
+def virtual_nodes(
+    reference: np.ndarray, radius: float, motion: np.ndarray, axis: SpinAxis
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return three points around the reference point and their columns, mesh axes."""
-    motion = interface.motion @ T
+    """Return three nodes (3, 3) that move as a rigid interface, and their columns (9, m).
+
+    `motion` (6, m) holds displacement and rotation of the point `reference`, all in mesh axes.
+    """
+    radius = radius or 1.0  # a single node has no rotation, so any radius serves
     angles = 2.0 * np.pi / 3.0 * np.arange(3)
-    radius = interface.radius or 1.0  # a single node has no rotation, so any radius serves
-    arms = radius * np.column_stack([np.cos(angles), np.sin(angles)]) @ plane.T
+    arms = radius * np.column_stack([np.cos(angles), np.sin(angles)]) @ axis.plane.T
     columns = [motion[:3] + np.cross(motion[3:], arm, axisa=0, axisc=0) for arm in arms]
-    return interface.reference + arms, np.vstack(columns)
+    return reference + arms, np.vstack(columns)
 
 
 def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:

@@ -27,7 +27,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     femInterface: FEMinterface,
     referencePosition: ArrayLike = (0.0, 0.0, 0.0),
     initialVelocity: ArrayLike = (0.0, 0.0, 0.0),
-    referenceRotationMatrix: ArrayLike | None = None,
+    referenceRotationMatrix: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
     initialAngularVelocity: ArrayLike = (0.0, 0.0, 0.0),
     massProportionalDamping: float = 0.0,
     stiffnessProportionalDamping: float = 0.0,
@@ -49,13 +49,13 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     Args:
         mbs: the MainSystem to which the rotor is added
         name: name of the rotor; markers are called name + ':' + boundaryName, nodes
-            'NodeRigidBody:' + name and 'NodeGeneric:' + name; None: the items are called 'rotor'
-            and the returned dictionary has the boundary names alone
+            'NodeRigidBody:' + name and 'NodeGeneric:' + name; None: nodes and objects have no name,
+            and markers are called boundaryName
         femInterface: FEMinterface with mesh, mass and stiffness matrix and a mode basis; its named
             node sets become markers
         referencePosition: position of the mesh origin (3D vector)
         initialVelocity: initial velocity of the mesh origin (3D vector)
-        referenceRotationMatrix: rotation from mesh axes to global axes; None is the unit matrix
+        referenceRotationMatrix: rotation from mesh axes to global axes
         initialAngularVelocity: initial angular velocity (3D vector, global); must lie along the
             spin axis
         massProportionalDamping: Rayleigh factor of the component modes' mass matrix
@@ -100,7 +100,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     body = add_rotor(
         mbs,
         reduced,
-        name="rotor" if name is None else name,
+        name=name,
         translation=translation,
         spin=spin,
         stiffening=stiffening,
@@ -118,7 +118,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     )
     if verbose:
         exudyn.Print(body.report())
-    return _dictionary(body, name)
+    return _dictionary(body)
 
 
 def _axis(
@@ -172,8 +172,7 @@ def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.n
     return dict(zip(interfaces, table, strict=True))
 
 
-def _dictionary(body: RotorBody, name: str | None) -> dict:
-    prefix = "" if name is None else f"{name}:"
+def _dictionary(body: RotorBody) -> dict:
     result = {
         "FFRFReducedOrderObjectDict": {
             "nRigidBody": body.nodes["rigid"],
@@ -183,7 +182,10 @@ def _dictionary(body: RotorBody, name: str | None) -> dict:
             "rotorBody": body,
         }
     }
-    return result | {f"{prefix}{key}": marker for key, marker in body.markers.items()}
+    return result | {
+        inputs.marker_name(body.name, interface): marker
+        for interface, marker in body.markers.items()
+    }
 
 
 install()

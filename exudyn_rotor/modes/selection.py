@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,8 +55,8 @@ def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
     T, labels = _columns(reduced, formulation, origin)
     invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
     limit = _ROUND_OFF * np.sqrt(invariants.mass)
-    invariants.S[np.abs(invariants.S) < limit] = 0.0
-    return Selection(T, origin, labels, invariants)
+    coupling = np.where(np.abs(invariants.S) < limit, 0.0, invariants.S)
+    return Selection(T, origin, labels, replace(invariants, S=coupling))
 
 
 def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:

@@ -1,0 +1,96 @@
+"""The side-by-side demonstration: Exudyn's 3D flexible body and the fixed-axis rotor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from exudyn_rotor import plots
+from exudyn_rotor.demo import scene
+from exudyn_rotor.demo.simulation import Run, simulate
+
+MODES = 12
+END_TIME = 0.5  # s
+STEP = 1e-4  # s
+FINE_MESH, QUICK_MESH = 0.0155, 0.05  # largest element [m]
+
+
+def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
+    """Run the demonstration; print a table and write pictures to `folder`.
+
+    Parameters
+    ----------
+    folder : path-like
+        Made if it does not exist; pictures of the same name are replaced.
+    quick : bool
+        A coarse mesh and a fifth of the time, to see that everything works.
+
+    Returns
+    -------
+    list of Run
+        The 3D body first, which all deviations refer to.
+    """
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    print("meshing with NGSolve, computing modes with FEMinterface …", flush=True)
+    fem = scene.unbalanced_model(QUICK_MESH if quick else FINE_MESH, MODES)
+    print(f"{len(fem.GetNodePositionsAsArray())} nodes, {MODES} modes")
+    end_time = END_TIME / 5.0 if quick else END_TIME
+    variants = {
+        "3D body, markers on all nodes": scene.add_3d_rotor,
+        "3D body, virtual interface nodes": scene.add_3d_rotor_with_virtual_nodes,
+        "fixed axis, translation free": scene.add_fixed_axis_rotor("free"),
+        "fixed axis, translation none": scene.add_fixed_axis_rotor("none"),
+    }
+    pictures = {"fixed axis, translation free": target / "rotor.png"}
+    runs = [
+        simulate(label, add, fem, end_time, STEP, pictures.get(label))
+        for label, add in variants.items()
+    ]
+    print(table(runs))
+    draw_comparison(runs, target)
+    print(f"pictures: {', '.join(sorted(path.name for path in target.glob('*.png')))} in {target}")
+    return runs
+
+
+def table(runs: list[Run]) -> str:
+    """Return the comparison as text; the first run is the reference."""
+    reference = runs[0]
+    amplitude = np.abs(reference.orbit).max()
+    lines = [
+        "",
+        f"{'':34}{'unknowns':>9}{'locked':>8}{'constr.':>9}{'seconds':>9}{'ratio':>7}{'deviation':>11}",
+    ]
+    for run in runs:
+        deviation = run.deviation(reference).max() / amplitude
+        lines.append(
+            f"{run.label:34}{run.unknowns:9d}{run.locked:8d}{run.constraints:9d}"
+            f"{run.seconds:9.2f}{reference.seconds / run.seconds:7.1f}{deviation:11.1e}"
+        )
+    lines += [
+        "",
+        f"spin speed {reference.speed[0]:.0f} → {reference.speed[-1]:.0f} rad/s, largest journal "
+        f"displacement {1e6 * amplitude:.0f} µm;",
+        "deviation: largest distance of the orbits at equal times over that displacement",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def draw_comparison(runs: list[Run], folder: Path) -> None:
+    """Write orbits and time histories of the 3D body and the fixed-axis rotor."""
+    reference, fixed = runs[0], runs[2]
+    made, axes = plots.figure(size=(6.0, 5.5))
+    plots.plot_orbits(axes, {run.label: run.orbit for run in (reference, fixed)})
+    plots.save(made, folder / "orbits.png")
+
+    made, (above, below) = plots.figure(2, 1, size=(9.0, 6.0), sharex=True)
+    plots.plot_histories(
+        above, reference.time, {run.label: run.orbit[:, 1] for run in (reference, fixed)}
+    )
+    above.set_title("vertical displacement of the right journal")
+    plots.plot_deviation(
+        below, reference.time, {run.label: run.deviation(reference) for run in runs[2:]}
+    )
+    plots.save(made, folder / "displacement.png")

@@ -1,0 +1,354 @@
+"""Equations of motion against an energy written with nodal positions, and its conservation."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from point_rotors import SKEW_AXIS, random_arrays, random_invariants, random_rotor
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion, SpinAxis, select_modes
+from exudyn_rotor.formulation import ConstantSpeed
+from exudyn_rotor.nodal import skew
+from exudyn_rotor.stiffening import Stiffening, stiffening
+
+AXIS = SpinAxis(SKEW_AXIS)
+ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
+GRAVITY = np.array([1.0, -2.0, 3.0])
+MODES = 3
+
+SHAKE = PrescribedMotion(
+    lambda t: np.array([0.3, -0.2, 0.4]) * np.sin(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * 2 * np.cos(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * -4 * np.sin(2 * t),
+)
+SWING = PrescribedMotion(
+    lambda t: 0.5 * t + np.sin(t), lambda t: 0.5 + np.cos(t), lambda t: -np.sin(t)
+)
+TRANSLATIONS = {"free": "free", "in-plane": "in-plane", "none": "none", "shaken": SHAKE}
+SPINS = {"free": "free", "constant": ConstantSpeed(1.3, 0.2), "prescribed": SWING}
+FAMILY = pytest.mark.parametrize(
+    "formulation",
+    [
+        pytest.param(Formulation(translation, spin), id=f"{name}-{turning}")
+        for name, translation in TRANSLATIONS.items()
+        for turning, spin in SPINS.items()
+    ],
+)
+# prescribed motions do work, so energy and momentum are those of the coordinates alone here
+FREE_SPIN = pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+
+
+def motion_of(formulation: Formulation, level: str = "tilt", gravity=GRAVITY, seed: int = 1):
+    """Return a motion with unbalance, S, g, damping and, at level 'tilt', B all non-zero."""
+    invariants, modes, arrays = random_invariants(seed, MODES)
+    terms = stiffening(invariants, level)
+    motion = Motion(invariants, formulation, terms, ORIENTATION, gravity=gravity)
+    return motion, modes, arrays
+
+
+def random_state(size: int, count: int, seed: int = 7) -> np.ndarray:
+    return np.random.default_rng(seed).normal(size=(count, size))
+
+
+def first_derivative(function, step: float):
+    """Return d/ds at s = 0, fourth-order central difference."""
+    near = function(step) - function(-step)
+    far = function(2 * step) - function(-2 * step)
+    return (8 * near - far) / (12 * step)
+
+
+def gradient(function, point: np.ndarray, step: float) -> np.ndarray:
+    """Return derivatives by every entry of `point`, stacked along the last axis."""
+    unit = np.eye(len(point))
+    columns = [
+        first_derivative(lambda s, i=i: function(point + s * unit[i]), step)
+        for i in range(len(point))
+    ]
+    return np.stack(columns, axis=-1)
+
+
+def test_parts_of_the_test_rotor_are_not_zero():
+    invariants, _, _ = random_invariants(1, MODES)
+    terms = stiffening(invariants, "tilt")
+    lever = np.cross(SKEW_AXIS, invariants.center)
+    for part in (invariants.S, invariants.g, invariants.h, invariants.G, terms.B, lever):
+        assert np.linalg.norm(part) > 0.1
+
+
+# ------------------------------------------------------------------ Jacobians
+
+
+@FAMILY
+@pytest.mark.parametrize("full", [False, True], ids=["modes", "full model"])
+def test_jacobians(formulation, full):
+    if full:
+        motion = full_motion(formulation)
+    else:
+        motion, _, _ = motion_of(formulation)
+    t = 0.7
+    q, v = random_state(motion.size, 2)
+    by_q, by_v = (dense(matrix) for matrix in motion.jacobian(t, q, v))
+    # the forces are polynomials up to the fourth degree but for the angle, so 1e-3 leaves 1e-13
+    numeric_q = gradient(lambda point: motion.forces(t, point, v), q, 1e-3)
+    numeric_v = gradient(lambda point: motion.forces(t, q, point), v, 1e-3)
+    for analytic, numeric in ((by_q, numeric_q), (by_v, numeric_v)):
+        for block in blocks_of(formulation, motion.size):
+            scale = max(np.abs(numeric[block]).max(initial=0.0), 1e-3)
+            np.testing.assert_allclose(analytic[block], numeric[block], rtol=0, atol=1e-8 * scale)
+
+
+def blocks_of(formulation: Formulation, size: int) -> list:
+    """Return index pairs of the blocks (t, r, f) × (t, r, f)."""
+    spin = formulation.translation_count, formulation.translation_count + formulation.has_spin
+    ranges = [range(spin[0]), range(*spin), range(spin[1], size)]
+    return [np.ix_(rows, columns) for rows in ranges for columns in ranges]
+
+
+def dense(matrix) -> np.ndarray:
+    return matrix.toarray() if sp.issparse(matrix) else matrix
+
+
+def full_motion(formulation: Formulation, basis=None) -> Motion:
+    """Return the motion of the full model of three nodes, or of a dense basis of it."""
+    arrays = random_arrays(3, node_count=3)
+    arrays["damping"] = sp.csr_array(0.1 * np.eye(9))
+    basis = sp.eye_array(9, format="csr") if basis is None else basis
+    invariants = Invariants.of(**arrays, basis=basis, direction=SKEW_AXIS)
+    terms = stiffening(invariants, "tilt")
+    return Motion(invariants, formulation, terms, ORIENTATION, gravity=GRAVITY)
+
+
+@FAMILY
+def test_full_model_equals_a_complete_basis(formulation):
+    complete = np.random.default_rng(4).normal(size=(9, 9))
+    full, modal = full_motion(formulation), full_motion(formulation, complete)
+    frame = full.size - 9
+    to_full = np.eye(full.size)
+    to_full[frame:, frame:] = complete
+    t = 0.7
+    q, v = random_state(modal.size, 2)
+    pairs = [
+        (full.mass_matrix(t, to_full @ q), modal.mass_matrix(t, q)),
+        *zip(full.jacobian(t, to_full @ q, to_full @ v), modal.jacobian(t, q, v), strict=True),
+    ]
+    for sparse, expected in pairs:
+        assert sp.issparse(sparse)
+        assert_relative(to_full.T @ sparse.toarray() @ to_full, expected, 1e-12)
+    force = full.forces(t, to_full @ q, to_full @ v)
+    assert_relative(to_full.T @ force, modal.forces(t, q, v), 1e-12)
+
+
+def assert_relative(actual, expected, tolerance):
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(actual, expected, rtol=0, atol=tolerance * scale)
+
+
+# ------------------------------------------------------------------ Lagrange's equations
+
+
+class NodalEnergy:
+    """Kinetic energy and potential of gravity from ``p = τ + R A(θ)(x + Ψζ)``, nothing else."""
+
+    def __init__(self, formulation: Formulation, modes: np.ndarray, arrays: dict) -> None:
+        self.formulation, self.modes = formulation, modes
+        self.nodes, self.mass = arrays["nodes"], arrays["mass"].toarray()[::3, ::3]
+        self.stiffness = modes.T @ (arrays["stiffness"] @ modes)
+        self.damping = modes.T @ (arrays["damping"] @ modes)
+        count = formulation.translation_count
+        self.directions = {3: np.eye(3), 2: ORIENTATION @ AXIS.plane, 0: np.zeros((3, 0))}[count]
+
+    def split(self, q: np.ndarray) -> tuple:
+        count, spin = self.formulation.translation_count, int(self.formulation.has_spin)
+        return q[:count], q[count : count + spin], q[count + spin :]
+
+    def translation(self, t, q):
+        if self.formulation.moves_origin:
+            return self.formulation.translation.value(t)
+        return self.directions @ self.split(q)[0]
+
+    def angle(self, t, q):
+        return self.split(q)[1][0] if self.formulation.has_spin else self.formulation.spin.value(t)
+
+    def positions(self, t, q) -> np.ndarray:
+        local = self.nodes + (self.modes @ self.split(q)[2]).reshape(-1, 3)
+        e, angle = SKEW_AXIS, self.angle(t, q)
+        along = np.outer(local @ e, e)
+        turned = along + np.cos(angle) * (local - along) + np.sin(angle) * np.cross(e, local)
+        return self.translation(t, q) + turned @ ORIENTATION.T
+
+    def velocities(self, t, q, v) -> np.ndarray:
+        # complex step: exact, as positions are analytic functions
+        step = 1e-30
+        return self.positions(t + 1j * step, q + 1j * step * v).imag / step
+
+    def lagrangian(self, t, q, v) -> float:
+        speed, place = self.velocities(t, q, v), self.positions(t, q)
+        zeta = self.split(q)[2]
+        kinetic = 0.5 * np.sum(speed * (self.mass @ speed))
+        gravity = np.sum((self.mass @ place) @ GRAVITY)
+        return kinetic + gravity - 0.5 * zeta @ self.stiffness @ zeta
+
+    def dissipation(self, v: np.ndarray) -> np.ndarray:
+        damping = np.zeros(len(v))
+        rates = self.split(v)[2]
+        damping[len(v) - len(rates) :] = self.damping @ rates
+        return damping
+
+
+def lagrange_residual(lagrangian, t, q, v, a) -> np.ndarray:
+    """Return d/dt ∂L/∂q̇ − ∂L/∂q along q(t + s) = q + s v + s² a/2."""
+
+    def momenta(s: float) -> np.ndarray:
+        place = q + s * v + 0.5 * s**2 * a
+        return gradient(lambda rate: lagrangian(t + s, place, rate), v + s * a, 1.0)
+
+    by_q = gradient(lambda place: lagrangian(t, place, v), q, 1e-2)
+    return first_derivative(momenta, 2e-3) - by_q
+
+
+@FAMILY
+def test_equations_follow_from_the_energy_of_the_nodes(formulation):
+    motion, modes, arrays = motion_of(formulation, "none")
+    energy = NodalEnergy(formulation, modes, arrays)
+    t = 0.7
+    q, v, a = random_state(motion.size, 3)
+    expected = lagrange_residual(energy.lagrangian, t, q, v, a) + energy.dissipation(v)
+    actual = motion.mass_matrix(t, q) @ a - motion.forces(t, q, v)
+    assert_relative(actual, expected, 1e-8)
+
+
+@FREE_SPIN
+def test_equations_with_stiffening_follow_from_their_energy(translation):
+    motion, _, arrays = motion_of(Formulation(translation), gravity=np.zeros(3))
+    damping = dense(motion.jacobian(0.0, np.zeros(motion.size), np.zeros(motion.size))[1])
+    q, v, a = random_state(motion.size, 3)
+
+    def lagrangian(t, place, rate):
+        kinetic = 0.5 * rate @ motion.mass_matrix(t, place) @ rate
+        return 2 * kinetic - motion.energy(t, place, rate)
+
+    expected = lagrange_residual(lagrangian, 0.0, q, v, a) - damping @ v
+    actual = motion.mass_matrix(0.0, q) @ a - motion.forces(0.0, q, v)
+    assert_relative(actual, expected, 1e-8)
+
+
+@FAMILY
+def test_mass_matrix_is_symmetric_positive_definite(formulation):
+    motion, _, _ = motion_of(formulation, "none")
+    for q in random_state(motion.size, 5):
+        mass = motion.mass_matrix(0.4, q)
+        assert_relative(mass, mass.T, 1e-14)
+        assert np.linalg.eigvalsh(mass)[0] > 1e-3
+
+
+# ------------------------------------------------------------------ power
+
+
+@pytest.mark.parametrize("level", ["none", "tilt"])
+@FREE_SPIN
+def test_power_of_gravity_and_damping(translation, level):
+    motion, _, _ = motion_of(Formulation(translation), level)
+    weightless, _, _ = motion_of(Formulation(translation), level, gravity=np.zeros(3))
+    q, v = random_state(motion.size, 2)
+    force = motion.forces(0.0, q, v)
+    a = np.linalg.solve(motion.mass_matrix(0.0, q), force)
+    rate = first_derivative(
+        lambda s: motion.energy(0.0, q + s * v + 0.5 * s**2 * a, v + s * a), 2e-3
+    )
+    rates = v[motion.size - MODES :]
+    gravity = v @ (force - weightless.forces(0.0, q, v))
+    damping = rates @ motion.invariants.D @ rates
+    assert rate == pytest.approx(gravity - damping, rel=1e-9)
+
+
+def test_drive_torque_supplies_the_power():
+    formulation = Formulation("none", SWING)
+    motion, modes, arrays = motion_of(formulation, "none", gravity=np.zeros(3))
+    nodal = NodalEnergy(formulation, modes, arrays)
+    t = 0.7
+    q, v = random_state(MODES, 2)
+    a = np.linalg.solve(motion.mass_matrix(t, q), motion.forces(t, q, v))
+
+    def energy(s: float) -> float:
+        place = q + s * v + 0.5 * s**2 * a
+        speed = nodal.velocities(t + s, place, v + s * a)
+        elastic = 0.5 * place @ nodal.stiffness @ place
+        return 0.5 * np.sum(speed * (nodal.mass @ speed)) + elastic
+
+    supplied = motion.drive_torque(t, q, v, a) * SWING.rate(t)
+    lost = v @ nodal.damping @ v
+    assert first_derivative(energy, 2e-3) == pytest.approx(supplied - lost, rel=1e-9)
+
+
+@pytest.mark.parametrize("level", ["none", "tilt"])
+@pytest.mark.parametrize("translation", ["none", SHAKE], ids=["none", "shaken"])
+def test_drive_torque_is_the_row_that_the_prescribed_spin_removes(translation, level):
+    driven, _, _ = motion_of(Formulation(translation, SWING), level)
+    free, _, _ = motion_of(Formulation(translation, "free"), level)
+    t = 0.7
+    q, v, a = random_state(MODES, 3)
+    whole_q, whole_v, whole_a = (
+        np.append(first, rest)
+        for first, rest in ((SWING.value(t), q), (SWING.rate(t), v), (SWING.acceleration(t), a))
+    )
+    row = free.mass_matrix(t, whole_q) @ whole_a - free.forces(t, whole_q, whole_v)
+    assert driven.drive_torque(t, q, v, a) == pytest.approx(row[0], rel=1e-12)
+
+
+# ------------------------------------------------------------------ conservation
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_energy_and_momentum_over_1000_revolutions(translation):
+    """Torque-free and undamped: drift below 1e-8, what the integrator's tolerance leaves."""
+    speed, revolutions = 10.0, 1000
+    motion = unbalanced_motion(Formulation(translation))
+    start = np.zeros(motion.size)
+    start[-2:] = 0.02, -0.01
+    rate = np.zeros(motion.size)
+    rate[motion.formulation.translation_count] = speed
+
+    def derivative(t, state):
+        q, v = np.split(state, 2)
+        return np.append(v, np.linalg.solve(motion.mass_matrix(t, q), motion.forces(t, q, v)))
+
+    end = revolutions * 2 * np.pi / speed
+    result = solve_ivp(
+        derivative,
+        (0.0, end),
+        np.append(start, rate),
+        method="DOP853",
+        rtol=1e-10,
+        atol=1e-12,
+        t_eval=np.linspace(0.0, end, 50),
+    )
+    states = [np.split(state, 2) for state in result.y.T]
+    energy = np.array([motion.energy(0.0, q, v) for q, v in states])
+    spin = np.array([momentum_about_axis(motion, q, v) for q, v in states])
+    assert states[-1][0][motion.formulation.translation_count] > 0.9 * revolutions * 2 * np.pi
+    print(translation, np.abs(energy / energy[0] - 1.0).max(), np.abs(spin / spin[0] - 1.0).max(), result.nfev)
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-8
+    assert np.abs(spin / spin[0] - 1.0).max() < 1e-8
+
+
+def unbalanced_motion(formulation: Formulation) -> Motion:
+    """Return a free rotor of two modes with its origin off the centre of mass."""
+    invariants, _, _ = random_invariants(2, 2)
+    stiff = invariants.in_basis(np.eye(2))
+    scaled = Invariants(
+        **{
+            **{name: getattr(stiff, name) for name in Invariants.__dataclass_fields__},
+            "K": 400.0 * stiff.M,
+            "D": np.zeros((2, 2)),
+        }
+    )
+    return Motion(scaled, formulation, stiffening(scaled, "tilt"))
+
+
+def momentum_about_axis(motion: Motion, q: np.ndarray, v: np.ndarray) -> float:
+    """Return the angular momentum about the inertial axis e through the inertial origin."""
+    count = motion.formulation.translation_count
+    momenta = motion.momentum(0.0, q, v)
+    orbital = 0.0 if count == 0 else SKEW_AXIS @ np.cross(q[:3], momenta[:3])
+    return float(momenta[count] + orbital)
