@@ -34,8 +34,8 @@ class _State:
     omega_t: float  # prescribed part of the spin acceleration
     zeta: np.ndarray
     zeta_t: np.ndarray
-    A: np.ndarray  # NᵀA(θ), rows: unknown translations
-    push: np.ndarray  # gravity minus frame acceleration, rotor axes
+    A: np.ndarray | None = None  # NᵀA(θ), rows: unknown translations
+    push: np.ndarray | None = None  # gravity minus frame acceleration, rotor axes
 
 
 class Motion:
@@ -87,6 +87,9 @@ class Motion:
             slice(end - count, end) for end, count in zip(ends, counts, strict=True)
         )
         self.size = int(ends[-1])
+        # terms that vanish for this rotor are left out of every step, and A(θ) with them
+        self._coupled = self.couples_translation
+        self._pushed = bool(formulation.moves_origin or np.any(self.gravity))
 
     def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
         count = self.formulation.translation_count
@@ -106,19 +109,31 @@ class Motion:
         """``S* = ẽS`` (69)."""
         return self._e @ self.invariants.S
 
+    @cached_property
+    def _constant_mass(self) -> np.ndarray | sp.csr_array:
+        """(41) and (42)."""
+        count = self.formulation.translation_count
+        blocks = {("f", "f"): self.invariants.M}
+        if count:
+            blocks["t", "t"] = self.invariants.mass * np.eye(count)
+        zero = (self.size, self.size)
+        empty = sp.csr_array(zero) if self.invariants.is_sparse else np.zeros(zero)
+        return self._placed(blocks, empty)
+
     @property
     def couples_translation(self) -> bool:
-        """True when ``mχ*`` or S couple the translation with the other coordinates."""
-        return bool(np.any(self._lever) or np.any(self.invariants.S))
+        """True when ``mχ*`` or S couple unknown translations with the other coordinates."""
+        count = self.formulation.translation_count
+        seen = self.invariants.S if count == 3 else self._S1  # in the plane, S* is S turned
+        return bool(count and (np.any(self._lever) or np.any(seen)))
 
     @property
     def is_constant(self) -> bool:
         """True when all matrices and forces are constant: Eq. (109) and its uncoupled kin."""
         form = self.formulation
-        uncoupled = form.translation_count == 0 or not self.couples_translation
         return (
             form.is_constant_speed
-            and uncoupled
+            and not self.couples_translation
             and not form.moves_origin
             and not np.any(self.gravity)
         )
@@ -127,19 +142,18 @@ class Motion:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
         inv = self.invariants
         now = self._state(t, q, np.zeros(self.size))
-        blocks = {("f", "f"): inv.M}
-        if self.formulation.translation_count:
-            blocks["t", "t"] = inv.mass * np.eye(self.formulation.translation_count)
+        blocks = {}
+        if self._coupled:
             blocks["t", "f"] = now.A @ inv.S
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
             blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
             blocks["r", "f"] = (inv.g + self._W @ now.zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
-            if self.formulation.translation_count:
+            if self._coupled:
                 blocks["t", "r"] = (now.A @ self._imbalance(now.zeta))[:, None]
                 blocks["r", "t"] = blocks["t", "r"].T
-        return self._assemble(blocks)
+        return self._placed(blocks, self._constant_mass)
 
     def forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return velocity-dependent, elastic, damping and gravity forces, shape (size,).
@@ -149,24 +163,19 @@ class Motion:
         inv = self.invariants
         now = self._state(t, q, q_t)
         omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
-        force = np.empty(self.size)
+        force = np.zeros(self.size)
+        outward = inv.h + self._C @ zeta
         force[self._f] = (
-            (inv.h + self._C @ zeta) * omega**2
-            - 2.0 * omega * (inv.G @ zeta_t)
-            - inv.K @ zeta
-            - inv.D @ zeta_t
-            + inv.S.T @ now.push
+            outward * omega**2 - 2.0 * omega * (inv.G @ zeta_t) - inv.K @ zeta - inv.D @ zeta_t
         )
         if now.omega_t:
             force[self._f] -= (inv.g + self._W @ zeta) * now.omega_t
         if self.formulation.has_spin:
-            force[self._r] = (
-                -2.0 * omega * (inv.h + self._C @ zeta) @ zeta_t
-                - zeta_t @ (self._B @ zeta_t)
-                + self._imbalance(zeta) @ now.push
-            )
-        if self.formulation.translation_count:
-            force[self._t] = self._translational_force(now)
+            force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self._B @ zeta_t)
+        if self._pushed:
+            self._add_push(now, force)
+        if self._coupled:
+            force[self._t] -= now.A @ self._swing(now)
         return force
 
     def jacobian(
@@ -181,17 +190,20 @@ class Motion:
         if now.omega_t:
             by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self._W
         if self.formulation.has_spin:
-            softening = inv.h + self._C @ zeta
-            turned = -self._e @ now.push
-            by_q["f", "r"] = (inv.S.T @ turned)[:, None]
-            by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
-            by_q["r", "f"] = (-2.0 * omega * (self._C @ zeta_t) + self._S1.T @ now.push)[None, :]
-            by_v["f", "r"] = (2.0 * omega * softening - 2.0 * (inv.G @ zeta_t))[:, None]
-            by_v["r", "r"] = [[-2.0 * softening @ zeta_t]]
-            by_v["r", "f"] = (-2.0 * omega * softening - 2.0 * (self._B @ zeta_t))[None, :]
-        if self.formulation.translation_count:
+            outward = inv.h + self._C @ zeta
+            by_q["r", "f"] = -2.0 * omega * (self._C @ zeta_t)[None, :]
+            by_v["f", "r"] = (2.0 * omega * outward - 2.0 * (inv.G @ zeta_t))[:, None]
+            by_v["r", "r"] = [[-2.0 * outward @ zeta_t]]
+            by_v["r", "f"] = (-2.0 * omega * outward - 2.0 * (self._B @ zeta_t))[None, :]
+            if self._pushed:
+                turned = -self._e @ now.push
+                by_q["f", "r"] = (inv.S.T @ turned)[:, None]
+                by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
+                by_q["r", "f"] = by_q["r", "f"] + self._S1.T @ now.push
+        if self._coupled:
             self._add_translational_jacobian(now, by_q, by_v)
-        return self._assemble(by_q), self._assemble(by_v)
+        empty = 0.0 * self._constant_mass
+        return self._placed(by_q, empty), self._placed(by_v, empty)
 
     def energy(self, t: float, q: np.ndarray, q_t: np.ndarray) -> float:
         """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
@@ -218,11 +230,8 @@ class Motion:
             self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self._W @ now.zeta) @ zeta_tt
         )
         coriolis = 2.0 * now.omega * (inv.h + self._C @ now.zeta) @ now.zeta_t
-        return float(
-            inertia
-            + coriolis
-            + now.zeta_t @ (self._B @ now.zeta_t)
-            - self._imbalance(now.zeta) @ now.push
+        return float(inertia + coriolis + now.zeta_t @ (self._B @ now.zeta_t)) - (
+            float(self._imbalance(now.zeta) @ now.push) if self._pushed else 0.0
         )
 
     def _spin_inertia(self, zeta: np.ndarray) -> float:
@@ -234,13 +243,18 @@ class Motion:
         """``mχ* + S*ζ``, the bracket of (65), rotor axes."""
         return self._lever + self._S1 @ zeta
 
-    def _translational_force(self, now: _State) -> np.ndarray:
-        """(66), the Euler part of a prescribed spin, and gravity."""
+    def _add_push(self, now: _State, force: np.ndarray) -> None:
+        """Add gravity (App. A) and the frame's prescribed acceleration (108)."""
+        force[self._f] += self.invariants.S.T @ now.push
+        if self.formulation.has_spin:
+            force[self._r] += self._imbalance(now.zeta) @ now.push
+        force[self._t] += self.invariants.mass * (self.free_directions.T @ self.gravity)
+
+    def _swing(self, now: _State) -> np.ndarray:
+        """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
         arm = self._imbalance(now.zeta)
-        local = (self._e @ arm) * now.omega**2 + 2.0 * now.omega * (self._S1 @ now.zeta_t)
-        if now.omega_t:
-            local = local + arm * now.omega_t
-        return self.invariants.mass * (self.free_directions.T @ self.gravity) - now.A @ local
+        centrifugal = now.omega**2 * (self._e @ arm)
+        return centrifugal + 2.0 * now.omega * (self._S1 @ now.zeta_t) + now.omega_t * arm
 
     def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
         omega, arm = now.omega, self._imbalance(now.zeta)
@@ -248,10 +262,9 @@ class Motion:
         by_q["t", "f"] = -now.A @ turning @ self._S1
         by_v["t", "f"] = -2.0 * omega * now.A @ self._S1
         if self.formulation.has_spin:
-            local = omega**2 * (self._e @ arm) + 2.0 * omega * (self._S1 @ now.zeta_t)
-            by_q["t", "r"] = -(now.A @ self._e @ local)[:, None]
-            swing = 2.0 * omega * (self._e @ arm) + 2.0 * (self._S1 @ now.zeta_t)
-            by_v["t", "r"] = -(now.A @ swing)[:, None]
+            by_q["t", "r"] = -(now.A @ self._e @ self._swing(now))[:, None]
+            by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self._S1 @ now.zeta_t)
+            by_v["t", "r"] = -(now.A @ by_rate)[:, None]
 
     def _state(self, t: float, q: np.ndarray, q_t: np.ndarray) -> _State:
         form = self.formulation
@@ -260,33 +273,26 @@ class Motion:
         else:
             theta, omega = form.spin.value(t), form.spin.rate(t)
             omega_t = form.spin.acceleration(t)
+        zeta, zeta_t = q[self._f], q_t[self._f]
+        if not (self._coupled or self._pushed):
+            return _State(omega, omega_t, zeta, zeta_t)
         rotation = self.orientation @ self._turn.rotation(theta)
         push = self.gravity
         if form.moves_origin:
             push = push - np.asarray(form.translation.acceleration(t), dtype=float)
-        return _State(
-            omega=omega,
-            omega_t=omega_t,
-            zeta=q[self._f],
-            zeta_t=q_t[self._f],
-            A=self.free_directions.T @ rotation,
-            push=rotation.T @ push,
-        )
+        A, push = self.free_directions.T @ rotation, rotation.T @ push
+        return _State(omega, omega_t, zeta, zeta_t, A, push)
 
-    def _assemble(self, blocks: dict) -> np.ndarray | sp.csr_array:
-        """Put the blocks of t, r, f into one matrix, sparse where the invariants are."""
+    def _placed(self, blocks: dict, base: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
+        """Return `base` with the blocks of t, r, f put in, sparse where the invariants are."""
         places = {"t": self._t, "r": self._r, "f": self._f}
-        if not self.invariants.is_sparse:
-            matrix = np.zeros((self.size, self.size))
-            for (row, column), block in blocks.items():
-                matrix[places[row], places[column]] = block
-            return matrix
-        matrix = sp.csr_array((self.size, self.size))
+        matrix = base.copy()
         for (row, column), block in blocks.items():
+            if not self.invariants.is_sparse:
+                matrix[places[row], places[column]] = block
+                continue
             part = sp.coo_array(block)
             rows, columns = part.coords
-            matrix = matrix + sp.csr_array(
-                (part.data, (rows + places[row].start, columns + places[column].start)),
-                shape=matrix.shape,
-            )
+            place = (rows + places[row].start, columns + places[column].start)
+            matrix = matrix + sp.csr_array((part.data, place), shape=matrix.shape)
         return matrix

@@ -68,6 +68,8 @@ def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
         labels = tuple(f"column {i + 1}" for i in range(modes.shape[-1]))
         return ModeBasis(modes, labels, nodes=rotor.nodes)
     if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
+        if modes == 0:  # a rigid rotor
+            return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
         return free_modes(rotor, int(modes))
     raise TypeError(
         f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "

@@ -331,7 +331,7 @@ class SolidRotor:
         Parameters
         ----------
         modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
-            A number of free eigenmodes, modes of :mod:`exudyn_rotor.modes`, a FEMinterface whose
+            A number of free eigenmodes (0 for a rigid rotor), modes of :mod:`exudyn_rotor.modes`, a FEMinterface whose
             modes have been computed, or displacement columns in mesh axes [m].
         stress : bool, optional
             Also recover stress modes, for stress sensors and contour pictures.
