@@ -89,7 +89,11 @@ class Motion:
         self.size = int(ends[-1])
         # terms that vanish for this rotor are left out of every step, and A(θ) with them
         self._coupled = self.couples_translation
-        self._pushed = bool(formulation.moves_origin or np.any(self.gravity))
+        self._pushed = bool(
+            (formulation.moves_origin or np.any(self.gravity))
+            and (np.any(invariants.S) or np.any(self._lever))
+        )
+        self._weight = invariants.mass * (self.free_directions.T @ self.gravity)
 
     def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
         count = self.formulation.translation_count
@@ -172,6 +176,7 @@ class Motion:
             force[self._f] -= (inv.g + self._W @ zeta) * now.omega_t
         if self.formulation.has_spin:
             force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self._B @ zeta_t)
+        force[self._t] = self._weight
         if self._pushed:
             self._add_push(now, force)
         if self._coupled:
@@ -248,7 +253,6 @@ class Motion:
         force[self._f] += self.invariants.S.T @ now.push
         if self.formulation.has_spin:
             force[self._r] += self._imbalance(now.zeta) @ now.push
-        force[self._t] += self.invariants.mass * (self.free_directions.T @ self.gravity)
 
     def _swing(self, now: _State) -> np.ndarray:
         """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""

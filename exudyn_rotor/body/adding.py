@@ -62,6 +62,7 @@ class _Plan:
     layout: Layout
     motion: Motion
     by_mass: bool
+    shell_gravity: np.ndarray
     modal: tuple[np.ndarray, np.ndarray]
 
 
@@ -124,7 +125,7 @@ def add_rotor(
         Interfaces that get a marker; all of them, rigid, by default. A position marker costs a
         fraction of a rigid one.
     marker_offsets : mapping of str to array_like, shape (3,), optional
-        Offset of a rigid marker from the interface's reference point, mesh axes [m].
+        Offset of a marker from the interface's reference point, mesh axes [m].
     show_markers : bool
         Whether markers are drawn.
     locking : {'auto', 'mass', 'constraints'}
@@ -153,16 +154,18 @@ def add_rotor(
     ============================  =======================  =====================================
     rotor                         implicit solvers         explicit solvers (RK44, DOPRI5, …)
     ============================  =======================  =====================================
-    free or constant spin         any locking              any locking
+    free or constant spin         any locking              ``'mass'``; with constraints they are
+                                                           of first order only
     θ(t) or τ(t)                  any; ``'constraints'``   ``'mass'``; a run with constraints
                                   is exact                 stops with an error
     in-plane, plane skew to the   ``'constraints'``        none; use ``native_shell=False`` or
     inertial axes                                          translation ``'free'``
     ============================  =======================  =====================================
 
-    The static solver keeps the initial velocities: the spin speed, too, so that a constant spin
-    gives the steady state in the rotating frame. θ is then that of the solver's load time (1 s by
-    default). Static solutions with θ(t) make sense only while its speed is the initial one.
+    The static solver keeps the initial velocities, so the rotor spins in it. With a constant spin
+    and translation ``'none'`` its solution is the steady state in the rotating frame; a translation
+    that is an unknown stands still in the inertial frame instead. θ is that of the solver's load
+    time (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
     """
     inputs.check_mbs(mbs)
     inputs.check_reduced(reduced)
@@ -201,8 +204,9 @@ def add_rotor(
     )
     if not native_shell:
         return _add_bare(mbs, plan)
-    mesh = shell_mesh(reduced, plan.selection, plan.frame)
-    return _add_with_shell(mbs, plan, mesh, requests, gravity, color)
+    offsets = {interface: request.offset for interface, request in requests.items()}
+    mesh = shell_mesh(reduced, plan.selection, plan.frame, offsets)
+    return _add_with_shell(mbs, plan, mesh, requests, color)
 
 
 def _plan(
@@ -233,6 +237,8 @@ def _plan(
             "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
             "use locking='constraints', translation='free', or native_shell=False"
         )
+    # gravity on the shell exerts no moment about e by the deflection Sζ, which a free spin needs
+    own_gravity = not native_shell or (formulation.has_spin and formulation.translation_count == 0)
     by_mass = locking == "mass" or (locking == "auto" and not locks.varying and not skew)
     own = np.repeat([invariants.mass, max(invariants.Theta, 1e-300)], 3)
     return _Plan(
@@ -251,9 +257,10 @@ def _plan(
             second_order(invariants, stiffening),
             orientation=place.rotation,
             plane=locks.plane,
-            gravity=None if native_shell else gravity,  # the shell brings its own
+            gravity=gravity if own_gravity else None,
         ),
         by_mass=by_mass,
+        shell_gravity=np.zeros(3) if own_gravity else gravity,
         modal=(
             inputs.modal_values(modal[0], "modal_coordinates", selection.labels),
             inputs.modal_values(modal[1], "modal_velocities", selection.labels),
@@ -283,7 +290,6 @@ def _add_with_shell(
     plan: _Plan,
     mesh: ShellMesh,
     requests: dict[str, inputs.MarkerRequest],
-    gravity: np.ndarray,
     color: list[float],
 ) -> RotorBody:
     """Add nodes, equations, native shell, markers, locks and gravity."""
@@ -292,9 +298,9 @@ def _add_with_shell(
     guide = guiding_force(plan.locks, plan.layout)
     constraints = {}
     if not plan.by_mass:
-        if plan.locks.varying:
-            guide = ConstraintWatch(guide, plan.layout.size)
-        constraints = add_constraints(mbs, plan.locks, rigid, guide)
+        watch = ConstraintWatch(guide, plan.layout.size) if plan.locks.varying else None
+        constraints = add_constraints(mbs, plan.locks, rigid, watch)
+        guide = watch or guide
     physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes], guide))
     if plan.motion.is_constant:
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
@@ -304,9 +310,9 @@ def _add_with_shell(
         )
     )
     load = None
-    if np.any(gravity):
+    if np.any(plan.shell_gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
-        load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=gravity))
+        load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=plan.shell_gravity))
     return _body(
         mbs,
         plan,
@@ -371,7 +377,7 @@ def _add_markers(
         }
         if request.kind == "rigid":
             turn = np.eye(4)
-            turn[:3, :3], turn[:3, 3] = plan.frame.B, plan.frame.B @ request.offset
+            turn[:3, :3] = plan.frame.B
             item = MarkerSuperElementRigid(**common, localHT=turn)
         else:
             item = MarkerSuperElementPosition(**common)

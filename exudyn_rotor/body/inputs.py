@@ -182,8 +182,6 @@ def marker_requests(
                 f"markers: kind {kind!r} of {name!r} is unknown; use 'rigid' or 'position'"
             )
         offset = vector(offsets.get(name, np.zeros(3)), f"marker offset of {name!r}", "m")
-        if kind == "position" and np.any(offset):
-            raise ValueError(f"markers: {name!r} has an offset, so it must be of kind 'rigid'")
         requests[name] = MarkerRequest(kind, offset, show)
     return requests
 

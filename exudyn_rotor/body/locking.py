@@ -214,9 +214,12 @@ class ConstraintWatch:
 
 
 def add_constraints(
-    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, watch: ConstraintWatch
+    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, watch: ConstraintWatch | None
 ) -> dict[str, exudyn.ObjectIndex]:
-    """Hold the locked coordinates of the shell's node by constraints; return them by name."""
+    """Hold the locked coordinates of the shell's node by constraints; return them by name.
+
+    `watch` is told of evaluations; it is needed where some prescribed motion varies with time.
+    """
     ground = mbs.AddNode(NodePointGround())
     origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
     constraints = {}
@@ -252,6 +255,11 @@ def _plane_constraint(
     markers = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
     row = np.zeros((1, 6))
     row[0, :3] = normal
+    # this connector takes a node's coordinates with their reference values
+    reference = np.asarray(mbs.GetNodeParameter(node, "referenceCoordinates"))
     return ObjectConnectorCoordinateVector(
-        markerNumbers=markers, scalingMarker0=np.zeros((1, 0)), scalingMarker1=row
+        markerNumbers=markers,
+        scalingMarker0=np.zeros((1, 0)),
+        scalingMarker1=row,
+        offset=row @ reference,
     )

@@ -44,6 +44,8 @@ class RotorBody:
     constraints : dict of str
         Locking constraints by coordinate, where ``locking='constraints'``.
     gravity_load : LoadIndex or None
+        None without gravity, and where it is part of the equations (``motion.gravity``): without
+        the native shell, and for a free spin without translation.
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
     """

@@ -8,6 +8,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
+from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.locking import SPIN, guiding_force
 
 if TYPE_CHECKING:
@@ -64,7 +65,8 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
     forces, which the locked coordinate of the shell collects. In static solutions it is right for
     a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver returns
-    multipliers with the opposite sign.
+    multipliers with the opposite sign. Explicit solvers have no accelerations at the first
+    instant, so the first value is wrong with them.
     """
     _shell(body)
     if body.formulation.has_spin:
@@ -77,9 +79,20 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
         q, q_t, q_tt = body.coordinates(configuration)
         modes = slice(body.motion.formulation.translation_count, None)
         own = body.motion.drive_torque(t, q, q_t, q_tt[modes])
-        return [own - external(t, configuration)]
+        return [own - external(t, configuration) - _deflected_weight(body, t, q[modes])]
 
     return _add_function_sensor(body, torque, options)
+
+
+def _deflected_weight(body: RotorBody, t: float, zeta: np.ndarray) -> float:
+    """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
+    if body.gravity_load is None:
+        return 0.0
+    motion = body.motion
+    axis = SpinAxis(motion.invariants.direction)
+    gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
+    turn = motion.orientation @ axis.rotation(motion.formulation.spin.value(t))
+    return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
 
 
 def _external_moment(body: RotorBody):

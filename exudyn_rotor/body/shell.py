@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import exudyn
@@ -44,8 +45,17 @@ class ShellMesh:
     mesh_node_count: int
 
 
-def shell_mesh(reduced: ReducedRotor, selection: Selection, frame: ShellFrame) -> ShellMesh:
-    """Return the nodes of the shell for one formulation."""
+def shell_mesh(
+    reduced: ReducedRotor,
+    selection: Selection,
+    frame: ShellFrame,
+    offsets: Mapping[str, np.ndarray],
+) -> ShellMesh:
+    """Return the nodes of the shell for one formulation.
+
+    `offsets` shift an interface's virtual nodes [m, mesh axes]. A marker's own offset is of no use
+    here: in Exudyn a force at it exerts no moment on modal coordinates.
+    """
     positions, modes = [np.zeros((0, 3))], [np.zeros((0, selection.T.shape[1]))]
     triangles, stress = np.zeros((0, 3), dtype=int), np.zeros((0, 0))
     if reduced.shapes is not None:
@@ -55,8 +65,11 @@ def shell_mesh(reduced: ReducedRotor, selection: Selection, frame: ShellFrame) -
     mesh_count = count = sum(map(len, positions))
     interface_nodes = {}
     for name, interface in reduced.interfaces.items():
+        motion = interface.motion @ selection.T
+        offset = offsets.get(name, np.zeros(3))
+        motion[:3] += np.cross(motion[3:], offset, axisa=0, axisc=0)
         points, columns = virtual_nodes(
-            interface.reference, interface.radius, interface.motion @ selection.T, reduced.axis
+            interface.reference + offset, interface.radius, motion, reduced.axis
         )
         positions.append(points)
         modes.append(columns)

@@ -163,11 +163,14 @@ def _initial_speed(formulation: Formulation, speed: float) -> float | None:
 def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
     if offsets is None:
         return {}
-    table = np.atleast_2d(np.asarray(offsets, dtype=float))
+    try:
+        table = np.atleast_2d(np.asarray(offsets, dtype=float))
+    except (TypeError, ValueError):
+        table = np.zeros(0)
     if table.shape != (len(interfaces), 3) or not np.all(np.isfinite(table)):
         raise ValueError(
             f"superElementRigidMarkersOffsets: needs {len(interfaces)} × 3 finite numbers for the "
-            f"interfaces {', '.join(interfaces)}, got shape {table.shape}"
+            f"interfaces {', '.join(interfaces) or 'none'}, got {offsets!r}"
         )
     return dict(zip(interfaces, table, strict=True))
 

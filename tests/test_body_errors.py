@@ -1,0 +1,183 @@
+"""Bad input to the Exudyn layer: a clear message, and nothing added."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import MarkerNodeCoordinate
+from models import STEEL, disc_on_shaft
+
+from exudyn_rotor import PrescribedMotion, SolidRotor, add_rotor
+
+NAN = float("nan")
+RUN_UP = PrescribedMotion.run_up(0.0, 100.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    return solid.reduce(2)
+
+
+@pytest.fixture(scope="module")
+def grounded():
+    return SolidRotor.from_matrices(
+        np.eye(6), np.diag([1e6] * 6), [[1.0, 0, 0], [0, 1.0, 0]], "z"
+    ).reduce(2)
+
+
+@pytest.fixture(scope="module")
+def needle():
+    """Two masses on the axis."""
+    stiffness = np.kron([[1e6, -1e6], [-1e6, 1e6]], np.diag([0.0, 0.0, 1.0]))
+    return SolidRotor.from_matrices(
+        np.eye(6), stiffness, [[0, 0, 0], [0, 0, 1.0]], "z", grounded=False
+    ).reduce(1)
+
+
+def counts(mbs):
+    data = mbs.systemData
+    return [
+        getattr(data, f"NumberOf{kind}")()
+        for kind in ("Nodes", "Objects", "Markers", "Loads", "Sensors")
+    ]
+
+
+def motion(value):
+    return PrescribedMotion(lambda t: value, lambda t: value, lambda t: value)
+
+
+CASES = {
+    "same name": ({"name": "taken"}, "already has an item 'taken.*another name"),
+    "empty name": ({"name": ""}, "non-empty string or None"),
+    "number as name": ({"name": 3}, "non-empty string or None"),
+    "speed twice": ({"spin": 10.0, "initial_speed": 10.0}, "given twice: initial_speed"),
+    "angle twice": ({"spin": RUN_UP, "initial_angle": 0.0}, "given twice: initial_angle"),
+    "unknown interface": (
+        {"markers": {"middle": "rigid"}},
+        "'middle' is unknown; the rotor has: left, right",
+    ),
+    "unknown offset": (
+        {"marker_offsets": {"middle": [0, 0, 0]}},
+        "'middle' is unknown; the rotor has: left, right",
+    ),
+    "offset of no marker": (
+        {"markers": {"left": "rigid"}, "marker_offsets": {"right": [0, 0, 0.1]}},
+        "'right' gets no marker",
+    ),
+    "marker kind": ({"markers": {"left": "ring"}}, "use 'rigid' or 'position'"),
+    "offset shape": ({"marker_offsets": {"left": [0, 0]}}, "marker offset of 'left'"),
+    "markers without shell": (
+        {"native_shell": False, "markers": {"left": "rigid"}},
+        "need the native shell",
+    ),
+    "translation": ({"translation": "axial"}, "'axial' is unknown.*free, in-plane, none"),
+    "spin": ({"spin": "fast"}, "'fast' is unknown"),
+    "stiffening": ({"stiffening": "full"}, "'full'"),
+    "locking": ({"locking": "glue"}, "'glue' is unknown; use one of auto, mass, constraints"),
+    "drive": ({"spin": 1.0, "drive": "belt"}, "'belt' is unknown"),
+    "held, moving": (
+        {"translation": "none", "initial_velocity": [1.0, 0, 0]},
+        "translation='none' holds the rotor",
+    ),
+    "velocity twice": (
+        {
+            "translation": motion(np.zeros(3)),
+            "initial_velocity": [1.0, 0, 0],
+        },
+        "velocity given twice",
+    ),
+    "axial velocity": (
+        {"translation": "in-plane", "initial_velocity": [1.0, 0, 0.5]},
+        "0.5 m/s along the spin axis",
+    ),
+    "skew plane by mass": (
+        {
+            "translation": "in-plane",
+            "locking": "mass",
+            "rotation": [[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]],
+        },
+        "skew to the inertial axes",
+    ),
+    "reflection": ({"rotation": np.diag([1.0, 1.0, -1.0])}, "proper 3 × 3 rotation"),
+    "stretch": ({"rotation": 1.1 * np.eye(3)}, "proper 3 × 3 rotation"),
+    "words as rotation": ({"rotation": "RotX"}, "3 × 3 rotation"),
+    "modal count": (
+        {"modal_coordinates": [0.0, 0.0]},
+        r"modal_coordinates \(one per mode: tilt 1, tilt 2, mode 1.*needs 4 finite",
+    ),
+    "modal rates": ({"modal_velocities": [NAN] * 4}, "modal_velocities"),
+    "color": ({"color": (1.0, 0.0, 0.0)}, "color: needs 4"),
+    "negative damping": ({"stiffness_damping": -1.0}, "stiffness_damping: needs a number ≥ 0"),
+    "words as damping": ({"mass_damping": "low"}, "mass_damping: needs a finite number"),
+    "nan position": ({"position": [0, 0, NAN]}, "position"),
+    "nan rotation": ({"rotation": np.full((3, 3), NAN)}, "rotation"),
+    "nan velocity": ({"initial_velocity": [NAN, 0, 0]}, "initial_velocity"),
+    "nan speed": ({"initial_speed": NAN}, "initial_speed"),
+    "nan angle": ({"initial_angle": NAN}, "initial_angle"),
+    "nan gravity": ({"gravity": [0, NAN, 0]}, "gravity"),
+    "nan damping": ({"mass_damping": NAN}, "mass_damping"),
+    "nan offset": ({"marker_offsets": {"left": [NAN, 0, 0]}}, "marker offset of 'left'"),
+    "nan colour": ({"color": (NAN, 0, 0, 1)}, "color"),
+    "nan spin": ({"spin": NAN}, "must be finite"),
+    "nan θ(t)": ({"spin": motion(NAN)}, "spin: its value at t = 0"),
+    "flat τ(t)": ({"translation": motion(0.0)}, "translation: its value at t = 0: needs 3"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_bad_input_adds_nothing(reduced, case):
+    arguments, message = CASES[case]
+    mbs = exu.SystemContainer().AddSystem()
+    add_rotor(mbs, reduced, name="taken")
+    before = counts(mbs)
+    with pytest.raises((ValueError, TypeError), match=message):
+        add_rotor(mbs, reduced, **arguments)
+    assert counts(mbs) == before
+
+
+def test_rotors_that_cannot_move_so(grounded, needle):
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(ValueError, match="use translation='none' and a prescribed spin"):
+        add_rotor(mbs, grounded)
+    with pytest.raises(ValueError, match="no moment of inertia about its axis"):
+        add_rotor(mbs, needle)
+    assert counts(mbs) == [0] * 5
+
+
+def test_wrong_objects(solid, reduced):
+    with pytest.raises(TypeError, match=r"needs an exudyn\.MainSystem, got SystemContainer"):
+        add_rotor(exu.SystemContainer(), reduced)
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(
+        TypeError, match=r"needs a ReducedRotor, got SolidRotor; SolidRotor\.reduce"
+    ):
+        add_rotor(mbs, solid)
+
+
+def test_sensors_of_what_is_not_there(solid, reduced):
+    mbs = exu.SystemContainer().AddSystem()
+    free = add_rotor(mbs, reduced, name="free", markers={"left": "rigid"})
+    plain = add_rotor(mbs, reduced.without_shapes(), name="plain", spin=1.0)
+    bare = add_rotor(mbs, reduced, name="bare", native_shell=False, spin=1.0)
+    before = counts(mbs)
+    kind = exu.OutputVariableType.Position
+    last = solid.node_count - 1
+    for node in (-1, last + 1):
+        with pytest.raises(ValueError, match=f"mesh nodes 0 … {last}, not {node}"):
+            free.add_node_sensor(node, kind)
+    with pytest.raises(ValueError, match="without shapes"):
+        plain.add_node_sensor(0, kind)
+    with pytest.raises(KeyError, match="'right'; markers: left"):
+        free.add_interface_sensor("right", kind)
+    with pytest.raises(ValueError, match="spins freely"):
+        free.add_drive_torque_sensor()
+    with pytest.raises(ValueError, match="needs the shell"):
+        bare.add_drive_torque_sensor()
+    with pytest.raises(ValueError, match="prescribed spin has no node"):
+        bare.add_spin_sensor()
+    assert counts(mbs) == before
+    mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=bare.nodes["coordinates"], coordinate=0))
