@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -78,10 +79,20 @@ class SpinAxis:
             return cls(values[0], values[1])
         return cls(values)
 
-    @property
+    @cached_property
     def skew(self) -> np.ndarray:
         """``ẽ``, shape (3, 3)."""
-        return skew(self.direction)
+        return read_only(skew(self.direction))
+
+    @cached_property
+    def _along(self) -> np.ndarray:
+        """``e eᵀ``."""
+        return np.outer(self.direction, self.direction)
+
+    @cached_property
+    def _across(self) -> np.ndarray:
+        """``I − e eᵀ``."""
+        return np.eye(3) - self._along
 
     @property
     def plane(self) -> np.ndarray:
@@ -100,12 +111,7 @@ class SpinAxis:
 
     def rotation(self, angle: float) -> np.ndarray:
         """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3)."""
-        e = self.direction
-        return (
-            np.cos(angle) * np.eye(3)
-            + np.sin(angle) * self.skew
-            + (1.0 - np.cos(angle)) * np.outer(e, e)
-        )
+        return self._along + np.cos(angle) * self._across + np.sin(angle) * self.skew
 
     def project(self, points: ArrayLike) -> np.ndarray:
         """Return the feet of the perpendiculars from `points` (…, 3) to the axis."""

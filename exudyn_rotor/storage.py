@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import zipfile
 from os import PathLike
 from pathlib import Path
 
@@ -39,9 +38,12 @@ def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
         data |= {f"shapes.{key}": value for key, value in values.items() if value is not None}
     target = Path(path)
     draft = target.with_name(target.name + ".part")
-    with open(draft, "wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **data)
-    os.replace(draft, target)
+    try:
+        with open(draft, "wb") as file:
+            np.savez_compressed(file, allow_pickle=False, **data)
+        os.replace(draft, target)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 def load_reduced(path: str | PathLike) -> ReducedRotor:
@@ -52,17 +54,25 @@ def load_reduced(path: str | PathLike) -> ReducedRotor:
     ValueError
         When the file is not a reduced rotor of this package, or is damaged.
     """
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            data = {key: file[key] for key in file.files}
-    except (zipfile.BadZipFile, EOFError, ValueError) as error:
-        raise ValueError(f"{path}: not a readable .npz file without pickle ({error})") from error
+    data = _read_arrays(path)
     if str(data.get("format")) != _FORMAT:
         raise ValueError(f"{path}: holds no reduced rotor; write one with ReducedRotor.save")
     try:
         return _rotor_from(data)
     except KeyError as error:
         raise ValueError(f"{path}: the entry {error} is missing; the file is damaged") from error
+
+
+def _read_arrays(path: str | PathLike) -> dict[str, np.ndarray]:
+    with open(path, "rb") as file:
+        try:
+            archive = np.load(file, allow_pickle=False)
+            return {key: archive[key] for key in archive.files}
+        # damage shows as errors of zip, zlib, struct, numpy, the file system, or as a wrong type
+        except Exception as error:
+            raise ValueError(
+                f"{path}: not a readable .npz file without pickle ({error})"
+            ) from error
 
 
 def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:

@@ -1,0 +1,547 @@
+"""Reduction, selection of modes, storage, and the description of the formulations."""
+
+import os
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from point_rotors import SKEW_AXIS, random_arrays, random_rotor
+
+from exudyn_rotor import (
+    ConstantSpeed,
+    Formulation,
+    ModeBasis,
+    PrescribedMotion,
+    ReducedRotor,
+    SolidRotor,
+    SpinAxis,
+    free_modes,
+    select_modes,
+)
+from exudyn_rotor.modes.basis import RIGID
+from exudyn_rotor.nodal import block_diagonal, rotations, translations
+
+EXACT = 1e-12  # sums over six nodes with entries of order 1
+OFF_ORIGIN = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
+
+
+@pytest.fixture(scope="module")
+def rotor() -> SolidRotor:
+    """Return a free random rotor whose centre of mass is off the axis."""
+    return random_rotor(
+        11, OFF_ORIGIN, interfaces={"left": [0, 1, 2], "right": [3, 4, 5]}, triangles=[[0, 1, 2]]
+    )
+
+
+@pytest.fixture(scope="module")
+def reduced(rotor) -> ReducedRotor:
+    return rotor.reduce(5)
+
+
+def grounded_rotor(springs: np.ndarray) -> SolidRotor:
+    """Return a random rotor with springs (3,) to the ground on every node."""
+    arrays = random_arrays(12)
+    arrays["stiffness"] = arrays["stiffness"] + np.diag(np.tile(springs, 6))
+    return SolidRotor.from_matrices(**arrays, axis=SKEW_AXIS)
+
+
+# ------------------------------------------------------------------ basis
+
+
+def test_basis_is_mass_orthonormal_and_diagonal_in_the_stiffness(rotor, reduced):
+    Q = reduced.shapes.matrix
+    np.testing.assert_allclose(Q.T @ (rotor.mass @ Q), np.eye(11), atol=EXACT)
+    np.testing.assert_array_equal(reduced.invariants.M, np.eye(11))
+    squares = reduced.frequencies**2
+    np.testing.assert_allclose(Q.T @ (rotor.stiffness @ Q), np.diag(squares), atol=EXACT * 10)
+    np.testing.assert_allclose(reduced.invariants.K, np.diag(squares), rtol=1e-15)
+    assert reduced.rigid == RIGID
+    assert np.all(np.diff(reduced.frequencies[6:]) >= 0.0)
+    assert reduced.dropped == ()
+
+
+def test_rigid_columns_have_no_stiffness(reduced):
+    np.testing.assert_array_equal(reduced.frequencies[:6], 0.0)
+    assert reduced.frequencies[6] > 0.1
+
+
+def test_modes_keep_their_frequencies(rotor, reduced):
+    expected = free_modes(rotor, 5).frequencies
+    np.testing.assert_allclose(reduced.frequencies[6:], expected, rtol=EXACT)
+
+
+def test_invariants_are_about_the_center_of_mass(rotor, reduced):
+    np.testing.assert_array_equal(reduced.invariants.center, 0.0)
+    np.testing.assert_allclose(reduced.center_of_mass, rotor.center_of_mass, rtol=1e-15)
+    shape = reduced.shapes.matrix
+    momentum = (rotor.nodes - rotor.center_of_mass).T @ rotor.mass[::3, ::3] @ shape[::3]
+    np.testing.assert_allclose(reduced.invariants.P[:, 0, :], momentum, atol=EXACT)
+
+
+def test_mode_mass_is_the_mass_of_the_modes_alone(rotor):
+    modes = np.random.default_rng(3).normal(size=(18, 4))  # not orthogonal to rigid motions
+    reduced = rotor.reduce(modes)
+    Q = reduced.shapes.matrix
+    share = np.linalg.lstsq(np.hstack([modes, Q[:, :6]]), Q, rcond=None)[0][:4]
+    expected = share.T @ (modes.T @ (rotor.mass @ modes)) @ share
+    np.testing.assert_allclose(reduced.mode_mass, expected, atol=EXACT)
+
+
+def test_dependent_columns_are_dropped_and_named(rotor):
+    modes = free_modes(rotor, 3).matrix
+    turned = rotations(rotor.nodes, np.zeros(3))[:, :1]
+    columns = np.column_stack([modes, 2.0 * modes[:, 1], turned, modes[:, 0] - modes[:, 2]])
+    reduced = rotor.reduce(columns)
+    assert reduced.dropped == ("column 4", "column 5", "column 6")
+    expected = rotor.reduce(3)
+    np.testing.assert_allclose(reduced.frequencies, expected.frequencies, rtol=EXACT)
+
+
+def test_shares_of_the_modes_skip_what_is_dropped(rotor):
+    modes = np.random.default_rng(4).normal(size=(18, 3))
+    repeated = rotor.reduce(modes[:, [0, 0, 1, 2]])
+    assert repeated.dropped == ("column 2",)
+    expected = rotor.reduce(modes).mode_mass
+    np.testing.assert_allclose(repeated.mode_mass, expected, atol=EXACT)
+
+
+def test_stress_of_the_modes_follows_the_change_of_basis(rotor):
+    """For any linear stress without a share of rigid motions."""
+    rigid = np.hstack([translations(6), rotations(rotor.nodes, np.zeros(3))])
+    elastic = np.eye(18) - rigid @ np.linalg.pinv(rigid)
+    recovery = np.random.default_rng(6).normal(size=(36, 18)) @ elastic
+    modes = np.random.default_rng(5).normal(size=(18, 3))[:, [0, 0, 1, 2]]
+    basis = ModeBasis(modes, ("a", "b", "c", "d"), rotor.nodes, None, stress_of(recovery, modes))
+    shapes = rotor.reduce(basis).shapes
+    expected = stress_of(recovery, shapes.matrix)
+    np.testing.assert_allclose(shapes.stress, expected, atol=EXACT * np.abs(expected).max())
+
+
+def stress_of(recovery: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    return (recovery @ columns).reshape(6, 6, -1)
+
+
+def test_nearly_dependent_columns_become_orthogonal_to_full_precision(rotor):
+    modes = free_modes(rotor, 3).matrix
+    near = np.column_stack([modes[:, 0], modes[:, 0] + 1e-6 * modes[:, 1], modes[:, 2]])
+    Q = rotor.reduce(near).shapes.matrix
+    np.testing.assert_allclose(Q.T @ (rotor.mass @ Q), np.eye(9), atol=EXACT)
+
+
+def test_rank_tolerance_decides_what_is_new(rotor):
+    modes = free_modes(rotor, 2).matrix
+    columns = np.column_stack([modes[:, 0], modes[:, 0] + 1e-4 * modes[:, 1]])
+    assert rotor.reduce(columns).dropped == ()
+    assert rotor.reduce(columns, rank_tolerance=1e-3).dropped == ("column 2",)
+
+
+def test_nodes_on_the_axis_have_no_spin():
+    nodes = [[0, 0, 0], [0, 0, 0.3], [0, 0, 0.7]]
+    springs = np.zeros((9, 9))
+    springs[2, 2] = springs[5, 5] = 10.0
+    springs[2, 5] = springs[5, 2] = -10.0
+    rotor = SolidRotor.from_matrices(np.eye(9), springs, nodes, "z")
+    stretch = np.eye(9)[:, 5:6] - np.eye(9)[:, 2:3]
+    reduced = rotor.reduce(stretch)
+    assert "spin" in reduced.dropped
+    with pytest.raises(ValueError, match="no moment of inertia about its axis"):
+        select_modes(reduced, Formulation("none", "free"))
+    assert "spin" not in select_modes(reduced, Formulation("none", 10.0)).labels
+
+
+def test_no_modes_make_a_rigid_rotor(rotor):
+    rigid = rotor.reduce(0)
+    assert rigid.labels == RIGID
+    with pytest.raises(ValueError, match="reduced basis is empty"):
+        grounded_rotor(np.ones(3)).reduce(0)
+
+
+def test_modes_of_another_mesh_are_refused(rotor):
+    other = free_modes(random_rotor(13), 2)
+    with pytest.raises(ValueError, match="from another mesh"):
+        rotor.reduce(other)
+    fewer = ModeBasis(np.eye(9)[:, :1], ("one",), nodes=np.eye(3))
+    with pytest.raises(ValueError, match="3 nodes in the basis, 6 in the rotor"):
+        rotor.reduce(fewer)
+
+
+@pytest.mark.parametrize("modes", ["three", 2.0, True])
+def test_other_kinds_of_modes_are_refused(rotor, modes):
+    with pytest.raises(TypeError, match="expected a number of free eigenmodes"):
+        rotor.reduce(modes)
+
+
+def test_columns_of_another_size_are_refused(rotor):
+    with pytest.raises(ValueError, match=r"shape \(9, 2\)"):
+        rotor.reduce(np.ones((9, 2)))
+
+
+def test_stress_without_recovery_is_refused(rotor):
+    with pytest.raises(ValueError, match="no stress recovery"):
+        rotor.reduce(2, stress=True)
+
+
+# ------------------------------------------------------------------ selection
+
+
+def tau_rows(formulation: Formulation, axis: SpinAxis) -> np.ndarray:
+    """Return the mesh directions in which the frame's translation is unknown."""
+    first, second = axis.plane.T
+    return np.array([first, second, axis.direction])[: formulation.translation_count]
+
+
+@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+@pytest.mark.parametrize("spin", ["free", 10.0])
+def test_selection_is_a_tisserand_frame(rotor, reduced, translation, spin):
+    formulation = Formulation(translation, spin)
+    selection = select_modes(reduced, formulation)
+    shape = reduced.shapes.matrix @ selection.T
+    scale = np.sqrt(rotor.total_mass)
+
+    held = translations(6) @ tau_rows(formulation, rotor.axis).T
+    np.testing.assert_allclose(held.T @ (rotor.mass @ shape), 0.0, atol=EXACT * scale)
+    turned = block_diagonal(rotor.axis.skew, 6) @ (rotor.nodes - selection.origin).ravel()
+    np.testing.assert_allclose(turned @ (rotor.mass @ shape), 0.0, atol=EXACT * scale)
+    np.testing.assert_allclose(selection.invariants.g, 0.0, atol=EXACT * scale)
+    np.testing.assert_allclose(
+        selection.T.T @ selection.T, np.eye(selection.T.shape[1]), atol=1e-14
+    )
+    np.testing.assert_allclose(selection.invariants.M, np.eye(len(selection.labels)), atol=EXACT)
+    if translation == "free":
+        np.testing.assert_array_equal(selection.invariants.S, 0.0)
+        np.testing.assert_array_equal(selection.invariants.center, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("formulation", "rigid"),
+    [
+        (Formulation("free"), RIGID[4:]),
+        (Formulation("in-plane"), (RIGID[2], *RIGID[4:])),
+        (Formulation("none"), (*RIGID[:3], *RIGID[4:])),
+        (Formulation("none", 5.0), (*RIGID[:3], *RIGID[4:])),
+        (Formulation("none", 5.0, drive="elastic"), RIGID),
+        (Formulation("free", 5.0, drive="elastic"), RIGID[3:]),
+    ],
+)
+def test_each_formulation_has_the_rigid_modes_that_its_frame_lacks(reduced, formulation, rigid):
+    selection = select_modes(reduced, formulation)
+    assert selection.labels[: len(rigid)] == rigid
+    assert len(selection.labels) == len(rigid) + 5
+    assert selection.invariants.size == len(selection.labels)
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_selection_and_frame_span_what_the_reduced_rotor_spans(rotor, reduced, translation):
+    formulation = Formulation(translation)
+    selection = select_modes(reduced, formulation)
+    spin = block_diagonal(rotor.axis.skew, 6) @ (rotor.nodes - selection.origin).ravel()
+    frame = np.column_stack([translations(6) @ tau_rows(formulation, rotor.axis).T, spin])
+    whole = np.column_stack([frame, reduced.shapes.matrix @ selection.T])
+    assert np.linalg.matrix_rank(whole) == reduced.size == whole.shape[1]
+    assert np.linalg.matrix_rank(np.column_stack([whole, reduced.shapes.matrix])) == reduced.size
+
+
+def test_origin_of_the_frame(rotor, reduced):
+    free, fixed = (select_modes(reduced, Formulation(name)) for name in ("free", "none"))
+    np.testing.assert_array_equal(free.origin, reduced.center_of_mass)
+    foot = rotor.axis.project(rotor.center_of_mass)
+    np.testing.assert_allclose(fixed.origin, foot, rtol=1e-15)
+    np.testing.assert_allclose(fixed.invariants.center, rotor.center_of_mass - foot, atol=EXACT)
+    assert np.linalg.norm(fixed.invariants.center) > 0.1
+
+
+# ------------------------------------------------------------------ grounded rotors
+
+
+def test_fully_grounded_rotor_has_no_rigid_columns():
+    reduced = grounded_rotor(np.array([1.0, 2.0, 3.0])).reduce(6)
+    assert reduced.grounded
+    assert reduced.rigid == ()
+    selection = select_modes(reduced, Formulation("none", 10.0))
+    np.testing.assert_array_equal(selection.T, np.eye(6))
+
+
+def test_partly_grounded_rotor_keeps_its_free_motions():
+    rotor = grounded_rotor(np.array([1.0, 2.0, 0.0]))  # free along z only
+    reduced = rotor.reduce(4)
+    assert reduced.rigid == ("free motion 1",)
+    along = reduced.shapes.matrix[:, 0] * np.sqrt(rotor.total_mass)
+    np.testing.assert_allclose(np.abs(along), np.tile([0.0, 0.0, 1.0], 6), atol=EXACT)
+
+
+@pytest.mark.parametrize(
+    "formulation", [Formulation("free", 1.0), Formulation("in-plane", 1.0), Formulation("none")]
+)
+def test_grounded_rotor_refuses_a_moving_frame(formulation):
+    reduced = grounded_rotor(np.ones(3)).reduce(3)
+    with pytest.raises(ValueError, match="holds this rotor in its own frame"):
+        select_modes(reduced, formulation)
+
+
+# ------------------------------------------------------------------ size, immutability
+
+
+def all_arrays(value, prefix: str = "") -> dict[str, np.ndarray]:
+    """Return every array inside a reduced rotor with its path."""
+    found = {}
+    for field in fields(value):
+        entry, name = getattr(value, field.name), f"{prefix}{field.name}"
+        if isinstance(entry, np.ndarray):
+            found[name] = entry
+        elif hasattr(entry, "__dataclass_fields__"):
+            found |= all_arrays(entry, f"{name}.")
+        elif isinstance(entry, dict):
+            for key, item in entry.items():
+                found |= all_arrays(item, f"{name}.{key}.")
+    return found
+
+
+def test_no_array_can_be_written_to(reduced):
+    selected = select_modes(reduced, Formulation("none")).invariants
+    arrays = all_arrays(reduced) | all_arrays(selected, "selection.")
+    assert {"invariants.K", "shapes.matrix", "interfaces.left.motion"} <= set(arrays)
+    writable = [name for name, array in arrays.items() if array.flags.writeable]
+    assert writable == []
+
+
+def test_no_attribute_can_be_replaced(reduced):
+    with pytest.raises(AttributeError, match="cannot assign"):
+        reduced.grounded = True
+
+
+def test_selection_leaves_the_reduced_rotor_alone(rotor, reduced):
+    select_modes(reduced, Formulation("free"))
+    for name, array in all_arrays(rotor.reduce(5)).items():
+        np.testing.assert_array_equal(all_arrays(reduced)[name], array)
+
+
+def test_size_without_shapes_is_independent_of_the_mesh(rotor, tmp_path):
+    finer = SolidRotor.from_matrices(
+        **random_arrays(14, node_count=40),
+        axis="z",
+        interfaces={"left": [0, 1, 2], "right": [3, 4, 5]},
+    )
+    small, large = (each.reduce(5, keep_shapes=False) for each in (rotor, finer))
+    assert small.shapes is None
+    assert sizes(small) == sizes(large)
+    assert sizes(finer.reduce(5).without_shapes()) == sizes(large)
+    assert max(np.prod(shape) for shape in sizes(large).values()) <= 11**2
+
+
+def sizes(reduced: ReducedRotor) -> dict:
+    return {name: array.shape for name, array in all_arrays(reduced).items()}
+
+
+def test_without_shapes_changes_nothing_else(rotor, reduced):
+    bare = rotor.reduce(5, keep_shapes=False)
+    for name, array in all_arrays(bare).items():
+        np.testing.assert_array_equal(array, all_arrays(reduced)[name])
+
+
+# ------------------------------------------------------------------ storage
+
+
+def assert_identical(actual: ReducedRotor, expected: ReducedRotor) -> None:
+    ours, theirs = all_arrays(actual), all_arrays(expected)
+    assert ours.keys() == theirs.keys()
+    for name, array in ours.items():
+        assert array.dtype == theirs[name].dtype, name
+        assert array.tobytes() == theirs[name].tobytes(), name
+    for name in ("rigid", "dropped", "grounded", "labels"):
+        assert getattr(actual, name) == getattr(expected, name)
+    assert actual.invariants.mass == expected.invariants.mass
+    assert list(actual.interfaces) == list(expected.interfaces)
+    for name, interface in actual.interfaces.items():
+        assert interface.radius == expected.interfaces[name].radius
+
+
+def with_stress(reduced: ReducedRotor) -> ReducedRotor:
+    stress = np.random.default_rng(5).normal(size=(6, 6, reduced.size))
+    return replace(reduced, shapes=replace(reduced.shapes, stress=stress))
+
+
+@pytest.mark.parametrize("change", [lambda r: r, ReducedRotor.without_shapes, with_stress])
+def test_storage_is_lossless(reduced, tmp_path, change):
+    changed = change(reduced)
+    changed.save(tmp_path / "rotor.npz")
+    assert_identical(ReducedRotor.load(tmp_path / "rotor.npz"), changed)
+
+
+def test_storage_of_dropped_columns_and_grounded_rotors(tmp_path):
+    rotor = grounded_rotor(np.array([1.0, 2.0, 0.0]))
+    modes = free_modes(rotor, 2).matrix
+    reduced = rotor.reduce(np.column_stack([modes, modes[:, 0]]), keep_shapes=False)
+    assert reduced.dropped == ("column 3",)
+    reduced.save(str(tmp_path / "rotor"))  # no suffix is added
+    assert_identical(ReducedRotor.load(str(tmp_path / "rotor")), reduced)
+
+
+def saved_arrays(reduced: ReducedRotor, path) -> dict:
+    reduced.save(path)
+    with np.load(path, allow_pickle=False) as file:  # nothing in it needs pickle
+        return {name: file[name] for name in file.files}
+
+
+def test_file_with_an_object_is_refused(reduced, tmp_path):
+    path = tmp_path / "rotor.npz"
+    data = saved_arrays(reduced, path)
+    data["invariants.K"] = np.array([Trap()], dtype=object)
+    np.savez(path, **data)
+    with pytest.raises(ValueError, match="without pickle"):
+        ReducedRotor.load(path)
+    assert not Trap.sprung
+
+
+class Trap:
+    """An object that shows if it was unpickled."""
+
+    sprung = False
+
+    def __reduce__(self):
+        return _spring, ()
+
+
+def _spring():
+    Trap.sprung = True
+
+
+@pytest.mark.parametrize("kept", [0, 100, -200])
+def test_cut_off_file_is_refused(reduced, tmp_path, kept):
+    path = tmp_path / "rotor.npz"
+    reduced.save(path)
+    path.write_bytes(path.read_bytes()[:kept])
+    with pytest.raises(ValueError, match="not a readable"):
+        ReducedRotor.load(path)
+
+
+def test_every_flipped_byte_is_noticed_or_harmless(reduced, tmp_path):
+    path = tmp_path / "rotor.npz"
+    bare = reduced.without_shapes()
+    bare.save(path)
+    whole = path.read_bytes()
+    for place in np.linspace(0, len(whole) - 1, 60).astype(int):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0xFF
+        path.write_bytes(bytes(damaged))
+        try:
+            loaded = ReducedRotor.load(path)
+        except ValueError:
+            continue
+        assert_identical(loaded, bare)
+
+
+@pytest.mark.parametrize("name", ["invariants.K", "mode_mass", "interface1.motion", "axis"])
+def test_file_with_a_missing_entry_is_refused(reduced, tmp_path, name):
+    path = tmp_path / "rotor.npz"
+    data = saved_arrays(reduced, path)
+    del data[name]
+    np.savez(path, **data)
+    with pytest.raises(ValueError, match=f"'{name}' is missing"):
+        ReducedRotor.load(path)
+
+
+def test_other_files_are_refused(tmp_path):
+    path = tmp_path / "other.npz"
+    np.savez(path, K=np.eye(3))
+    with pytest.raises(ValueError, match="holds no reduced rotor"):
+        ReducedRotor.load(path)
+    path.write_text("no archive at all")
+    with pytest.raises(ValueError, match="not a readable"):
+        ReducedRotor.load(path)
+    np.save(tmp_path / "single.npy", np.eye(3))
+    with pytest.raises(ValueError, match=r"single\.npy"):
+        ReducedRotor.load(tmp_path / "single.npy")
+    with pytest.raises(FileNotFoundError):
+        ReducedRotor.load(tmp_path / "missing.npz")
+
+
+def test_interrupted_save_leaves_the_old_file(reduced, tmp_path, monkeypatch):
+    path = tmp_path / "rotor.npz"
+    reduced.save(path)
+    before = path.read_bytes()
+
+    def half_written(file, **data):
+        file.write(b"half")
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", half_written)
+    with pytest.raises(OSError, match="no space"):
+        reduced.without_shapes().save(path)
+    assert path.read_bytes() == before
+    assert os.listdir(tmp_path) == ["rotor.npz"]  # and no rubbish beside it
+
+
+# ------------------------------------------------------------------ formulations
+
+
+def test_run_up_has_the_rates_that_it_says():
+    motion = PrescribedMotion.run_up(10.0, 70.0, 2.0, angle=0.4)
+    assert motion.value(0.0) == 0.4
+    assert motion.rate(-1.0) == motion.rate(0.0) == 10.0
+    assert motion.rate(2.0) == pytest.approx(70.0, rel=1e-15)
+    assert motion.rate(5.0) == motion.rate(2.0)
+    assert motion.value(2.0) == pytest.approx(0.4 + 2.0 * (10.0 + 70.0) / 2, rel=1e-15)
+    assert motion.value(3.0) - motion.value(2.0) == pytest.approx(70.0, rel=1e-14)
+    assert motion.acceleration(0.0) == motion.acceleration(3.0) == 0.0
+    assert motion.acceleration(2.0) == pytest.approx(0.0, abs=1e-12)
+    # fourth-order differences leave step⁴/30 of the fifth derivative (below 1e4) and 1e-11
+    step = 1e-3
+    for t in (-0.5, 0.1, 0.7, 1.0, 1.9, 3.0):
+        for function, derivative in (
+            (motion.value, motion.rate),
+            (motion.rate, motion.acceleration),
+        ):
+            near = function(t + step) - function(t - step)
+            far = function(t + 2 * step) - function(t - 2 * step)
+            assert (8 * near - far) / (12 * step) == pytest.approx(derivative(t), abs=1e-9)
+
+
+def test_constant_speed():
+    motion = ConstantSpeed(20.0, angle=0.5)
+    assert (motion.value(0.1), motion.rate(0.1), motion.acceleration(0.1)) == (2.5, 20.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("formulation", "section", "count"),
+    [
+        (Formulation(), "2.2", 3),
+        (Formulation("in-plane"), "2.3", 2),
+        (Formulation("none"), "2.4", 0),
+        (Formulation("none", 5), "2.5", 0),
+        (Formulation("free", 5.0), "2.2", 3),
+    ],
+)
+def test_section_and_unknowns(formulation, section, count):
+    assert formulation.section == section
+    assert formulation.translation_count == count
+    assert formulation.has_spin == (formulation.spin == "free")
+    assert formulation.is_constant_speed != formulation.has_spin
+
+
+def test_a_number_is_a_constant_speed():
+    assert Formulation("none", 5).spin == ConstantSpeed(5.0)
+    assert Formulation("none", np.float64(5.0)).spin == ConstantSpeed(5.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"translation": "plane"}, "translation 'plane' is unknown"),
+        ({"translation": None}, "translation None is unknown"),
+        ({"spin": "constant"}, "spin 'constant' is unknown"),
+        ({"spin": True}, "spin True is unknown"),
+        ({"spin": float("nan")}, "must be finite"),
+        ({"spin": 1.0, "drive": "soft"}, "drive 'soft' is unknown"),
+        ({"drive": "elastic"}, "needs a prescribed spin"),
+    ],
+)
+def test_wrong_formulations_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        Formulation(**arguments)
+
+
+def test_wrong_prescribed_motions_are_refused():
+    with pytest.raises(TypeError, match="'rate' must be a function of time"):
+        PrescribedMotion(np.sin, 1.0, np.cos)
+    with pytest.raises(ValueError, match="duration must be positive"):
+        PrescribedMotion.run_up(0.0, 10.0, 0.0)
