@@ -9,7 +9,19 @@ from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.twin import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.balance import Unbalance, permissible_unbalance
 from exudyn_rotor.linear.campbell import Campbell, campbell
+from exudyn_rotor.linear.critical import (
+    CriticalSpeedMap,
+    CriticalSpeeds,
+    critical_speed_map,
+    critical_speeds,
+)
+from exudyn_rotor.linear.loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.linear.supports import Support
 from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes
 from exudyn_rotor.modes.selection import select_modes
 from exudyn_rotor.motion import Motion

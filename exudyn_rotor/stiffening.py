@@ -75,6 +75,16 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
     return Stiffening(K2=-_work_hessian(split, -e @ e), B=_work_hessian(split, e))
 
 
+def tilt_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6) of ``K2 = VᵀWV`` at the level 'tilt'.
+
+    The form for full models, where K2 would be a dense matrix of the size of the model.
+    """
+    e = skew(invariants.direction)
+    V, W = _work_factors(_rigid_split(invariants), -e @ e)
+    return V, -W
+
+
 @dataclass(frozen=True, eq=False)
 class _RigidSplit:
     """Columns split into rotation about the centre of mass and a flexible rest."""
@@ -95,7 +105,14 @@ def _rigid_split(invariants: Invariants) -> _RigidSplit:
 
 
 def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:
-    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k).
+    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k)."""
+    V, W = _work_factors(split, field)
+    hessian = V.T @ W @ V
+    return 0.5 * (hessian + hessian.T)
+
+
+def _work_factors(split: _RigidSplit, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6) of the Hessian ``VᵀWV`` of the work of ``M F x`` on u₂.
 
     ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and
     ``f·(φ×ψ) = −φ·Σ f×ψ``.
@@ -103,5 +120,5 @@ def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:
     H = field @ split.J
     own = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
     mixed = -np.einsum("aib,ac,cbk->ik", _EPSILON, field, split.P_flexible)
-    cross = split.rotation.T @ mixed
-    return split.rotation.T @ own @ split.rotation + cross + cross.T
+    W = np.block([[own, np.eye(3)], [np.eye(3), np.zeros((3, 3))]])
+    return np.vstack([split.rotation, mixed]), W

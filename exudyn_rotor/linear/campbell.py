@@ -1,115 +1,306 @@
-"""Eigenfrequencies over spin speed in the rotor frame (Campbell diagram)."""
+"""Eigenfrequencies over spin speed in both frames (Campbell diagram)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 
+import exudyn
 import numpy as np
-import scipy.linalg
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
-from tqdm import tqdm
 
-from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.eigen import FloquetModes, floquet_modes, groups
+from exudyn_rotor.linear.free import free_motions
+from exudyn_rotor.linear.full import FullRotor, Subspace
+from exudyn_rotor.linear.places import Source
+from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.linear.source import linear_source
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.system import LinearRotor
+from exudyn_rotor.linear.tracking import track
+from exudyn_rotor.linear.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
-from exudyn_rotor.stiffening import stiffening as second_order
 
-_DENSE_LIMIT = 1500
+FRAMES = ("inertial", "rotating")
+_FULL_MODES = 10
 
 
+@storable
 @dataclass(frozen=True, eq=False)
-class Campbell:
-    """Eigenfrequencies over spin speed.
+class Campbell(Result):
+    """Eigenfrequencies over spin speed; column j at every speed is the j-th lowest mode.
+
+    In the order of :meth:`tracked`, column j is the same mode at all speeds.
 
     Attributes
     ----------
     speeds : ndarray, shape (s,)
-        Spin speeds [rad/s].
+        Spin speeds Ω [rad/s].
     frequencies_rotating : ndarray, shape (s, k)
-        Natural frequencies seen in the rotor frame, ascending [rad/s].
+        Natural frequencies ν = |Im λ| seen in the rotor frame, ascending [rad/s].
     growth : ndarray, shape (s, k)
-        Real parts of the eigenvalues [1/s]; positive means unstable.
+        Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
+    frequencies_inertial : ndarray, shape (s, k)
+        Frequency of the mode's strongest wave seen from outside, ``|ν + nΩ|`` [rad/s].
+    damping_ratio, log_decrement : ndarray, shape (s, k)
+        ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω.
+    whirl_codes : ndarray of int, shape (s, k)
+        Index into :data:`exudyn_rotor.linear.whirl.WHIRLS`; see :attr:`whirl`.
+    nodal_diameters : ndarray of int, shape (s, k)
+        n where ±n hold at least 70 % of the mode's energy; −1 where none does. Without mode shapes
+        n comes from the interfaces and is 0 or 1.
+    vectors : ndarray, shape (s, c, k)
+        Modes in the coordinates of the rotor frame, unit length; the central harmonic of
+        periodic systems.
+    order : ndarray of int, shape (s, k)
+        ``order[i, j]`` is the column at speed i that continues column j of the first speed.
+    free_motions : tuple of str
+        Rigid motions that nothing holds.
     """
 
     speeds: np.ndarray
     frequencies_rotating: np.ndarray
     growth: np.ndarray
+    frequencies_inertial: np.ndarray
+    damping_ratio: np.ndarray
+    log_decrement: np.ndarray
+    whirl_codes: np.ndarray
+    nodal_diameters: np.ndarray
+    vectors: np.ndarray
+    order: np.ndarray
+    free_motions: tuple[str, ...] = ()
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of every mode, shape (s, k).
+
+        'forward' and 'backward' are seen from outside, relative to the spin; 'mixed' where the
+        weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
+        'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
+        is displaced; 'unknown' where neither shapes nor interfaces show the mode.
+        """
+        return np.array(WHIRLS)[self.whirl_codes]
+
+    def tracked(self) -> Campbell:
+        """Return the same result with columns that follow each mode over the speeds.
+
+        Neighbouring speeds are matched by the mass-weighted modal assurance criterion and the
+        distance in frequency; steps in speed must be small where modes veer.
+        """
+        names = ("frequencies_rotating", "growth", "frequencies_inertial", "damping_ratio",
+                 "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
+        moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
+        moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
+        moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
+        return replace(self, **moved)
+
+    def plot(self, ax: Axes | None = None, frame: str = "inertial") -> Axes:
+        """Draw the tracked modes [Hz] over the spin speed [Hz]; see :mod:`exudyn_rotor.plots`.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            A new figure without a window by default.
+        frame : {'inertial', 'rotating'}
+
+        Raises
+        ------
+        ValueError
+            For an unknown frame.
+        """
+        from exudyn_rotor.linear.diagram import draw_campbell
+
+        if frame not in FRAMES:
+            raise ValueError(f"frame {frame!r} is unknown; use one of {', '.join(FRAMES)}")
+        return draw_campbell(self, ax, frame)
+
+    def table(self, count: int | None = None) -> str:
+        """Return the lowest `count` modes at every speed as lines of text, frequencies in Hz."""
+        hertz = 1.0 / (2.0 * np.pi)
+        lines = [
+            "  speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl",
+        ]
+        shown = slice(0, count)
+        for i, speed in enumerate(self.speeds):
+            for j in range(self.order.shape[1])[shown]:
+                n = self.nodal_diameters[i, j]
+                lines.append(
+                    f"{hertz * speed:12.4g}{j + 1:6d}"
+                    f"{hertz * self.frequencies_rotating[i, j]:18.6g}"
+                    f"{hertz * self.frequencies_inertial[i, j]:15.6g}"
+                    f"{self.damping_ratio[i, j]:15.3g}  {n if n >= 0 else '-'}  {self.whirl[i, j]}"
+                )
+        if self.free_motions:
+            lines.append("free motions: " + ", ".join(self.free_motions))
+        return "\n".join(lines)
 
 
 def campbell(
-    rotor: ReducedRotor | SolidRotor,
+    target: ReducedRotor | SolidRotor | exudyn.MainSystem,
     speeds: ArrayLike,
     *,
+    supports: Sequence[Support] = (),
+    body: RotorBody | None = None,
+    modes: int | None = None,
     stiffening: str = "tilt",
+    allow_negative: bool = False,
+    tolerance: float = 1e-5,
+    executor: Executor | None = None,
     progress: bool = False,
 ) -> Campbell:
-    """Compute the eigenfrequencies of an unsupported or grounded rotor over spin speed.
+    """Compute the eigenfrequencies of a rotor on supports, or of a scene, over spin speed.
 
     Solves ``(λ²M + λ(D + 2ΩG) + K + Ω²(K2 − C)) x = 0``, the homogeneous Eq. (105) or (109) with
-    centrifugal stiffening, for all modes including the rigid ones. Every conjugate pair counts
-    once, and so does every pair of real eigenvalues.
+    supports and centrifugal stiffening; by Hill's method where supports that stand still differ
+    in their two directions. Every conjugate pair counts once, and so does every pair of real
+    eigenvalues: all modes are found, rigid and repeated ones included, or an error is raised.
 
     Parameters
     ----------
-    rotor : ReducedRotor or SolidRotor
-        The full model is solved densely and may have up to 1500 degrees of freedom.
+    target : ReducedRotor, SolidRotor or exudyn.MainSystem
+        A SolidRotor of more than 600 degrees of freedom is solved for its lowest modes, each
+        checked by the residual of the full equations.
     speeds : array_like, shape (s,)
-        Spin speeds [rad/s].
+        Ascending spin speeds [rad/s].
+    supports : sequence of Support, optional
+        Of a rotor.
+    body : RotorBody, optional
+        The rotor in a scene.
+    modes : int, optional
+        How many of the lowest modes in the rotor frame to keep; all by default, 10 for a large
+        SolidRotor.
     stiffening : {'tilt', 'none'}
+        Centrifugal stiffening; 'none' gives the paper's equations.
+    allow_negative : bool, optional
+        Accept speeds below zero.
+    tolerance : float, optional
+        Relative residual of a large SolidRotor; eigenvalues are about its square.
+    executor : concurrent.futures.Executor, optional
+        Computes the speeds. A large SolidRotor does not use it: its speeds share one subspace.
     progress : bool, optional
         Show a progress bar.
 
     Raises
     ------
+    TypeError
+        If the target, the body or a support is of another kind.
     ValueError
-        If speeds are not finite, or the full model is too large.
+        If speeds are not finite, ascending and non-negative, an interface is unknown, or modes
+        are lost.
     """
+    values = _checked_speeds(speeds, allow_negative)
+    source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
+    count = _checked_count(modes, source)
+    content = WhirlContent.of(source)
+    if isinstance(source, FullRotor):
+        solver = _FullTask(Subspace(source, count, np.abs(values).max()), count, tolerance, content)
+        executor, mass = None, source.invariants.M
+    else:
+        solver, mass = _Task(light(source), count, content), source.at(0.0).M[0]
+    solved = sweep(solver, values, executor=executor, progress=progress, label="Campbell")
+    order = track([entry[0] for entry in solved], values, mass.__matmul__)
+    free = free_motions(target, getattr(source, "supports", ()))
+    return _collected(values, solved, order, free)
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """Solves one speed; picklable, so that processes can do it."""
+
+    source: Source
+    count: int
+    content: WhirlContent
+
+    def __call__(self, speed: float) -> Solved:
+        return _classified(floquet_modes(self.source.at(speed)), speed, self.content, self.count)
+
+
+@dataclass(frozen=True, eq=False)
+class _FullTask:
+    """Solves one speed of a full model in the subspace of all."""
+
+    subspace: Subspace
+    count: int
+    tolerance: float
+    content: WhirlContent
+
+    def __call__(self, speed: float) -> Solved:
+        modes = self.subspace.modes(speed, self.count, self.tolerance)
+        return _classified(modes, speed, self.content, self.count)
+
+
+Solved = tuple[FloquetModes, np.ndarray, np.ndarray, np.ndarray]
+
+
+def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count: int) -> Solved:
+    """Return the modes with inertial frequency, whirl and nodal diameter, each (k,)."""
+    vectors = modes.vectors.astype(complex)
+    for group in groups(modes.values, modes.resolution):
+        if len(group) > 1:
+            vectors[:, :, group] = content.polarised(vectors[:, :, group], modes.orders)
+    found = content.classify(vectors, modes.orders, modes.values.imag, speed)
+    kept = FloquetModes(modes.values[:count], vectors[:, :, :count], modes.orders, modes.resolution)
+    return kept, *(array[:count] for array in found)
+
+
+def _collected(
+    speeds: np.ndarray, solved: list[Solved], order: np.ndarray, free: tuple[str, ...]
+) -> Campbell:
+    modes, inertial, whirl, diameters = zip(*solved, strict=True)
+    # adding zero turns −0 into 0
+    eigenvalues = np.array([entry.values for entry in modes]) + 0.0
+    inertial = np.array(inertial)
+    growth = eigenvalues.real
+    size = np.hypot(growth, inertial)
+    still = size == 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        decrement = np.where(growth == 0.0, 0.0, -2.0 * np.pi * growth / inertial)
+    return Campbell(
+        speeds=speeds,
+        frequencies_rotating=eigenvalues.imag,
+        growth=growth,
+        frequencies_inertial=inertial,
+        damping_ratio=np.where(still, 0.0, -growth / np.where(still, 1.0, size)),
+        log_decrement=decrement,
+        whirl_codes=np.array(whirl, dtype=np.int64),
+        nodal_diameters=np.array(diameters, dtype=np.int64),
+        vectors=np.array([entry.central for entry in modes]),
+        order=order,
+        free_motions=free,
+    )
+
+
+def light(source: Source) -> Source:
+    """Return the source without mode shapes, which workers do not need."""
+    if isinstance(source, LinearRotor):
+        return replace(source, rotor=source.rotor.without_shapes())
+    return source
+
+
+def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
     values = np.atleast_1d(np.asarray(speeds, dtype=float))
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)):
         raise ValueError(f"speeds: needs a list of finite numbers [rad/s], got {speeds!r}")
-    invariants = _invariants(rotor)
-    K2 = second_order(invariants, stiffening).K2
-    M, K, D, G, C = (getattr(invariants, name) for name in ("M", "K", "D", "G", "C"))
-    solved = [
-        _eigenvalues(M, D + 2.0 * speed * G, K + speed**2 * (K2 - C))
-        for speed in tqdm(values, desc="Campbell", disable=not progress)
-    ]
-    eigenvalues = np.array(solved)
-    return Campbell(values, np.abs(eigenvalues.imag), eigenvalues.real)
-
-
-def _invariants(rotor: ReducedRotor | SolidRotor) -> Invariants:
-    """Return dense invariants about the foot of the centre of mass on the axis."""
-    if isinstance(rotor, ReducedRotor):
-        origin = rotor.axis.project(rotor.center_of_mass)
-        return rotor.invariants.moved(origin - rotor.center_of_mass)
-    size = 3 * rotor.node_count
-    if size > _DENSE_LIMIT:
+    if np.any(np.diff(values) <= 0.0):
+        raise ValueError("speeds: must ascend without repetition; sort them, e.g. np.unique")
+    if values[0] < 0.0 and not allow_negative:
         raise ValueError(
-            f"campbell: the full model has {size} degrees of freedom, more than {_DENSE_LIMIT}; "
-            "reduce the rotor first"
+            f"speeds: {values[0]:g} rad/s is negative; pass allow_negative=True if the rotor is "
+            "meant to spin the other way round"
         )
-    origin = rotor.axis.project(rotor.center_of_mass)
-    return Invariants.of(
-        rotor.nodes - origin,
-        rotor.mass.toarray(),
-        rotor.stiffness.toarray(),
-        None if rotor.damping is None else rotor.damping.toarray(),
-        np.eye(size),
-        rotor.axis.direction,
-    )
+    return values
 
 
-def _eigenvalues(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Return one eigenvalue of each pair of ``λ²M + λD + K``, ascending in frequency."""
-    size = len(M)
-    factor = scipy.linalg.cho_factor(M)
-    state = np.block(
-        [
-            [np.zeros((size, size)), np.eye(size)],
-            [-scipy.linalg.cho_solve(factor, K), -scipy.linalg.cho_solve(factor, D)],
-        ]
-    )
-    values = np.linalg.eigvals(state)
-    upper = values[np.argsort(values.imag)][size:]
-    return upper[np.lexsort((upper.real, upper.imag))]
+def _checked_count(modes: int | None, source: Source) -> int:
+    if modes is None:
+        return _FULL_MODES if isinstance(source, FullRotor) else source.size
+    if isinstance(modes, bool) or not isinstance(modes, int | np.integer):
+        raise TypeError(f"modes: needs a whole number, got {modes!r}")
+    if not 1 <= modes <= source.size:
+        raise ValueError(f"modes: {modes} is not between 1 and the {source.size} there are")
+    return int(modes)

@@ -1,0 +1,105 @@
+"""Unbalances, and the balance quality grades of ISO 21940-11.
+
+Source: ISO 21940-11:2016, "Mechanical vibration — Rotor balancing — Part 11: Procedures and
+tolerances for rotors with rigid behaviour", Sect. 5 and 6: grade G = e_per Ω in mm/s, with the
+permissible residual specific unbalance e_per and the highest service speed Ω.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
+    """Return the permissible residual unbalance of a rotor, ``U = G m / Ω`` [kg m].
+
+    Parameters
+    ----------
+    grade : float
+        Balance quality grade G [mm/s]: 2.5 for G 2.5.
+    mass : float
+        Mass of the rotor [kg].
+    speed : float
+        Highest service speed [rad/s].
+
+    Raises
+    ------
+    ValueError
+        If one of them is not a positive number.
+    """
+    for name, value, unit in (("grade", grade, "mm/s"), ("mass", mass, "kg"),
+                              ("speed", speed, "rad/s")):  # fmt: skip
+        if not (np.isfinite(value) and value > 0.0):
+            raise ValueError(f"balance {name}: needs a positive number [{unit}], got {value!r}")
+    return 1e-3 * grade * mass / speed
+
+
+@dataclass(frozen=True)
+class Unbalance:
+    """A small excess mass at a radius: a load ``Ω² U`` that stands still in the rotor frame.
+
+    Parameters
+    ----------
+    at : str, int, or sequence of three floats
+        Interface, mesh node, or the node nearest to a position in mesh coordinates [m]. Where on
+        the radius the mass sits is in the amount already: the load acts on the mean motion of the
+        interface.
+    amount : float
+        Mass times eccentricity U [kg m], positive.
+    angle : float, optional
+        Direction in the rotor frame, from n1 to n2 of :attr:`SpinAxis.plane` [rad].
+
+    Raises
+    ------
+    ValueError
+        If the amount is not positive or a number is not finite.
+    """
+
+    at: str | int | Sequence[float]
+    amount: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.amount) and self.amount > 0.0):
+            raise ValueError(
+                f"unbalance at {self.at!r}: the amount needs a positive number [kg m], got "
+                f"{self.amount!r}; turn it by its angle, leave it out if there is none"
+            )
+        if not np.isfinite(self.angle):
+            raise ValueError(
+                f"unbalance at {self.at!r}: the angle {self.angle!r} is not a finite number [rad]"
+            )
+
+    @classmethod
+    def from_grade(
+        cls,
+        at: str | int | Sequence[float],
+        grade: float,
+        mass: float,
+        speed: float,
+        *,
+        angle: float = 0.0,
+        share: float = 1.0,
+    ) -> Unbalance:
+        """Return the largest unbalance that a balance quality grade permits.
+
+        Parameters
+        ----------
+        at : str, int, or sequence of three floats
+        grade, mass, speed : float
+            See :func:`permissible_unbalance`.
+        angle : float, optional
+            In the rotor frame [rad].
+        share : float, optional
+            Part of the whole in this plane: 0.5 where two tolerance planes lie at equal distances
+            from the centre of mass (ISO 21940-11:2016, Sect. 7).
+        """
+        return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
+
+    @property
+    def vector(self) -> np.ndarray:
+        """Unbalance along (n1, n2, e), rotor frame, shape (3,) [kg m]."""
+        return self.amount * np.array([np.cos(self.angle), np.sin(self.angle), 0.0])

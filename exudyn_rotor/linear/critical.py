@@ -1,0 +1,282 @@
+"""Critical speeds of a rotor, and over the stiffness of its supports.
+
+The equations are in :mod:`exudyn_rotor.linear.resonance`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import exudyn
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import plots
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.full import FullRotor
+from exudyn_rotor.linear.resonance import Resonance, full_resonances, resonances
+from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.linear.source import linear_source
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+
+Target = ReducedRotor | SolidRotor | exudyn.MainSystem
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class CriticalSpeeds(Result):
+    """Critical speeds, ascending.
+
+    Attributes
+    ----------
+    order : float
+        Excitation order p: the excitation has the frequency pΩ in the inertial frame.
+    speeds : ndarray, shape (c,)
+        [rad/s]
+    frequencies_rotating : ndarray, shape (c,)
+        Frequency of the motion in the rotor frame [rad/s].
+    whirl : tuple of str
+        Words of :attr:`Campbell.whirl`; unbalance alone excites no purely backward mode.
+    nodal_diameters : ndarray of int, shape (c,)
+    vectors : ndarray, shape (k, c)
+        Mode shapes in the coordinates of the rotor frame, unit length; the strongest harmonic.
+    """
+
+    order: float
+    speeds: np.ndarray
+    frequencies_rotating: np.ndarray
+    whirl: tuple[str, ...]
+    nodal_diameters: np.ndarray
+    vectors: np.ndarray
+
+    def table(self) -> str:
+        """Return the critical speeds as lines of text."""
+        lines = [f"critical speeds of order {self.order:g}", "  [rad/s]      [Hz]        n  whirl"]
+        for speed, n, word in zip(self.speeds, self.nodal_diameters, self.whirl, strict=True):
+            shown = n if n >= 0 else "-"
+            lines.append(f"  {speed:<11.6g}  {speed / (2.0 * np.pi):<10.6g}  {shown}  {word}")
+        return "\n".join(lines)
+
+
+def critical_speeds(
+    target: Target,
+    *,
+    supports: Sequence[Support] = (),
+    body: RotorBody | None = None,
+    order: float = 1.0,
+    max_speed: float | None = None,
+    nodal_diameters: Sequence[int] = (0, 1),
+    stiffening: str = "tilt",
+    tolerance: float = 1e-5,
+) -> CriticalSpeeds:
+    """Compute the undamped critical speeds of a rotor on supports, or of a scene.
+
+    Damping and the skew part of the supports' stiffness do not take part.
+
+    Parameters
+    ----------
+    target : ReducedRotor, SolidRotor or exudyn.MainSystem
+    supports : sequence of Support, optional
+        Of a rotor.
+    body : RotorBody, optional
+        The rotor in a scene.
+    order : float, optional
+        Excitation order p ≥ 0 in the inertial frame; 1 for unbalance, 0 for a load at rest.
+    max_speed : float, optional
+        Largest speed of interest [rad/s]; needed for a scene, for a large SolidRotor and for
+        supports that depend on the speed: there the zeros are bracketed at 200 speeds up to it,
+        and two of one mode that are closer than a 200th of it may be missed.
+    nodal_diameters : sequence of int, optional
+        Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
+    stiffening : {'tilt', 'none'}
+    tolerance : float, optional
+        Relative residual of a large SolidRotor.
+
+    Raises
+    ------
+    TypeError
+        If the target, the body or a support is of another kind.
+    ValueError
+        For an order or speed that is negative or not finite, a missing `max_speed`, an unknown
+        interface, or harmonics that do not die away.
+    """
+    if not (np.isfinite(order) and order >= 0.0):
+        raise ValueError(f"order: needs a finite number ≥ 0, got {order!r}")
+    if max_speed is not None and not (np.isfinite(max_speed) and max_speed > 0.0):
+        raise ValueError(f"max_speed: needs a finite number > 0 [rad/s], got {max_speed!r}")
+    _ = linear_source(target, body=body, supports=supports, stiffening=stiffening)
+    held = tuple(map(_undamped, [supports] if isinstance(supports, Support) else supports))
+    source = linear_source(target, body=body, supports=held, stiffening=stiffening)
+    waves = _waves(nodal_diameters, order)
+    content = WhirlContent.of(source)
+    if isinstance(source, FullRotor):
+        found = full_resonances(source, order, waves, max_speed, tolerance)
+    else:
+        found = resonances(source, content, order, waves, max_speed)
+    return _collected(found, content, float(order), source.size)
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class CriticalSpeedMap(Result):
+    """Critical speeds over the stiffness of supports.
+
+    Attributes
+    ----------
+    stiffnesses : ndarray, shape (s,)
+        [N/m]
+    speeds : ndarray, shape (s, c)
+        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
+    whirl_codes : ndarray of int, shape (s, c)
+        Index into :data:`exudyn_rotor.linear.whirl.WHIRLS`; −1 where the speed is NaN.
+    order : float
+    """
+
+    stiffnesses: np.ndarray
+    speeds: np.ndarray
+    whirl_codes: np.ndarray
+    order: float
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
+        if ax is None:
+            _, ax = plots.figure()
+        styles = {FORWARD: (plots.COLORS[0], "o"), BACKWARD: (plots.COLORS[1], "v")}
+        for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
+            color, marker = styles.get(int(code), (plots.COLORS[2], "s"))
+            shown = np.where(self.whirl_codes == code, self.speeds, np.nan) / (2.0 * np.pi)
+            lines = ax.loglog(self.stiffnesses, shown, marker, color=color, ms=3.5)
+            lines[0].set_label(WHIRLS[code])
+        ax.set_xlabel("support stiffness [N/m]")
+        ax.set_ylabel(f"critical speed of order {self.order:g} [Hz]")
+        ax.grid(alpha=0.3, which="both")
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
+        return ax
+
+
+def critical_speed_map(
+    target: ReducedRotor | SolidRotor,
+    interfaces: Sequence[str] | str,
+    stiffnesses: ArrayLike,
+    *,
+    supports: Sequence[Support] = (),
+    order: float = 1.0,
+    max_speed: float | None = None,
+    nodal_diameters: Sequence[int] = (1,),
+    stiffening: str = "tilt",
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> CriticalSpeedMap:
+    """Compute the undamped critical speeds over the stiffness of isotropic supports.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+    interfaces : str or sequence of str
+        Where a support of each stiffness is put, the same at all of them.
+    stiffnesses : array_like, shape (s,)
+        Positive [N/m].
+    supports : sequence of Support, optional
+        Further supports that do not change.
+    order, max_speed, nodal_diameters, stiffening
+        See :func:`critical_speeds`.
+    executor : concurrent.futures.Executor, optional
+        Computes the stiffnesses.
+    progress : bool, optional
+        Show a progress bar.
+
+    Raises
+    ------
+    ValueError
+        For stiffnesses that are not positive and finite, or an unknown interface.
+    """
+    values = np.atleast_1d(np.asarray(stiffnesses, dtype=float))
+    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values) & (values > 0.0)):
+        raise ValueError(f"stiffnesses: needs positive finite numbers [N/m], got {stiffnesses!r}")
+    names = (interfaces,) if isinstance(interfaces, str) else tuple(interfaces)
+    options = {
+        "order": order,
+        "max_speed": max_speed,
+        "nodal_diameters": tuple(nodal_diameters),
+        "stiffening": stiffening,
+    }
+    task = partial(_at_stiffness, target, names, tuple(supports), options)
+    found = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
+    most = max(len(entry.speeds) for entry in found)
+    speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
+    for row, entry in enumerate(found):
+        count = len(entry.speeds)
+        speeds[row, :count] = entry.speeds
+        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
+    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), float(order))
+
+
+def _at_stiffness(
+    target: ReducedRotor | SolidRotor,
+    names: tuple[str, ...],
+    supports: tuple[Support, ...],
+    options: dict,
+    stiffness: float,
+) -> CriticalSpeeds:
+    varied = tuple(Support(name, stiffness) for name in names)
+    return critical_speeds(target, supports=supports + varied, **options)
+
+
+def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
+    """Return the signed waves to look for; at order 0 a motion and its conjugate are one."""
+    counts = sorted({int(n) for n in nodal_diameters})
+    if not counts or counts[0] < 0 or counts[-1] > 4:
+        raise ValueError(f"nodal_diameters: needs numbers from 0 to 4, got {nodal_diameters!r}")
+    backward = [-n for n in counts if n > 0 and order > 0.0]
+    return counts + backward
+
+
+def _undamped(support: Support) -> Support:
+    """Return the support without damping and circulatory stiffness."""
+    varies = any(
+        callable(value) or isinstance(value, tuple)
+        for value in (support.stiffness, support.tilt_stiffness)
+    )
+    given = {
+        name: partial(_symmetric_part, support, part)
+        if varies
+        else _symmetric_part(support, part, 0.0)
+        for name, part in (("stiffness", 0), ("tilt_stiffness", 3))
+    }
+    return replace(support, **given, damping=0.0, tilt_damping=0.0)
+
+
+def _symmetric_part(support: Support, start: int, speed: float) -> np.ndarray:
+    block = support.matrices(speed)[0][start : start + 3, start : start + 3]
+    return 0.5 * (block + block.T)
+
+
+def _collected(
+    found: list[Resonance], content: WhirlContent, order: float, size: int
+) -> CriticalSpeeds:
+    words, diameters, rotating, vectors = [], [], [], []
+    for entry in found:
+        strongest = np.argmax(np.linalg.norm(entry.vectors, axis=1))
+        _, code, n = content.classify(
+            entry.vectors[:, :, None], entry.multiples, np.zeros(1), entry.speed
+        )
+        words.append(WHIRLS[code[0]])
+        diameters.append(n[0])
+        rotating.append(abs(entry.multiples[strongest]) * entry.speed)
+        vectors.append(entry.vectors[strongest])
+    return CriticalSpeeds(
+        order=order,
+        speeds=np.array([entry.speed for entry in found]),
+        frequencies_rotating=np.array(rotating),
+        whirl=tuple(words),
+        nodal_diameters=np.array(diameters, dtype=np.int64),
+        vectors=np.array(vectors, dtype=complex).reshape(-1, size).T,
+    )

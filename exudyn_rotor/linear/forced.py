@@ -1,0 +1,221 @@
+"""Steady forced motion of a periodic system, by harmonic balance (Hill's method).
+
+In the rotor frame, loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give
+``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with the equations of :mod:`exudyn_rotor.linear.hill` at λ = iω.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
+
+from exudyn_rotor.linear.hill import harmonics, hill_matrices
+from exudyn_rotor.linear.system import PeriodicSystem
+
+Harmonics = Mapping[int, np.ndarray]
+
+HIGHEST_HARMONIC = 40
+# of matrices scaled to diagonals of order one: rounding leaves 1e-15 of a motion that is free
+_FREE = 1e-12
+_SINGULAR = 1e-14
+# share of a load that may act on a free motion: the rounding of a mesh's own unbalance
+_LOAD_ON_FREE = 1e-6
+
+
+def turning_harmonics(size: int) -> dict[int, np.ndarray]:
+    """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, (3, 3) or twice that, axes (n1, n2, e).
+
+    R turns rotor axes into inertial axes; ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
+    """
+    forward = 0.5 * np.array([[1.0, 1j, 0.0], [-1j, 1.0, 0.0], [0.0, 0.0, 0.0]])
+    terms = {-1: forward.conj(), 0: np.diag([0.0, 0.0, 1.0]).astype(complex), 1: forward}
+    return {n: np.kron(np.eye(size // 3), term) for n, term in terms.items()}
+
+
+def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the harmonics of ``Rᵀ(θ) v`` for v (3,) or (6,) fixed in space; none that is zero."""
+    turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
+    return {n: part for n, part in turned.items() if np.any(part)}
+
+
+def into_inertial_frame(motion: Harmonics) -> dict[int, np.ndarray]:
+    """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
+    turned: dict[int, np.ndarray] = {}
+    for m, part in motion.items():
+        for n, R in turning_harmonics(part.shape[-1]).items():
+            turned[m + n] = turned.get(m + n, 0.0) + part @ R.T
+    return turned
+
+
+def forced_motion(
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rate: float,
+    tolerance: float,
+    driven: Sequence[int] = (),
+) -> dict[int, np.ndarray]:
+    """Return the harmonics X_m (k,) of the steady motion in the rotor frame.
+
+    Harmonics are added until the motion changes by less than `tolerance`, taken relative to the
+    largest harmonic in the norm of the mass matrix.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    loads : mapping of int to ndarray, shape (k,)
+        Harmonics F_n of the load, rotor frame.
+    rate : float
+        Angular frequency ω [rad/s].
+    tolerance : float
+    driven : sequence of int, optional
+        Coordinates whose constant part in the rotor frame a drive keeps at zero: the spin.
+
+    Raises
+    ------
+    ValueError
+        If the harmonics do not converge, or the equations are singular: a load on a motion that
+        nothing holds, or a resonance without any damping.
+    """
+    if system.speed == 0.0:  # θ stands still: all harmonics are one
+        system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)))
+        loads = {0: sum(loads.values())}
+    balance = _Balance(system, loads, rate, list(driven))
+    step = balance.step
+    reach = max(abs(n) for n in loads) + step
+    motion = balance.solved(reach)
+    while step:
+        reach += step
+        if reach > HIGHEST_HARMONIC:
+            raise ValueError(
+                f"the harmonics do not converge: at order {reach - step} the motion still changes "
+                f"by more than {tolerance:g}; the system is close to a parametric instability"
+            )
+        earlier, motion = motion, balance.solved(reach)
+        if _change(system.M[0], earlier, motion) <= tolerance:
+            break
+    return motion
+
+
+def _change(mass: np.ndarray, earlier: Harmonics, motion: Harmonics) -> float:
+    """Return the largest change of a harmonic over the largest harmonic."""
+
+    def norm(x: np.ndarray) -> float:
+        return np.sqrt(max((x.conj() @ mass @ x).real, 0.0))
+
+    largest = max(norm(x) for x in motion.values())
+    change = max(norm(x - earlier.get(n, 0.0 * x)) for n, x in motion.items())
+    return change / largest if largest > 0.0 else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Balance:
+    """The equations for the harmonics of one load."""
+
+    system: PeriodicSystem
+    loads: Harmonics
+    rate: float
+    driven: list[int]
+
+    @cached_property
+    def step(self) -> int:
+        """Common step of the coefficients' harmonics; 0 for a constant system."""
+        coupled = harmonics(self.system, self.system.order)
+        return 0 if len(coupled) == 1 else int(coupled[1] - coupled[0])
+
+    @cached_property
+    def fastest(self) -> float:
+        """The rate that inertia is measured with [rad/s]."""
+        return max(abs(self.rate), abs(self.system.speed))
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """Return s (k,) such that s A s has a diagonal of order one, whatever the units."""
+        system = self.system
+        diagonal = np.abs(np.diag(system.K[0])) + self.fastest**2 * np.abs(np.diag(system.M[0]))
+        return 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Orthonormal columns (k, r) of scaled motions that no stiffness resists, driven ones too.
+
+        Such a motion stays where it is under a load that does not act on it.
+        """
+        scale = self.scale.copy()
+        scale[self.driven] = 0.0
+        scaled = [scale[:, None] * term * scale for term in self.system.K.values()]
+        stack = np.vstack([part for term in scaled for part in (term.real, term.imag)])
+        _, values, vt = np.linalg.svd(stack, full_matrices=False)
+        return vt[values <= _FREE * max(1.0, values[0])].T
+
+    def solved(self, reach: int) -> dict[int, np.ndarray]:
+        """Solve for the harmonics −reach … reach that the loads excite."""
+        motion: dict[int, np.ndarray] = {}
+        waiting = set(self.loads)
+        while waiting:
+            group = [min(waiting)]
+            if self.step:
+                every = range(-reach, reach + 1)
+                group = [n for n in every if (n - group[0]) % self.step == 0]
+            waiting -= set(group)
+            motion |= dict(zip(group, self._solve(np.array(group)), strict=True))
+        return motion
+
+    def _solve(self, orders: np.ndarray) -> np.ndarray:
+        """Return the harmonics (h, k) of one group of coupled ones."""
+        size = self.system.size
+        zero = np.zeros(size, dtype=complex)
+        load = np.array([self.loads.get(n, zero) for n in orders], dtype=complex)
+        M, D, K = hill_matrices(self.system, orders)
+        A = K + 1j * self.rate * D - self.rate**2 * M
+        rates = self.rate + orders * self.system.speed
+        for index in np.flatnonzero(np.abs(rates) <= 1e-12 * self.fastest):
+            rows = slice(index * size, (index + 1) * size)
+            driven = index * size + np.array(self.driven, dtype=int)
+            A[driven, :] = A[:, driven] = 0.0
+            # a spring on what is free changes nothing else
+            spring = self.free / self.scale[:, None]
+            A[rows, rows] += spring @ spring.T
+            load[index] = self._without_free(load[index])
+        scale = np.tile(self.scale, len(orders))
+        return _scaled_solve(A, load.ravel(), scale).reshape(load.shape)
+
+    def _without_free(self, load: np.ndarray) -> np.ndarray:
+        """Return a load (k,) without the rounding that acts on free motions.
+
+        Raises
+        ------
+        ValueError
+            If more than rounding acts on them.
+        """
+        load[self.driven] = 0.0
+        scaled = self.scale * load
+        on_free = self.free.T @ scaled
+        if np.linalg.norm(on_free) > _LOAD_ON_FREE * np.linalg.norm(scaled):
+            raise ValueError(
+                "a constant load acts on a motion that nothing holds: there is no steady state. "
+                "Either a support is missing there, or this is a resonance without any damping"
+            )
+        return (scaled - self.free @ on_free) / self.scale
+
+
+def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Solve ``A x = f`` in scaled unknowns.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is singular to rounding.
+    """
+    matrix = scale[:, None] * A * scale
+    factor, pivots, info = zgetrf(matrix)
+    condition = zgecon(factor, np.abs(matrix).sum(axis=0).max())[0] if info == 0 else 0.0
+    if condition < _SINGULAR:
+        raise ValueError(
+            "the equations are singular: a resonance without any damping; add damping or leave "
+            "this value out"
+        )
+    return scale * zgetrs(factor, pivots, scale * load)[0]

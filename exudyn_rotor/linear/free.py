@@ -1,0 +1,73 @@
+"""Rigid motions of a rotor that neither its supports nor its own stiffness hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from exudyn_rotor.linear.supports import Support, axes_of
+from exudyn_rotor.modes.basis import RIGID, rigid_columns
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+
+# share of the largest rigid-body stiffness, per unit mass, that counts as none
+_HELD = 1e-10
+_ALONE = 1.0 - 1e-6
+
+
+def free_motions(target: object, supports: Sequence[Support]) -> tuple[str, ...]:
+    """Name the rigid motions of a rotor that no spring holds at rest; empty for a scene.
+
+    A motion that is free only together with others is named 'combination of …'.
+    """
+    if isinstance(target, ReducedRotor):
+        names, K = _of_reduced(target, supports)
+    elif isinstance(target, SolidRotor):
+        names, K = _of_solid(target, supports)
+    else:
+        return ()
+    values, vectors = np.linalg.eigh(0.5 * (K + K.T))
+    free = vectors[:, values <= _HELD * max(values.max(initial=0.0), 0.0)]
+    share = np.sum(free**2, axis=1)
+    alone = [name for name, s in zip(names, share, strict=True) if s > _ALONE]
+    partly = [name for name, s in zip(names, share, strict=True) if 1.0 - _ALONE < s <= _ALONE]
+    combination = "combination of " + ", ".join(partly)
+    return (*alone, *(combination,) * (free.shape[1] - len(alone)))
+
+
+def _of_reduced(
+    rotor: ReducedRotor, supports: Sequence[Support]
+) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the free rigid columns and the supports' stiffness on them; they have unit mass."""
+    count = len(rotor.rigid)
+    turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
+    motions = [turn @ rotor.interfaces[s.interface].motion[:, :count] for s in supports]
+    return rotor.rigid, _stiffness(supports, motions, count)
+
+
+def _of_solid(rotor: SolidRotor, supports: Sequence[Support]) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the rigid motions and the stiffness against them, per unit mass."""
+    columns = rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
+    mass = np.einsum("ck,ck->k", columns, rotor.mass @ columns)
+    moving = mass > 1e-12 * rotor.total_mass * np.ptp(rotor.nodes, axis=0).max() ** 2
+    moving[:3] = True
+    columns = columns[:, moving] / np.sqrt(mass[moving])
+    turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
+    motions = [
+        turn @ (rotor.interfaces[s.interface].mean_motion(rotor.node_count) @ columns)
+        for s in supports
+    ]
+    K = _stiffness(supports, motions, columns.shape[1])
+    if rotor.grounded:
+        K = K + columns.T @ (rotor.stiffness @ columns)
+    return tuple(name for name, moves in zip(RIGID, moving, strict=True) if moves), K
+
+
+def _stiffness(
+    supports: Sequence[Support], motions: Sequence[np.ndarray], count: int
+) -> np.ndarray:
+    parts = (
+        U.T @ support.matrices(0.0)[0] @ U for support, U in zip(supports, motions, strict=True)
+    )
+    return sum(parts, np.zeros((count, count)))

@@ -1,0 +1,315 @@
+"""Lowest modes of a full finite-element rotor on supports, Eqs. (104) and (105).
+
+The eigenproblem is projected on a real subspace V that serves all speeds. V begins with the lowest
+modes at rest and grows by the preconditioned residuals of the modes wanted (generalised Davidson
+method), with one factorisation of ``K + αM`` as the preconditioner, until the residual of the full
+equations is small for each. Source: Sleijpen, Booten, Fokkema, Van der Vorst, "Jacobi–Davidson type
+methods for generalized eigenproblems and polynomial eigenproblems", BIT 36 (1996).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.eigen import FloquetModes, floquet_modes
+from exudyn_rotor.linear.supports import Support, axes_of
+from exudyn_rotor.linear.system import LinearRotor
+from exudyn_rotor.linear.whirl import WhirlContent, spread
+from exudyn_rotor.modes.eigen import lanczos_modes
+from exudyn_rotor.modes.factor import SparseCholesky
+from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.stiffening import LEVELS, tilt_factors
+
+_MOST_ROUNDS = 40
+_MOST_COLUMNS = 600
+
+
+def as_reduced(rotor: SolidRotor) -> ReducedRotor:
+    """Return a small solid rotor as a reduced one whose basis is the identity."""
+    size = 3 * rotor.node_count
+    return ReducedRotor(
+        axis=rotor.axis,
+        center_of_mass=rotor.center_of_mass,
+        invariants=_invariants(rotor, rotor.center_of_mass, np.eye(size)),
+        rigid=(),
+        interfaces={
+            name: ReducedInterface(
+                entry.reference,
+                entry.center,
+                entry.radius,
+                entry.mean_motion(rotor.node_count).toarray(),
+            )
+            for name, entry in rotor.interfaces.items()
+        },
+        mode_mass=rotor.mass.toarray(),
+        grounded=rotor.grounded,
+        shapes=ModeShapes(rotor.nodes, np.eye(size), rotor.triangles),
+    )
+
+
+def _invariants(rotor: SolidRotor, origin: np.ndarray, basis: np.ndarray) -> Invariants:
+    matrices = [rotor.mass, rotor.stiffness, rotor.damping]
+    if isinstance(basis, np.ndarray):
+        matrices = [None if X is None else X.toarray() for X in matrices]
+    return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+
+
+@dataclass(frozen=True, eq=False)
+class FullRotor:
+    """A solid rotor with linear supports, unreduced: sparse equations at any spin speed.
+
+    Attributes
+    ----------
+    axis : SpinAxis
+    nodes : ndarray, shape (n, 3)
+        Mesh coordinates [m].
+    supports : tuple of Support
+    motions : tuple of scipy.sparse.csr_array, each (6, 3n)
+        Interface motion of every support along (n1, n2, e).
+    invariants : Invariants
+        Sparse, about the foot of the centre of mass on the axis.
+    tilt : tuple of ndarray, (6, 3n) and (6, 6)
+        V and W of the centrifugal stiffening ``VᵀWV`` per Ω².
+    rotor : SolidRotor
+    """
+
+    axis: SpinAxis
+    nodes: np.ndarray
+    supports: tuple[Support, ...]
+    motions: tuple[sp.csr_array, ...]
+    invariants: Invariants
+    tilt: tuple[np.ndarray, np.ndarray]
+    rotor: SolidRotor
+
+    @classmethod
+    def of(
+        cls, rotor: SolidRotor, supports: Sequence[Support] = (), stiffening: str = "tilt"
+    ) -> FullRotor:
+        """Put a solid rotor on supports.
+
+        Raises
+        ------
+        ValueError
+            For an unknown interface or level of stiffening.
+        """
+        for support in supports:
+            if support.interface not in rotor.interfaces:
+                known = ", ".join(rotor.interfaces) or "none"
+                raise ValueError(
+                    f"support at {support.interface!r}: no such interface; the rotor has: {known}"
+                )
+        if stiffening not in LEVELS:
+            raise ValueError(
+                f"stiffening {stiffening!r} is unknown; use one of {', '.join(LEVELS)}"
+            )
+        origin = rotor.axis.project(rotor.center_of_mass)
+        identity = sp.eye_array(3 * rotor.node_count, format="csr")
+        invariants = _invariants(rotor, origin, identity)
+        V, W = tilt_factors(invariants)
+        turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
+        motions = tuple(
+            sp.csr_array(turn @ rotor.interfaces[s.interface].mean_motion(rotor.node_count))
+            for s in supports
+        )
+        tilt = (V, W if stiffening == "tilt" else 0.0 * W)
+        return cls(rotor.axis, rotor.nodes, tuple(supports), motions, invariants, tilt, rotor)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates 3n."""
+        return self.invariants.size
+
+    def at(self, speed: float) -> None:
+        """Refuse: the equations of a full model are not formed as dense matrices."""
+        raise ValueError(
+            f"the full model has {self.size} degrees of freedom, too many for this analysis; "
+            "reduce the rotor first, e.g. rotor.reduce(30)"
+        )
+
+    def residual(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
+        """Return what modes leave of the equations, per harmonic (3n, k) [N].
+
+        ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C)) X_n + supports`` with ``s = λ + inΩ``.
+        """
+        inv, (V, W) = self.invariants, self.tilt
+        left = {}
+        for n, X in stack.items():
+            rate = values + 1j * n * speed
+            stiffening = V.T @ (W @ (V @ X))
+            left[n] = (
+                inv.M @ (X * rate**2)
+                + (inv.D @ X + 2.0 * speed * (inv.G @ X)) * rate
+                + inv.K @ X
+                + speed**2 * (stiffening - inv.C @ X)
+            )
+        for support, U in zip(self.supports, self.motions, strict=True):
+            damping, stiffness = support.terms(speed)
+            moved = {m: U @ X for m, X in stack.items()}
+            for n, residual in left.items():
+                for m, u in moved.items():
+                    rate = values + 1j * m * speed
+                    force = 0.0
+                    if n - m in stiffness:
+                        force = stiffness[n - m] @ u
+                    if n - m in damping:
+                        force = force + damping[n - m] @ (u * rate)
+                    if np.ndim(force):
+                        residual += U.T @ force
+        return left
+
+    def whirl_sample(self, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool]:
+        """Return points, their motion and the coordinates they use, for WhirlContent."""
+        axes = axes_of(self.axis)
+        nodes = spread(len(self.nodes), most // 2)
+        rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+        points = (self.nodes[nodes] - self.axis.point) @ axes
+        return points, np.kron(np.eye(len(nodes)), axes.T), rows, True
+
+
+class Subspace:
+    """A mass-orthonormal subspace for the modes of a full rotor, which grows as needed.
+
+    Parameters
+    ----------
+    full : FullRotor
+    count : int
+        Number of modes that will be asked for.
+    speed : float
+        Largest spin speed [rad/s], which sets the shift α of the preconditioner.
+    """
+
+    def __init__(self, full: FullRotor, count: int, speed: float) -> None:
+        self.full = full
+        inv = full.invariants
+        held = inv.K
+        for support, U in zip(full.supports, full.motions, strict=True):
+            stiffness = support.matrices(0.0)[0]
+            held = held + U.T @ sp.csr_array(0.5 * (stiffness + stiffness.T)) @ U
+        self._shifted = sp.csr_array(held + _shift(held, inv.M, speed) * inv.M)
+        self._factor = SparseCholesky(self._shifted)
+        self.V = np.zeros((full.size, 0))
+        self._small: LinearRotor | None = None
+        self._projected = {name: np.zeros((0, 0)) for name in ("M", "K", "D", "G", "C")}
+        wanted = min(2 * count + 8, full.size - 1)
+        _, modes = lanczos_modes(self._shifted, inv.M, self._factor.solve, wanted, 1e-6)
+        self.grow(modes)
+
+    def modes(self, speed: float, count: int, tolerance: float) -> FloquetModes:
+        """Return the `count` lowest modes at a spin speed, vectors in all 3n coordinates.
+
+        `tolerance` limits the residual r relative to the mode x: ``rᴴ(K + αM)⁻¹r`` against
+        ``xᴴ(K + αM)x``, both square-rooted.
+
+        Raises
+        ------
+        ValueError
+            If the residual does not fall below the tolerance.
+        """
+        for _ in range(_MOST_ROUNDS):
+            found = self.trial(speed, count)
+            errors, corrections = self.errors(speed, found)
+            if np.all(errors <= tolerance):
+                return found
+            if self.V.shape[1] > _MOST_COLUMNS:
+                break
+            bad = corrections[:, np.repeat(errors > tolerance, corrections.shape[1] // count)]
+            self.grow(np.hstack([bad.real, bad.imag]))
+        raise ValueError(
+            f"full model at {speed:.6g} rad/s: the residual stays at {errors.max():.1e} with "
+            f"{self.V.shape[1]} vectors; ask for fewer modes or give a larger tolerance"
+        )
+
+    @property
+    def projected(self) -> LinearRotor:
+        """The rotor in the basis V, with its supports."""
+        if self._small is None:
+            self._small = self._project()
+        return self._small
+
+    def _project(self) -> LinearRotor:
+        full, rotor = self.full, self.full.rotor
+        inv = full.invariants
+        blocks = {name: X for name, X in self._projected.items()}
+        # as one contiguous matrix, which is many times faster than nine products
+        P = (np.ascontiguousarray(inv.P).reshape(9, -1) @ self.V).reshape(3, 3, -1)
+        invariants = replace(inv, S=inv.S @ self.V, P=P, **blocks)
+        V, W = full.tilt
+        interfaces = {
+            s.interface: ReducedInterface(
+                rotor.interfaces[s.interface].reference,
+                rotor.interfaces[s.interface].center,
+                rotor.interfaces[s.interface].radius,
+                np.kron(np.eye(2), axes_of(full.axis)) @ (U @ self.V),
+            )
+            for s, U in zip(full.supports, full.motions, strict=True)
+        }
+        reduced = ReducedRotor(
+            full.axis, rotor.center_of_mass, invariants, (), interfaces, blocks["M"]
+        )
+        tilt = V @ self.V
+        return LinearRotor(reduced, full.supports, invariants, tilt.T @ W @ tilt)
+
+    def content(self) -> WhirlContent:
+        """Return the circumferential content of the basis V."""
+        points, motion, rows, known = self.full.whirl_sample(800)
+        return WhirlContent.from_points(points, motion @ self.V[rows], known)
+
+    def trial(self, speed: float, count: int) -> FloquetModes:
+        """Return the lowest modes in the present subspace."""
+        modes = floquet_modes(self.projected.at(speed))
+        lowest = modes.vectors[:, :, :count]
+        vectors = np.einsum("cv,hvk->hck", self.V, lowest)
+        return FloquetModes(modes.values[:count], vectors, modes.orders, modes.resolution)
+
+    def errors(self, speed: float, modes: FloquetModes) -> tuple[np.ndarray, np.ndarray]:
+        """Return the relative residual of each mode (k,), and corrections (3n, k h)."""
+        stack = dict(zip(modes.orders.tolist(), modes.vectors, strict=True))
+        left = self.full.residual(speed, modes.values, stack)
+        squared, size, corrections = 0.0, 0.0, []
+        for n, residual in left.items():
+            answer = self._factor.solve(residual.real) + 1j * self._factor.solve(residual.imag)
+            squared = squared + np.einsum("ck,ck->k", residual.conj(), answer).real
+            size = size + np.einsum("ck,ck->k", stack[n].conj(), self._shifted @ stack[n]).real
+            corrections.append(answer)
+        errors = np.sqrt(np.maximum(squared, 0.0) / size)
+        return errors, np.stack(corrections, axis=2).reshape(self.full.size, -1)
+
+    def grow(self, columns: np.ndarray) -> None:
+        """Add directions to V, and their rows and columns to the projected matrices."""
+        inv = self.full.invariants
+        # scaled first, so that rounding can be told from small corrections
+        columns = columns / np.sqrt(np.maximum(_norms(columns, inv.M), 1e-300))
+        for _ in range(3):
+            columns = columns - self.V @ (self.V.T @ (inv.M @ columns))
+            gram = columns.T @ (inv.M @ columns)
+            values, turn = np.linalg.eigh(0.5 * (gram + gram.T))
+            kept = values > 1e-13
+            columns = columns @ (turn[:, kept] / np.sqrt(values[kept]))
+        for name in self._projected:
+            image = getattr(inv, name) @ columns
+            side, corner = self.V.T @ image, columns.T @ image
+            sign = -1.0 if name == "G" else 1.0
+            old = self._projected[name]
+            self._projected[name] = np.block(
+                [[old, side], [sign * side.T, 0.5 * (corner + sign * corner.T)]]
+            )
+        self.V = np.hstack([self.V, columns])
+        self._small = None
+
+
+def _shift(stiffness: sp.csr_array, mass: sp.csr_array, speed: float) -> float:
+    """Return α [1/s²] of the order of the lowest flexible modes; it only steers convergence."""
+    mesh = np.median(stiffness.diagonal()) / np.median(mass.diagonal())
+    elements_across = max(mass.shape[0] / 3.0, 1.0) ** (1.0 / 3.0)
+    return max(speed**2, mesh / (10.0 * elements_across) ** 2)
+
+
+def _norms(columns: np.ndarray, mass: sp.csr_array) -> np.ndarray:
+    return np.einsum("ck,ck->k", columns, mass @ columns)

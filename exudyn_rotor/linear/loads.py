@@ -1,0 +1,164 @@
+"""Loads of forced responses, as harmonics in the rotor frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.linear.balance import Unbalance
+from exudyn_rotor.linear.forced import into_rotor_frame
+from exudyn_rotor.linear.places import At, Place, Source, place
+from exudyn_rotor.linear.supports import FRAMES, axes_of
+
+# rounding leaves this much of the unbalance of a perfectly balanced mesh
+_BALANCED = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicForce:
+    """A force and a moment ``Re(F exp(iωt))`` at a place of the rotor.
+
+    Parameters
+    ----------
+    at : str, int, or sequence of three floats
+        Interface, mesh node, or the node nearest to a position in mesh coordinates [m].
+    force : array_like, shape (2,) or (3,)
+        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [N]. A force of constant
+        size that circles forward is (1, −1j).
+    moment : array_like, shape (2,) or (3,), optional
+        About (n1, n2[, e]), at an interface only [N m].
+    frame : {'inertial', 'rotor'}
+        Whether its direction is fixed in space or in the rotor; it acts on the same material
+        points either way.
+
+    Raises
+    ------
+    ValueError
+        For an unknown frame, a wrong shape, or an entry that is not finite.
+    """
+
+    at: At
+    force: ArrayLike = (0.0, 0.0, 0.0)
+    moment: ArrayLike = (0.0, 0.0, 0.0)
+    frame: str = "inertial"
+
+    def __post_init__(self) -> None:
+        if self.frame not in FRAMES:
+            raise ValueError(f"force frame {self.frame!r} is unknown; use 'inertial' or 'rotor'")
+        label = f"at {self.at!r}"
+        object.__setattr__(self, "force", _vector(self.force, f"force {label}"))
+        object.__setattr__(self, "moment", _vector(self.moment, f"moment {label}"))
+
+    def harmonics(self, source: Source) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load in the rotor frame."""
+        point = place(source, self.at)
+        if point.is_node and np.any(self.moment):
+            raise ValueError(
+                f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
+            )
+        wrench = np.concatenate([self.force, self.moment])
+        parts = {0: wrench} if self.frame == "rotor" else into_rotor_frame(wrench)
+        return {n: _pulled(point, part) for n, part in parts.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class BaseAcceleration:
+    """An acceleration ``Re(a exp(iωt))`` of the ground under all supports, fixed in space.
+
+    The response is the motion relative to the ground: ``f = −Sᵀ Aᵀ τ̈`` (109). The ground's own
+    displacement is ``−a/ω²``.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (2,) or (3,)
+        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [m/s²]. Weight in steady
+        rotation is the acceleration −g at frequency zero.
+
+    Raises
+    ------
+    ValueError
+        For a wrong shape or an entry that is not finite.
+    """
+
+    acceleration: ArrayLike
+
+    def __post_init__(self) -> None:
+        vector = _vector(self.acceleration, "base acceleration")
+        object.__setattr__(self, "acceleration", vector)
+
+    def harmonics(self, source: Source) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load in the rotor frame."""
+        if not hasattr(source, "invariants"):
+            raise ValueError(
+                "base acceleration needs a ReducedRotor with supports; in a scene, put a force on "
+                "the moving parts"
+            )
+        S = axes_of(source.rotor.axis).T @ source.invariants.S
+        return {n: -S.T @ part for n, part in into_rotor_frame(self.acceleration).items()}
+
+
+def unbalance_load(source: Source, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
+    """Return the load (k,) per Ω² of all unbalances, constant in the rotor frame.
+
+    Raises
+    ------
+    ValueError
+        If there is no unbalance at all.
+    """
+    if not unbalances and not (own and _has_own(source)):
+        reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
+        raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
+    load = np.array(source.unit_unbalance, dtype=float) if own else np.zeros(source.size)
+    for unbalance in unbalances:
+        wrench = np.concatenate([unbalance.vector, np.zeros(3)])
+        load += _pulled(place(source, unbalance.at), wrench)
+    return load
+
+
+def total(loads: Sequence[HarmonicForce | BaseAcceleration], source: Source) -> Mapping:
+    """Return the harmonics of the sum of all loads.
+
+    Raises
+    ------
+    ValueError
+        If there is no load or all of them are zero.
+    """
+    harmonics: dict[int, np.ndarray] = {}
+    for load in loads:
+        for n, part in load.harmonics(source).items():
+            harmonics[n] = harmonics.get(n, 0.0) + part
+    if not any(np.any(part) for part in harmonics.values()):
+        raise ValueError(
+            "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
+        )
+    return harmonics
+
+
+def _has_own(source: Source) -> bool:
+    """True when centre of mass or principal axis lies off the spin axis by more than rounding."""
+    if not hasattr(source, "invariants"):
+        return bool(np.any(source.unit_unbalance))
+    inv = source.invariants
+    across = np.eye(3) - np.outer(inv.direction, inv.direction)
+    static, couple = inv.mass * across @ inv.center, across @ inv.J @ inv.direction
+    second = np.trace(inv.J)
+    size = np.sqrt(second / inv.mass)
+    return bool(np.linalg.norm(static) * size + np.linalg.norm(couple) > _BALANCED * second)
+
+
+def _pulled(point: Place, wrench: np.ndarray) -> np.ndarray:
+    """Return the generalised force (k,) of a force and moment (6,) along (n1, n2, e)."""
+    return point.motion.T @ wrench
+
+
+def _vector(value: ArrayLike, name: str) -> np.ndarray:
+    vector = np.atleast_1d(np.asarray(value, dtype=complex))
+    if vector.shape not in ((2,), (3,)) or not np.all(np.isfinite(vector)):
+        raise ValueError(f"{name}: needs two or three finite numbers along (n1, n2[, e])")
+    full = np.zeros(3, dtype=complex)
+    full[: len(vector)] = vector
+    full.flags.writeable = False
+    return full

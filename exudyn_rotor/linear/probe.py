@@ -1,0 +1,210 @@
+"""Exudyn's forces and masses at chosen states of a scene, linearised at one angle of the spin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.body.locking import SPIN
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.formulation import ConstantSpeed
+from exudyn_rotor.motion import Motion
+from exudyn_rotor.stiffening import stiffening as second_order
+
+if TYPE_CHECKING:
+    from exudyn_rotor.linear.scene import LinearScene
+
+_CONFIGURATIONS = exudyn.ConfigurationType
+_STATES = (
+    _CONFIGURATIONS.Initial,
+    _CONFIGURATIONS.Current,
+    _CONFIGURATIONS.StartOfStep,
+    _CONFIGURATIONS.Visualization,
+)
+# root mean square displacement [m] of a difference step: as large as nonlinearity allows, because
+# Exudyn's forces are differences of positions of order 1 m
+_STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
+_CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
+_VELOCITY_STEP = 1e-3  # m/s
+
+
+class Probe:
+    """Exudyn's forces and masses at any state of a scene, spin Ω, beside the rotor's own terms."""
+
+    def __init__(self, scene: LinearScene, speed: float, solver: exudyn.MainSolverStatic) -> None:
+        self.scene, self.speed, self.solver = scene, speed, solver
+        self.mbs = scene.body.mbs
+        body = scene.body
+        self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
+        self.spin = _spin_coordinate(body)
+        self.rotor = np.arange(scene._own.stop)
+        self.step = None
+        self.constant = None
+        if body.motion.is_constant:
+            zero = np.zeros(body.motion.size)
+            self.constant = (
+                body.motion.forces(0.0, zero, zero),
+                *body.motion.jacobian(0.0, zero, zero),
+            )
+
+    def constraints(self, theta: float) -> np.ndarray:
+        """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
+        self._set(theta, np.zeros(len(self.scene.free)), np.zeros(len(self.scene.free)))
+        if not self.solver.GetAEsize():
+            return np.zeros((0, len(self.scene.free)))
+        # the first call clears the matrix that the second one fills
+        self.solver.ComputeJacobianODE2RHS(self.mbs, 0.0, 0.0, 0.0)
+        self.solver.ComputeJacobianAE(self.mbs, 1.0, 0.0, 0.0, False)
+        jacobian = np.array(self.solver.GetSystemJacobian())
+        C = jacobian[len(self.scene.rest) :, self.scene.free] @ self.scene.turn(theta)[0]
+        return C[np.abs(C).max(axis=1) > 1e-14]
+
+    def mass(self) -> np.ndarray:
+        """Return the mass matrix of all but the rotor at the present state, free coordinates."""
+        self.solver.ComputeMassMatrix(self.mbs)
+        full = np.array(self.solver.GetSystemMassMatrix())
+        mass = full[np.ix_(self.scene.free, self.scene.free)]
+        mass[np.ix_(self.rotor, self.rotor)] = 0.0
+        return mass
+
+    def own(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
+        body, size = self.scene.body, len(self.scene.free)
+        form = replace(body.motion.formulation, spin=ConstantSpeed(self.speed, theta))
+        if form.moves_origin:
+            form = replace(form, translation="none")
+        motion = Motion(
+            body.motion.invariants,
+            form,
+            second_order(body.motion.invariants, body.stiffening),
+            orientation=body.motion.orientation,
+            plane=body.motion.free_directions,
+            gravity=body.motion.gravity,
+        )
+        zero = np.zeros(motion.size)
+        by_q, by_v = motion.jacobian(0.0, zero, zero)
+        full = np.zeros((3, size, size))
+        matrices = motion.mass_matrix(0.0, zero), -by_v, -by_q
+        full[(slice(None), *np.ix_(self.rotor, self.rotor))] = matrices
+        return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+
+    def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the forces of all but the rotor's own equations, free coordinates."""
+        q, q_t = self._set(theta, x, v)
+        self.solver.ComputeODE2RHS(self.mbs)
+        total = np.array(self.solver.GetSystemResidual())[: len(q)]
+        total[self.physics] -= self._physics_force(q[self.physics], q_t[self.physics])
+        return total[self.scene.free]
+
+    def _physics_force(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return what the rotor's object in the scene contributes at this state."""
+        body, unknowns = self.scene.body, self.scene.body.layout.unknowns
+        force = np.zeros(body.layout.size)  # locked coordinates are not looked at
+        if self.constant is not None:
+            rest, by_q, by_v = self.constant
+            force[unknowns] = rest + by_q @ q[unknowns] + by_v @ q_t[unknowns]
+            return force
+        t = self.mbs.systemData.GetTime()
+        force[unknowns] = body.motion.forces(t, q[unknowns], q_t[unknowns])
+        return force
+
+    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Put a deviation x of the free coordinates and their velocity v into the scene."""
+        data = self.mbs.systemData
+        q, q_t = self.scene.rest.copy(), np.zeros(len(self.scene.rest))
+        q[self.scene.free] += x
+        q_t[self.scene.free] = v
+        if self.spin is not None:
+            q[self.spin], q_t[self.spin] = theta, self.speed
+        data.SetODE2Coordinates(q)
+        data.SetODE2Coordinates_t(q_t)
+        data.SetTime(theta / self.speed if self.speed else 0.0)
+        if self.solver.GetAEsize():  # as every implicit solver does: some forces rely on it
+            self.solver.ComputeAlgebraicEquations(self.mbs, False)
+        return q, q_t
+
+
+@contextmanager
+def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
+    """Open a scene for probing and leave it as it was."""
+    mbs, settings = scene.body.mbs, exudyn.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.active = False
+    data = mbs.systemData
+    kept = [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
+    solver = exudyn.MainSolverStatic()
+    try:
+        solver.InitializeSolver(mbs, settings)
+        yield Probe(scene, speed, solver)
+    finally:
+        solver.FinalizeSolver(mbs, settings)
+        for state, values, time in kept:
+            data.SetSystemState(values, state)
+            data.SetTime(time, state)
+
+
+def linearised(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, D, K and the residual of y at one angle."""
+    speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
+    T1, T2 = speed * T1, speed**2 * T2
+    x, v = T @ y, T @ y_t + T1 @ y
+    own_M, own_D, own_K, own_force = probe.own(theta)
+    force = probe.force(theta, x, v)
+    M = own_M + probe.mass()
+    residual = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + own_D @ v + own_K @ x - own_force - force
+    sizes = np.sqrt(probe.scene.mass / np.maximum(np.diag(T.T @ M @ T), 1e-300))
+
+    def moved(x_i: np.ndarray) -> np.ndarray:
+        return probe.force(theta, x + x_i, v)
+
+    def pushed(v_i: np.ndarray) -> np.ndarray:
+        return probe.force(theta, x, v + v_i)
+
+    if probe.step is None:
+        probe.step = _chosen_step(moved, T * sizes)
+    rest_K = -_differences(moved, probe.step * T * sizes)[0] / (probe.step * sizes)
+    rest_D = -_differences(pushed, _VELOCITY_STEP * T * sizes)[0] / (_VELOCITY_STEP * sizes)
+    carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
+    return (
+        T.T @ M @ T,
+        T.T @ (2.0 * M @ T1 + own_D @ T + rest_D),
+        T.T @ (M @ T2 + own_D @ T1 + own_K @ T + rest_K + carried),
+        T.T @ residual,
+    )
+
+
+def _differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return central differences along the columns of `moves`, and their curvature error.
+
+    The steps h and 2h are extrapolated; the error is that of h alone.
+    """
+    near, far = (
+        np.array([(function(n * move) - function(-n * move)) / (2 * n) for move in moves.T]).T
+        for n in (1, 2)
+    )
+    error = np.abs(near - far).max() / 3.0 / max(np.abs(near).max(), 1e-300)
+    return near + (near - far) / 3.0, float(error)
+
+
+def _chosen_step(function: Callable, moves: np.ndarray) -> float:
+    """Return the largest step [m] at which the forces are straight enough."""
+    for step in _STEPS:
+        if _differences(function, step * moves)[1] < _CURVATURE:
+            return step
+    return _STEPS[-1]
+
+
+def _spin_coordinate(body: RotorBody) -> int | None:
+    """Return the scene's coordinate θ; None for a prescribed spin without the native shell."""
+    places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
+    if "shell" in body.objects:
+        return places[SPIN]
+    return places[body.formulation.translation_count] if body.formulation.has_spin else None

@@ -1,0 +1,285 @@
+"""Critical speeds: spin speeds at which an excitation meets a natural frequency.
+
+An excitation of order p turns or vibrates with pΩ in the inertial frame: p = 1 is unbalance. A
+mode with the wave n answers at ``ν = (p − n)Ω`` in the rotor frame. There the undamped equations
+are Hermitian and quadratic in Ω,
+
+    [K − Ω² (f²M − 2if G + C − K2)] φ = 0,    f = p − n,
+
+one generalised eigenproblem for all critical speeds: for unbalance of an axisymmetric rotor f = 0
+and ``det K(Ω) = 0``. Supports that stand still and differ in their two directions couple f, f ± 2
+…: the same problem in harmonics. Supports that depend on the speed leave ``H(Ω) φ = 0`` with a
+Hermitian H; the zeros of its eigenvalues over Ω are found by bracketing. Source: Genta, Dynamics
+of Rotating Systems (2005).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import brentq
+
+from exudyn_rotor.linear.eigen import FloquetModes
+from exudyn_rotor.linear.full import FullRotor, Subspace
+from exudyn_rotor.linear.hill import harmonic_step
+from exudyn_rotor.linear.places import Source
+from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.whirl import WhirlContent
+
+# share of a mode's energy that must turn with the excitation
+_SHARE = 0.4
+# a motion whose mean order is below minus this share of the order is the conjugate of another
+_CONJUGATE = 0.25
+_CONVERGED = 1e-9
+_MOST_STEPS = 8
+_SAME = 1e-7
+# share of the largest inertia; an uneven mesh leaves 1e-10 for the spin
+_NO_INERTIA = 1e-6
+# deviation from K − Ω²B, relative to K, that differences in a scene may leave
+_QUADRATIC = 1e-6
+_BRACKETS = 200
+_MOST_ROUNDS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class Resonance:
+    """One critical speed: harmonics (h, c) of its motion at the frequencies `multiples`·Ω."""
+
+    speed: float
+    multiples: np.ndarray
+    vectors: np.ndarray
+
+
+def resonances(
+    source: Source, content: WhirlContent, order: float, waves: Sequence[int], limit: float | None
+) -> list[Resonance]:
+    """Return all critical speeds of dense equations, ascending."""
+    source = _Remembered(source, {})
+    step = harmonic_step(source.at(0.0))
+    found = []
+    if step == 0:
+        for n in waves:
+            found += _kept(_solved(source, np.array([order - n]), limit), content, order, waves)
+    else:
+        for start in {n % step: n for n in waves}.values():
+            found += _converged(source, content, order, waves, order - start, step, limit)
+    return sorted(found, key=lambda entry: entry.speed)
+
+
+def _converged(
+    source: _Remembered,
+    content: WhirlContent,
+    order: float,
+    waves: Sequence[int],
+    center: float,
+    step: int,
+    limit: float | None,
+) -> list[Resonance]:
+    """Add harmonics until the critical speeds do not change any more."""
+    last = None
+    for count in range(2, _MOST_STEPS):
+        multiples = center + step * np.arange(-count, count + 1)
+        found = _kept(_solved(source, multiples, limit), content, order, waves)
+        speeds = np.sort([entry.speed for entry in found])
+        same = last is not None and len(last) == len(speeds)
+        if same and np.all(np.abs(speeds - last) <= _CONVERGED * speeds):
+            return found
+        last = speeds
+    raise ValueError(
+        f"critical speeds: they still change with harmonics up to the {step * (_MOST_STEPS - 1)}th;"
+        " give a max_speed, or use fewer high modes"
+    )
+
+
+def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarray:
+    """Return the Hermitian part of the dynamic stiffness at the frequencies `multiples`·Ω.
+
+    Shape (h k, h k), harmonic by harmonic.
+    """
+    size, rows = system.size, []
+    for f in multiples:
+        row = []
+        for g in multiples:
+            n, rate = round(f - g), 1j * g * system.speed
+            parts = (
+                system.K.get(n, 0.0),
+                rate * system.D.get(n, 0.0),
+                rate**2 * system.M.get(n, 0.0),
+            )
+            row.append(sum(parts) + np.zeros((size, size)))
+        rows.append(row)
+    whole = np.block(rows)
+    return 0.5 * (whole + whole.conj().T)
+
+
+def _solved(source: _Remembered, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
+    """Return every speed with a singular dynamic stiffness, with the motion."""
+    stiffness = _Stiffness(source, multiples)
+    if source.varies(stiffness, limit):
+        pairs = _bracketed(stiffness, _needed(limit, "a system that varies with the speed"))
+    else:
+        at_rest = stiffness(0.0)
+        scale = source.scale(at_rest, limit)
+        pairs = _direct(at_rest, (at_rest - stiffness(scale)) / scale**2)
+    return [
+        Resonance(speed, multiples, vector.reshape(len(multiples), -1))
+        for speed, vector in pairs
+        if limit is None or speed <= limit
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Stiffness:
+    """The dynamic stiffness as a function of the speed."""
+
+    source: Source | _Remembered
+    multiples: np.ndarray
+
+    def __call__(self, speed: float) -> np.ndarray:
+        return dynamic_stiffness(self.source.at(speed), self.multiples)
+
+
+@dataclass(frozen=True, eq=False)
+class _Remembered:
+    """A source that solves for its equations once per speed: linearising a scene is slow."""
+
+    source: Source
+    known: dict[float, PeriodicSystem]
+
+    @property
+    def size(self) -> int:
+        return self.source.size
+
+    def at(self, speed: float) -> PeriodicSystem:
+        if speed not in self.known:
+            self.known[speed] = self.source.at(speed)
+        return self.known[speed]
+
+    def varies(self, stiffness: _Stiffness, limit: float | None) -> bool:
+        """Return whether anything but the spin itself depends on the speed."""
+        if isinstance(self.source, LinearRotor):
+            supports = self.source.supports
+            return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in supports)
+        limit = _needed(limit, "a scene")
+        at_rest, half, full = (stiffness(speed) for speed in (0.0, 0.5 * limit, limit))
+        expected = 0.75 * at_rest + 0.25 * full
+        return np.abs(half - expected).max() > _QUADRATIC * np.abs(at_rest).max()
+
+    def scale(self, at_rest: np.ndarray, limit: float | None) -> float:
+        """Return a speed at which inertia and stiffness are alike, within a scene's range."""
+        if not isinstance(self.source, LinearRotor):
+            return limit
+        return np.sqrt(np.abs(at_rest).max() / np.abs(self.at(0.0).M[0]).max()) or 1.0
+
+
+def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
+    """Solve ``A φ = Ω² B φ`` for positive Ω²; A Hermitian, not negative, B Hermitian.
+
+    Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
+    without any, like the spin, stay at rest.
+    """
+    values, vectors = la.eigh(A)
+    if values[0] < -1e-8 * values[-1]:
+        raise ValueError("critical speeds: a support has a negative stiffness; see campbell")
+    held = values > 1e-12 * values[-1]
+    R, W = vectors[:, ~held], vectors[:, held] / np.sqrt(values[held])
+    inertia, turn = la.eigh(R.conj().T @ B @ R)
+    moving = np.abs(inertia) > _NO_INERTIA * np.abs(B).max()
+    R = R @ turn[:, moving]
+    basis = W - R @ ((R.conj().T @ B @ W) / inertia[moving, None])
+    inverse, shapes = la.eigh(basis.conj().T @ B @ basis)
+    positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
+    found = zip(1.0 / np.sqrt(inverse[positive]), (basis @ shapes[:, positive]).T, strict=True)
+    return [(float(speed), vector) for speed, vector in found]
+
+
+def _bracketed(
+    stiffness: Callable[[float], np.ndarray], limit: float, count: int = _BRACKETS
+) -> list[tuple[float, np.ndarray]]:
+    """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit]."""
+    grid = np.linspace(limit / count, limit, count)
+    branches = np.array([la.eigvalsh(stiffness(speed)) for speed in grid])
+    found = []
+    for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
+        signs = branches[1:, branch] * branches[:-1, branch] < 0.0
+        for i in np.flatnonzero(signs):
+            speed = brentq(
+                lambda s, b=branch: la.eigvalsh(stiffness(s), subset_by_index=[b, b])[0],
+                grid[i],
+                grid[i + 1],
+                xtol=1e-12 * limit,
+                rtol=1e-13,
+            )
+            _, vector = la.eigh(stiffness(speed), subset_by_index=[branch, branch])
+            found.append((float(speed), vector[:, 0]))
+    return found
+
+
+def _kept(
+    found: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
+) -> list[Resonance]:
+    """Keep motions that turn with the excitation; of a motion and its conjugate, one."""
+    kept = []
+    for group in _same_speed(found):
+        multiples = group[0].multiples
+        vectors = np.stack([entry.vectors for entry in group], axis=2)
+        vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(group)), axis=0)
+        if len(group) > 1:
+            vectors = content.polarised(vectors, multiples)
+        seen = multiples[:, None] + content.orders[None, :]
+        energy = content.energies(vectors)
+        whole = np.maximum(content.whole_energy(vectors), 1e-300)
+        meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(
+            np.abs(content.orders), np.abs(waves)
+        )
+        turning = np.sum(energy * meets[..., None], axis=(0, 1))
+        mean = np.einsum("ho,hok->k", seen, energy)
+        for column, entry in enumerate(group):
+            conjugate = mean[column] < -_CONJUGATE * order * whole[column]
+            if turning[column] >= _SHARE * whole[column] and not conjugate:
+                kept.append(Resonance(entry.speed, multiples, vectors[:, :, column]))
+    return kept
+
+
+def _same_speed(found: list[Resonance]) -> list[list[Resonance]]:
+    groups: list[list[Resonance]] = []
+    for entry in sorted(found, key=lambda entry: entry.speed):
+        if groups and entry.speed - groups[-1][-1].speed <= _SAME * entry.speed:
+            groups[-1].append(entry)
+        else:
+            groups.append([entry])
+    return groups
+
+
+def full_resonances(
+    source: FullRotor, order: float, waves: Sequence[int], limit: float | None, tolerance: float
+) -> list[Resonance]:
+    """Solve in a subspace that grows until the full equations hold for each critical speed."""
+    limit = _needed(limit, "a large SolidRotor")
+    subspace = Subspace(source, 10, limit)
+    for _ in range(_MOST_ROUNDS):
+        projected = subspace.projected
+        found = resonances(projected, subspace.content(), order, waves, limit)
+        lifted = [replace(entry, vectors=entry.vectors @ subspace.V.T) for entry in found]
+        wrong = []
+        for entry in lifted:
+            center = len(entry.multiples) // 2
+            orders = np.round(entry.multiples - entry.multiples[center]).astype(int)
+            value = 1j * entry.multiples[center] * entry.speed
+            modes = FloquetModes(np.array([value]), entry.vectors[:, :, None], orders, 0.0)
+            errors, corrections = subspace.errors(entry.speed, modes)
+            if errors[0] > tolerance:
+                wrong += [corrections.real, corrections.imag]
+        if not wrong:
+            return lifted
+        subspace.grow(np.hstack(wrong))
+    raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
+
+
+def _needed(limit: float | None, what: str) -> float:
+    if limit is None:
+        raise ValueError(f"max_speed: {what} needs the largest speed of interest [rad/s]")
+    return limit

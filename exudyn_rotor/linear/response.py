@@ -1,0 +1,302 @@
+"""Unbalance response over speed and harmonic response over frequency.
+
+Both are steady motions: they are reached in time only where the rotor is stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import exudyn
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.balance import Unbalance
+from exudyn_rotor.linear.forced import forced_motion, into_inertial_frame
+from exudyn_rotor.linear.loads import BaseAcceleration, HarmonicForce, total, unbalance_load
+from exudyn_rotor.linear.places import At, Place, Source, places
+from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.source import linear_source
+from exudyn_rotor.linear.supports import FRAMES, Support
+from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+
+Target = ReducedRotor | exudyn.MainSystem
+Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
+
+
+def unbalance_response(
+    target: Target,
+    speeds: ArrayLike,
+    unbalances: Sequence[Unbalance] = (),
+    *,
+    own: bool = True,
+    supports: Sequence[Support] = (),
+    body: RotorBody | None = None,
+    at: Sequence[At] | At | None = None,
+    frame: str = "inertial",
+    stiffening: str = "tilt",
+    tolerance: float = 1e-9,
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> UnbalanceResponse:
+    """Compute the steady motion of an unbalanced rotor over its spin speed.
+
+    The load ``Ω² (h + Σ Uᵀu)`` is constant in the rotor frame; h is the rotor's own (83). So is the
+    motion where no coefficient turns with the rotor; on anisotropic supports it is found in
+    harmonics of the speed, and how many are needed is found by itself.
+
+    Parameters
+    ----------
+    target : ReducedRotor or exudyn.MainSystem
+        A rotor with `supports`, or an assembled scene with its `body`.
+    speeds : array_like, shape (s,)
+        Ascending spin speeds ≥ 0 [rad/s].
+    unbalances : sequence of Unbalance, optional
+        In addition to the rotor's own.
+    own : bool, optional
+        Whether the rotor's own eccentricity counts: that of added point masses, and of the mesh.
+    supports : sequence of Support, optional
+        Of a ReducedRotor.
+    body : RotorBody, optional
+        The rotor in a scene.
+    at : sequence of str, int or position, optional
+        Interfaces and mesh nodes to look at; all interfaces by default.
+    frame : {'inertial', 'rotor'}
+        Axes of the resulting motion.
+    stiffening : {'tilt', 'none'}
+        Centrifugal stiffening.
+    tolerance : float, optional
+        Largest relative change of the motion by further harmonics; smaller harmonics are left out.
+    executor : concurrent.futures.Executor, optional
+        Computes the speeds; see :func:`exudyn_rotor.linear.sweep.sweep`.
+    progress : bool, optional
+        Show a progress bar.
+
+    Raises
+    ------
+    ValueError
+        For speeds that do not ascend or are negative, unknown places, no unbalance at all, or a
+        speed without a steady motion.
+    """
+    values = _ascending(speeds, "speeds", "rad/s")
+    source = _source(target, body, supports, stiffening)
+    _check(frame, tolerance)
+    found = places(source, at)
+    load = unbalance_load(source, _all_of(unbalances, Unbalance, "unbalances"), own)
+    rows = np.array([one.motion for one in found])
+    watch = _Watch(rows, frame, tolerance, _driven(source))
+    task = _UnbalanceTask(_light(source, values), load, watch)
+    motions = sweep(task, values, executor=executor, progress=progress, label="unbalance response")
+    labels = tuple(one.label for one in found)
+    return UnbalanceResponse(
+        labels, *_collected(motions, found, tolerance, _length(source)), frame, values
+    )
+
+
+def harmonic_response(
+    target: Target,
+    frequencies: ArrayLike,
+    loads: Sequence[HarmonicForce | BaseAcceleration] | HarmonicForce | BaseAcceleration,
+    *,
+    speed: float = 0.0,
+    supports: Sequence[Support] = (),
+    body: RotorBody | None = None,
+    at: Sequence[At] | At | None = None,
+    frame: str = "inertial",
+    stiffening: str = "tilt",
+    tolerance: float = 1e-9,
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> HarmonicResponse:
+    """Compute the steady motion under harmonic loads over their frequency, at one spin speed.
+
+    Parameters
+    ----------
+    frequencies : array_like, shape (s,)
+        Ascending angular frequencies ω ≥ 0 of the loads [rad/s].
+    loads : sequence of HarmonicForce or BaseAcceleration
+        All of one frequency, with their complex amplitudes.
+    speed : float, optional
+        Spin speed Ω [rad/s].
+    target, supports, body, at, frame, stiffening, tolerance, executor, progress
+        See :func:`unbalance_response`.
+
+    Raises
+    ------
+    ValueError
+        For frequencies that do not ascend or are negative, unknown places, loads that are all
+        zero, or a frequency without a steady motion.
+    """
+    values = _ascending(frequencies, "frequencies", "rad/s")
+    if not np.isfinite(speed):
+        raise ValueError(f"speed: needs a finite number [rad/s], got {speed!r}")
+    source = _source(target, body, supports, stiffening)
+    _check(frame, tolerance)
+    found = places(source, at)
+    kinds = (HarmonicForce, BaseAcceleration)
+    load = total(_all_of(loads, kinds, "loads"), source)
+    rows = np.array([one.motion for one in found])
+    watch = _Watch(rows, frame, tolerance, _driven(source))
+    task = _HarmonicTask(source.at(speed), load, watch)
+    motions = sweep(task, values, executor=executor, progress=progress, label="harmonic response")
+    labels = tuple(one.label for one in found)
+    collected = _collected(motions, found, tolerance, _length(source))
+    return HarmonicResponse(labels, *collected, frame, values, float(speed))
+
+
+@dataclass(frozen=True, eq=False)
+class _Watch:
+    """What is looked at: rows (p, 6, k) of the places, and how."""
+
+    rows: np.ndarray
+    frame: str
+    tolerance: float
+    driven: tuple[int, ...]
+
+    def motion(
+        self, system: PeriodicSystem, loads: Mapping[int, np.ndarray], rate: float
+    ) -> Motion:
+        """Return the harmonics (p, 6) of the steady motion."""
+        solved = forced_motion(system, loads, rate, self.tolerance, self.driven)
+        seen = {n: self.rows @ x for n, x in solved.items()}
+        if self.frame == "rotor":
+            return seen
+        if system.speed == 0.0:  # rotor and inertial axes are the same at θ = 0
+            return seen
+        return into_inertial_frame(seen)
+
+
+@dataclass(frozen=True, eq=False)
+class _UnbalanceTask:
+    """Steady motion at one speed; picklable."""
+
+    source: LinearRotor | _Tabulated
+    load: np.ndarray
+    watch: _Watch
+
+    def __call__(self, speed: float) -> Motion:
+        if speed == 0.0:  # no load, and nothing that would have to hold the rotor
+            return {0: np.zeros(self.watch.rows.shape[:2])}
+        system = self.source.at(speed)
+        motion = self.watch.motion(system, {0: speed**2 * self.load + 0j}, 0.0)
+        return _folded(motion)
+
+
+@dataclass(frozen=True, eq=False)
+class _HarmonicTask:
+    """Steady motion at one frequency; picklable."""
+
+    system: PeriodicSystem
+    loads: Mapping[int, np.ndarray]
+    watch: _Watch
+
+    def __call__(self, frequency: float) -> Motion:
+        return self.watch.motion(self.system, self.loads, float(frequency))
+
+
+def _folded(motion: Motion) -> Motion:
+    """Return a real periodic motion by its harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
+    folded: dict[int, np.ndarray] = {}
+    for n, part in motion.items():
+        folded[abs(n)] = folded.get(abs(n), 0.0) + (part if n > 0 else part.conj())
+    return folded
+
+
+def _collected(
+    motions: Sequence[Motion], found: Sequence[Place], tolerance: float, length: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
+    orders = sorted({n for motion in motions for n in motion})
+    full = np.zeros((len(motions), len(found), len(orders), 6), dtype=complex)
+    for row, motion in zip(full, motions, strict=True):
+        for n, part in motion.items():
+            row[:, orders.index(n)] = part
+    # a rotation counts as the displacement that it makes at the rotor's radius of gyration
+    sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(0, 1, 3))
+    keep = sizes > tolerance * sizes.max()
+    if not np.any(keep):
+        keep[np.argmin(np.abs(orders))] = True
+    full[:, [one.is_node for one in found], :, 3:] = np.nan
+    return np.array(orders)[keep], full[:, :, keep]
+
+
+def _source(
+    target: Target, body: RotorBody | None, supports: Sequence[Support], stiffening: str
+) -> Source:
+    if isinstance(target, SolidRotor):
+        raise ValueError(
+            "responses need a reduced rotor: rotor.reduce(30) keeps 30 modes, and so the response "
+            "up to about half the frequency of the last one"
+        )
+    return linear_source(target, body=body, supports=supports, stiffening=stiffening)
+
+
+def _driven(source: Source) -> tuple[int, ...]:
+    """Return the coordinate of the rigid spin where no support resists it: the drive does.
+
+    At an eccentric rotor the damping of the bearings brakes the spin by a torque of second order.
+    If the spin were free it would turn until that torque were gone, however small.
+    """
+    if not isinstance(source, LinearRotor) or "spin" not in source.rotor.rigid:
+        return ()
+    held = any(support.matrices(0.0)[0][5, 5] for support in source.supports)
+    return () if held else (source.rotor.rigid.index("spin"),)
+
+
+def _length(source: Source) -> float:
+    """Return the rotor's radius of gyration [m]; one metre where it is unknown."""
+    if not isinstance(source, LinearRotor):
+        return 1.0
+    return float(np.sqrt(np.trace(source.invariants.J) / source.invariants.mass))
+
+
+@dataclass(frozen=True, eq=False)
+class _Tabulated:
+    """Equations of a scene, which cannot leave its process, at the speeds needed."""
+
+    systems: Mapping[float, PeriodicSystem]
+
+    def at(self, speed: float) -> PeriodicSystem:
+        return self.systems[float(speed)]
+
+
+def _light(source: Source, speeds: np.ndarray) -> LinearRotor | _Tabulated:
+    """Return what workers need of a source."""
+    if isinstance(source, LinearRotor):
+        return replace(source, rotor=source.rotor.without_shapes())
+    return _Tabulated({float(speed): source.at(speed) for speed in speeds if speed > 0.0})
+
+
+def _ascending(values: ArrayLike, name: str, unit: str) -> np.ndarray:
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
+        raise ValueError(f"{name}: needs a list of finite numbers [{unit}], got {values!r}")
+    if array[0] < 0.0:
+        raise ValueError(
+            f"{name}: {array.min():g} is negative; give values ≥ 0 [{unit}], and turn the spin "
+            "axis round for the other sense"
+        )
+    if np.any(np.diff(array) <= 0.0):
+        raise ValueError(f"{name}: must ascend without repetition; sort them, e.g. np.unique")
+    return array
+
+
+def _all_of(given: object, kinds: type | tuple[type, ...], name: str) -> list:
+    items = [given] if isinstance(given, kinds) else list(given)
+    for item in items:
+        if not isinstance(item, kinds):
+            raise TypeError(f"{name}: a {type(item).__name__} cannot be used here, got {item!r}")
+    return items
+
+
+def _check(frame: str, tolerance: float) -> None:
+    if frame not in FRAMES:
+        raise ValueError(f"frame {frame!r} is unknown; use 'inertial' or 'rotor'")
+    if not 1e-13 <= tolerance <= 0.1:
+        raise ValueError(f"tolerance: needs a number from 1e-13 to 0.1, got {tolerance!r}")

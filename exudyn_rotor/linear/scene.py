@@ -1,0 +1,331 @@
+"""A scene with a rotor, linearised over one revolution of its steady state.
+
+The unknowns are the rotor's translations in axes that turn with it, its modal coordinates, and the
+coordinates of everything else as they are in the scene: foundations stay inertial. The spin is
+prescribed, θ = Ωt. The rotor's own terms are exact (:class:`exudyn_rotor.Motion` at Ω); those of
+the rest are central differences of Exudyn's forces, with the state turning at Ω, taken at several
+angles of a revolution, so that no angle is frozen.
+
+Neglected: the change of mass matrices and constraint directions along small steady motions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import exudyn
+import numpy as np
+import scipy.linalg
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.floquet import UnconvergedError
+from exudyn_rotor.linear.hill import hill_matrices
+from exudyn_rotor.linear.probe import Probe, linearised, probing
+from exudyn_rotor.linear.supports import axes_of
+from exudyn_rotor.linear.system import PeriodicSystem, Terms
+from exudyn_rotor.nodal import skew
+
+_FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
+_MOST_ITERATIONS = 25
+_NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
+_AT_REST = 1e-3  # share of a motion, or of a difference step, that does not matter
+_UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
+_CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
+
+
+@dataclass(frozen=True, eq=False)
+class LinearScene:
+    """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`.
+
+    Attributes
+    ----------
+    body : RotorBody
+    about : {'steady', 'given'}
+        Motion about which the scene is linearised.
+    free : ndarray of int
+        Coordinates of the scene that are unknowns: the rotor's first.
+    N : ndarray, shape (len(free), k)
+        Motions that the scene's constraints allow.
+    rest : ndarray
+        All coordinates of the given state.
+    """
+
+    body: RotorBody
+    about: str
+    free: np.ndarray
+    N: np.ndarray
+    rest: np.ndarray
+
+    @classmethod
+    def of(cls, mbs: exudyn.MainSystem, body: RotorBody, *, about: str = "steady") -> LinearScene:
+        """Prepare the linearisation of an assembled scene; `mbs` is left as it is.
+
+        Whether and at which speed the rotor spins in `mbs` plays no part.
+
+        Parameters
+        ----------
+        mbs : exudyn.MainSystem
+        body : RotorBody
+            From :func:`exudyn_rotor.add_rotor`.
+        about : {'steady', 'given'}
+            ``'steady'``: for every speed the periodic motion under the scene's loads and the
+            rotor's own unbalance is found first, beginning from the current state, e.g. a static
+            solution; it matters where bearings are nonlinear. ``'given'``: the current state of
+            everything but the rotor, and the rotor undeformed.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a system that is not assembled, a body of another system, a second rotor,
+            coordinates of first order, and constraints that turn with the rotor.
+        """
+        _check(mbs, body)
+        if about not in ("steady", "given"):
+            raise ValueError(f"about {about!r} is unknown; use 'steady' or 'given'")
+        own = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
+        rest = np.array(mbs.systemData.GetODE2Coordinates(), dtype=float)
+        others = np.setdiff1d(np.arange(len(rest)), own)
+        unknowns = own[_without_spin(body)]
+        rest[unknowns[body.motion.formulation.translation_count :]] = 0.0
+        free = np.r_[unknowns, others]
+        scene = cls(body, about, free, np.eye(len(free)), rest)
+        with probing(scene, 0.0) as probe:
+            C = [probe.constraints(angle) for angle in (0.0, 1.0, 2.5)]
+        if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
+            raise ValueError(
+                "linear scene: a constraint turns with the rotor; hold the rotor by springs "
+                "(bearings) instead of joints"
+            )
+        return cls(body, about, free, _nullspace(C[0]), rest)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return self.N.shape[1]
+
+    @property
+    def mass(self) -> float:
+        """Mass of the rotor [kg]."""
+        return self.body.motion.invariants.mass
+
+    @property
+    def _own(self) -> slice:
+        """Where the rotor's modal coordinates stand among the free ones."""
+        return slice(self._count, self._count + self.body.motion.invariants.size)
+
+    @property
+    def _count(self) -> int:
+        """Number of the rotor's translations."""
+        return self.body.motion.formulation.translation_count
+
+    @cached_property
+    def _axes(self) -> np.ndarray:
+        """``(n1, n2, e)`` in mesh axes."""
+        return axes_of(SpinAxis(self.body.motion.invariants.direction))
+
+    @cached_property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
+
+        A moving frame has its origin in the centre of mass; the spin axis is then taken to run
+        through the markers, on the mean.
+        """
+        inv, body = self.body.motion.invariants, self.body
+        load = np.zeros(len(self.free))
+        if self._count and body.markers:
+            points = [_marker_nodes(body, name)[0].mean(axis=0) for name in body.markers]
+            offset = -body.frame.B.T @ np.mean(points, axis=0)
+            across = offset - inv.direction * (inv.direction @ offset)
+            load[: self._count] = self._axes[:, : self._count].T @ (inv.mass * across)
+        load[self._own] = inv.h
+        return self.N.T @ load
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
+
+        In the rotor frame, as its marker moves, the marker's offset included.
+
+        Raises
+        ------
+        KeyError
+            For an interface without a marker.
+        """
+        motion = np.zeros((6, len(self.free)))
+        motion[: self._count, : self._count] = np.eye(self._count)
+        turn = np.kron(np.eye(2), self._axes.T @ self.body.frame.B.T)
+        motion[:, self._own] = turn @ _marker_motion(self.body, name)
+        return motion @ self.N
+
+    def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        motion, c = self.body.motion, self._count
+        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
+        e = skew(motion.invariants.direction)
+        blocks = []
+        for full, turned in ((1.0, A), (0.0, A @ e), (0.0, A @ e @ e)):
+            T = full * np.eye(len(self.free))
+            T[:c, :c] = motion.free_directions.T @ turned @ self._axes[:, :c]
+            blocks.append(T @ self.N)
+        return tuple(blocks)
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s], about the steady motion there.
+
+        Raises
+        ------
+        UnconvergedError
+            Where no steady motion is found, or 192 angles do not resolve the coefficients.
+        """
+        if not np.isfinite(speed):
+            raise ValueError(f"linear scene: the speed must be finite [rad/s], got {speed}")
+        samples = _FIRST_SAMPLES
+        with probing(self, float(speed)) as probe:
+            while samples <= _MOST_SAMPLES:
+                system = _about_steady_motion(probe, samples)
+                if system is not None:
+                    return system
+                samples *= 2
+        raise UnconvergedError(
+            f"linear scene at {speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
+            "resolve the coefficients; is there a stop, contact or friction?"
+        )
+
+
+def _about_steady_motion(probe: Probe, samples: int) -> PeriodicSystem | None:
+    """Linearise about the steady motion, found by Newton's method on its harmonics.
+
+    None where more samples are needed.
+    """
+    scene, speed = probe.scene, probe.speed
+    angles = 2.0 * np.pi * np.arange(samples) / samples
+    orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
+    waves = np.exp(1j * np.outer(angles, orders))
+    Y = np.zeros((len(orders), scene.size), dtype=complex)
+    for _ in range(_MOST_ITERATIONS):
+        motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
+        points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
+        terms = [_terms(*part) for part in _scaled(points)]
+        if any(X is None for X in terms):
+            return None
+        system = PeriodicSystem(speed, *terms)
+        if scene.about == "given":
+            return system
+        residual = waves.conj().T @ np.array([point[3] for point in points]) / samples
+        change, left = _solved(hill_matrices(system, orders)[2], -residual.ravel())
+        change = change.reshape(Y.shape)
+        Y = Y + change
+        metres = np.sqrt(np.diag(system.M[0]) / scene.mass)
+        if np.abs(left.reshape(Y.shape) / metres).max() > _UNHELD * scene.mass:
+            break
+        moved = np.abs(change * metres)
+        if moved.max() < _AT_REST * probe.step:
+            sizes = np.abs(Y * metres).max(axis=1)
+            limit = _AT_REST * max(sizes.max(), probe.step)
+            return system if sizes[[0, 1, -2, -1]].max() <= limit else None
+    raise UnconvergedError(
+        f"linear scene at {speed:g} rad/s: no steady motion found; is there a load that nothing "
+        "holds, or a resonance without damping? about='given' needs no steady motion"
+    )
+
+
+def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve with motions that nothing holds left at rest; return what remains of the load, too."""
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))
+    scaled = scale[:, None] * K * scale
+    found = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
+    answer = scale * found[0]
+    return answer, load - K @ answer
+
+
+def _scaled(points: list[tuple]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    """Yield samples of M, D, K (n, k, k), the scale of coordinates, and what counts as zero."""
+    M, D, K = (np.array([point[i] for point in points]) for i in range(3))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))
+    largest = [np.abs(X * np.outer(scale, scale)).max() for X in (M, D, K)]
+    largest[1] = max(largest[1], np.sqrt(largest[2]))
+    for X, size in zip((M, D, K), largest, strict=True):
+        yield X, scale, size
+
+
+def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> Terms | None:
+    """Return the Fourier terms of samples over a revolution; None where they do not resolve it."""
+    count = len(samples)
+    spectrum = np.fft.fft(samples, axis=0) / count
+    sizes = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2))
+    top = count // 2
+    if sizes[top - 1 : top + 2].max() > _CONVERGED * largest:
+        return None
+    terms = {0: spectrum[0].real}
+    for n in range(1, top - 1):
+        if sizes[n] > _NOISE * largest:
+            terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
+    return terms
+
+
+def _nullspace(C: np.ndarray) -> np.ndarray:
+    """Return orthonormal motions that C allows; coordinates that it leaves alone stay as they are.
+
+    C has shape (constraints, coordinates).
+    """
+    size = C.shape[1]
+    touched = np.flatnonzero(np.abs(C).max(axis=0, initial=0.0) > 1e-14)
+    untouched = np.setdiff1d(np.arange(size), touched)
+    kernel = scipy.linalg.null_space(C[:, touched]) if touched.size else np.zeros((0, 0))
+    N = np.zeros((size, len(untouched) + kernel.shape[1]))
+    N[untouched, np.arange(len(untouched))] = 1.0
+    N[touched, len(untouched) :] = kernel
+    return N
+
+
+def _without_spin(body: RotorBody) -> np.ndarray:
+    """Return the rotor's unknowns among its node coordinates: translations, then modes."""
+    count = body.motion.formulation.translation_count
+    return np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
+
+
+def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return an interface's three virtual nodes (3, 3) and their motion (3, 3, m), shell axes."""
+    nodes = list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"])
+    shell = body.mbs.GetObject(body.objects["shell"])
+    columns = np.asarray(shell["modeBasis"])
+    return (
+        np.reshape(shell["referencePositions"], (-1, 3))[nodes],
+        columns.reshape(len(columns) // 3, 3, -1)[nodes],
+    )
+
+
+def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
+    """Return displacement and rotation (6, m) of an interface, shell axes."""
+    points, columns = _marker_nodes(body, name)
+    mean = columns.mean(axis=0)
+    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
+    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
+    return np.vstack([mean, rotation])
+
+
+def _check(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    if not isinstance(mbs, exudyn.MainSystem):
+        raise TypeError(f"mbs: needs an exudyn.MainSystem, got {type(mbs).__name__}")
+    if not isinstance(body, RotorBody):
+        raise TypeError(
+            f"body: needs the RotorBody that exudyn_rotor.add_rotor returned for the rotor in this "
+            f"system, got {type(body).__name__}"
+        )
+    if body.mbs is not mbs:
+        raise ValueError(f"rotor {body.name!r} belongs to another mbs")
+    if not mbs.systemIsConsistent:
+        raise ValueError("the system is not assembled: call mbs.Assemble() first")
+    if mbs.systemData.ODE1Size():
+        raise ValueError("linear scene: coordinates of first order (ODE1) are not supported")
+    for number in range(mbs.systemData.NumberOfObjects()):
+        item = mbs.GetObject(number)
+        if item["objectType"] != "GenericODE2" or number == int(body.objects["physics"]):
+            continue
+        if str(mbs.GetNode(item["nodeNumbers"][0])["nodeType"]) == "RigidBodyRxyz":
+            raise ValueError(
+                "linear scene: a second rotor in this system; one revolution is a period for one "
+                "spin speed only"
+            )

@@ -1,0 +1,90 @@
+"""What a linear analysis is asked for, as linear equations at any spin speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import exudyn
+
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.full import FullRotor, as_reduced
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.system import LinearRotor
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+
+if TYPE_CHECKING:
+    from exudyn_rotor.linear.scene import LinearScene
+
+# full models up to this size are solved with dense matrices
+DENSE_SIZE = 600
+
+
+def linear_source(
+    target: ReducedRotor | SolidRotor | exudyn.MainSystem,
+    *,
+    body: RotorBody | None = None,
+    supports: Sequence[Support] = (),
+    stiffening: str = "tilt",
+) -> LinearRotor | FullRotor | LinearScene:
+    """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
+
+    Parameters
+    ----------
+    target : ReducedRotor, SolidRotor or exudyn.MainSystem
+        A small SolidRotor (up to 600 degrees of freedom) gives dense equations, too.
+    body : RotorBody, optional
+        The rotor of a scene; only with a MainSystem.
+    supports : sequence of Support, optional
+        Only with a rotor; a scene has its own connectors.
+    stiffening : {'tilt', 'none'}
+        Centrifugal stiffening; a scene has that of its body.
+
+    Raises
+    ------
+    TypeError
+        If the target, the body or a support is of another kind.
+    ValueError
+        For an unknown interface or level of stiffening, or supports given with a scene.
+    """
+    supports = _checked(supports)
+    if isinstance(target, exudyn.MainSystem):
+        return _scene(target, body, supports)
+    if body is not None:
+        raise TypeError("body=: is only for an exudyn.MainSystem, the rotor itself was given")
+    if isinstance(target, ReducedRotor):
+        return LinearRotor.of(target, supports, stiffening)
+    if isinstance(target, SolidRotor):
+        if 3 * target.node_count <= DENSE_SIZE:
+            return LinearRotor.of(as_reduced(target), supports, stiffening)
+        return FullRotor.of(target, supports, stiffening)
+    raise TypeError(
+        "a linear analysis needs a ReducedRotor, a SolidRotor, or an exudyn.MainSystem with "
+        f"body=…, got {type(target).__name__}"
+    )
+
+
+def _checked(supports: Sequence[Support]) -> tuple[Support, ...]:
+    if isinstance(supports, Support):
+        return (supports,)
+    found = tuple(supports)
+    for support in found:
+        if not isinstance(support, Support):
+            raise TypeError(f"supports: expected Support objects, got {type(support).__name__}")
+    return found
+
+
+def _scene(
+    mbs: exudyn.MainSystem, body: RotorBody | None, supports: tuple[Support, ...]
+) -> LinearScene:
+    from exudyn_rotor.linear.scene import LinearScene
+
+    if not isinstance(body, RotorBody):
+        raise TypeError(
+            "a scene needs body=…, the RotorBody that add_rotor returned, "
+            f"got {type(body).__name__}"
+        )
+    if supports:
+        raise ValueError("supports=: are for a rotor; a scene has its own connectors")
+    return LinearScene.of(mbs, body)

@@ -1,0 +1,322 @@
+"""Stability of a rotor on its supports: over the spin speed, and its limits.
+
+The exponents λ are eigenvalues where the equations are constant in the rotor frame (isotropic
+supports, or none at rest), else Floquet exponents (:mod:`exudyn_rotor.linear.floquet`). Growth is
+the largest real part; exact zeros of it, as without damping, count as stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from exudyn_rotor import plots
+from exudyn_rotor.linear import floquet
+from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.linear.source import linear_source
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem, Terms
+
+METHODS = ("auto", "floquet", "hill", "eigen")
+_ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
+_NEUTRAL = 1e-7  # |λ|/Ω of a free rigid motion: a double zero keeps half the digits
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Stability(Result):
+    """Exponents over spin speed.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (s,)
+        Spin speeds [rad/s].
+    exponents : ndarray, shape (s, 2k)
+        λ, the least stable first; real part [1/s], imaginary part [rad/s] in the rotor frame.
+        Where the system is periodic, frequencies are known but for multiples of `base` and lie in
+        (−base/2, base/2].
+    multipliers : ndarray, shape (s, 2k)
+        ``exp(2πλ/base)``; over one revolution where the system is constant; NaN at 0 rad/s.
+    growth : ndarray, shape (s,)
+        Largest real part [1/s].
+    stable : ndarray of bool, shape (s,)
+        No exponent has a real part above ``tolerance · max(Ω, |λ|)`` and round-off.
+    base : ndarray, shape (s,)
+        Frequency of the coefficients [rad/s], 0 where they are constant.
+    tolerance : float
+    """
+
+    speeds: np.ndarray
+    exponents: np.ndarray
+    multipliers: np.ndarray
+    growth: np.ndarray
+    stable: np.ndarray
+    base: np.ndarray
+    tolerance: float
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the growth over the spin speed; unstable speeds are shaded."""
+        axes = plots.figure()[1] if axes is None else axes
+        hertz = self.speeds / (2.0 * np.pi)
+        axes.plot(hertz, self.growth, ".-", color=plots.COLORS[0], lw=1.3)
+        low, high = axes.get_ylim()
+        axes.fill_between(
+            hertz, low, high, where=~self.stable, color=plots.COLORS[1], alpha=0.2, lw=0.0
+        )
+        axes.set_ylim(low, high)
+        axes.axhline(0.0, color="0.3", lw=0.8)
+        axes.set_xlabel("spin speed [Hz]")
+        axes.set_ylabel("growth of the least stable motion [1/s]")
+        axes.grid(alpha=0.3)
+        return axes
+
+    def table(self) -> str:
+        """Return speed, growth, frequency of the least stable motion and verdict as text."""
+        lines = ["speed [rad/s]   growth [1/s]   frequency [rad/s]   verdict"]
+        for speed, exponent, stable in zip(
+            self.speeds, self.exponents[:, 0], self.stable, strict=True
+        ):
+            verdict = "stable" if stable else "unstable"
+            lines.append(
+                f"{speed:13.4f}   {exponent.real:12.5g}   {abs(exponent.imag):17.5g}   {verdict}"
+            )
+        return "\n".join(lines)
+
+
+def stability(
+    target: object,
+    speeds: ArrayLike,
+    *,
+    supports: Sequence[Support] = (),
+    body: object = None,
+    stiffening: str = "tilt",
+    method: str = "auto",
+    tolerance: float = 1e-9,
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> Stability:
+    """Compute the exponents of a rotor over the spin speed.
+
+    Parameters
+    ----------
+    target : ReducedRotor, LinearRotor, LinearScene, exudyn.MainSystem, or with ``at(speed)``
+        ``at(speed)`` returns the :class:`PeriodicSystem` at a speed.
+    speeds : array_like, shape (s,)
+        Spin speeds [rad/s], not negative, ascending.
+    supports : sequence of Support
+        For a ReducedRotor. Without a support that holds it, the rotor's spin is held.
+    body : RotorBody, optional
+        The rotor in a ``MainSystem``.
+    stiffening : {'tilt', 'none'}
+        For a ReducedRotor.
+    method : {'auto', 'floquet', 'hill', 'eigen'}
+        ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
+        where that does not converge.
+    tolerance : float
+        Error of periodic exponents relative to Ω.
+    executor : concurrent.futures.Executor, optional
+        Where the exponents are computed; see :func:`exudyn_rotor.linear.sweep.sweep`.
+    progress : bool
+
+    Raises
+    ------
+    ValueError
+        For bad input, and where `tolerance` is not reached.
+    """
+    values = checked_speeds(speeds)
+    check_method(method, tolerance)
+    source = source_of(target, supports, body, stiffening)
+    systems = [source.at(speed) for speed in values]
+    found = sweep(
+        partial(exponents, method=method, tolerance=tolerance),
+        systems,
+        executor=executor,
+        progress=progress,
+        label="stability",
+    )
+    return _result(values, systems, np.array(found), tolerance)
+
+
+def _result(
+    speeds: np.ndarray, systems: list[PeriodicSystem], found: np.ndarray, tolerance: float
+) -> Stability:
+    base = np.array([abs(floquet.base_frequency(system)) for system in systems])
+    periodic = np.where(base > 0.0, base, speeds)
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        multipliers = np.exp(2.0 * np.pi * found / periodic[:, None])
+    multipliers[periodic == 0.0] = np.nan
+    excess = [
+        excess_growth(row, system, tolerance) for row, system in zip(found, systems, strict=True)
+    ]
+    return Stability(
+        speeds=speeds,
+        exponents=found,
+        multipliers=multipliers,
+        growth=found.real.max(axis=1),
+        stable=np.array(excess) <= 0.0,
+        base=base,
+        tolerance=tolerance,
+    )
+
+
+def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1e-9) -> np.ndarray:
+    """Return the 2k exponents of one system [1/s], descending in their real parts.
+
+    Free rigid motions (``|λ| < 1e-7 Ω``) are returned as zeros.
+    """
+    constant = system.is_constant or system.speed == 0.0
+    if method == "eigen" and not constant:
+        raise ValueError(
+            f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
+            "supports or a foundation); use 'auto', 'hill' or 'floquet'"
+        )
+    if constant and method != "floquet":
+        values = floquet.constant_exponents(system).astype(complex)
+    elif method == "floquet":
+        values = floquet.floquet_exponents(system, tolerance)
+    else:
+        values = _hill(system, tolerance, fall_back=method == "auto")
+    values[np.abs(values) < _NEUTRAL * system.speed] = 0.0
+    return values[np.lexsort((-values.imag, -values.real))]
+
+
+def _hill(system: PeriodicSystem, tolerance: float, fall_back: bool) -> np.ndarray:
+    try:
+        return floquet.hill_exponents(system, tolerance)[0]
+    except floquet.UnconvergedError:
+        if not fall_back:
+            raise
+        return floquet.floquet_exponents(system, tolerance)
+
+
+def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> float:
+    """Return the largest real part above what round-off and truncation can feign."""
+    fastest = np.sqrt(np.abs(np.diag(system.K[0]) / np.diag(system.M[0])).max())
+    margin = tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest
+    return float(np.max(values.real - margin))
+
+
+def stability_threshold(target: object, low: float, high: float, **options) -> float:
+    """Return the speed between `low` and `high` [rad/s] where the stability changes.
+
+    By root finding on the growth, to 1e-8 of `high`. `options` are those of :func:`stability`.
+
+    Raises
+    ------
+    ValueError
+        If both ends are stable, or both unstable.
+    """
+    checked_speeds([low, high])
+    excess = _excess_function(target, options)
+    ends = excess(low), excess(high)
+    if (ends[0] > 0.0) == (ends[1] > 0.0):
+        verdict = "unstable" if ends[0] > 0.0 else "stable"
+        raise ValueError(f"stability: {verdict} at {low:g} as well as at {high:g} rad/s")
+    return float(brentq(excess, low, high, xtol=1e-8 * high))
+
+
+def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
+    """Return the unstable speed ranges, shape (r, 2) [rad/s].
+
+    Every change between two neighbours of `speeds` is found to 1e-8 of the highest speed; a range
+    narrower than their spacing can be missed. A range that is open at the first or last speed ends
+    there. `options` are those of :func:`stability`.
+    """
+    values = checked_speeds(speeds)
+    excess = _excess_function(target, options)
+    unstable = [excess(speed) > 0.0 for speed in values]
+    edges = [values[0]] if unstable[0] else []
+    for i in np.flatnonzero(np.diff(unstable)):
+        edges.append(brentq(excess, values[i], values[i + 1], xtol=1e-8 * values[-1]))
+    edges += [values[-1]] if unstable[-1] else []
+    return np.array(edges).reshape(-1, 2)
+
+
+def _excess_function(target: object, options: dict) -> Callable[[float], float]:
+    method, tolerance = options.pop("method", "auto"), options.pop("tolerance", 1e-9)
+    check_method(method, tolerance)
+    arguments = {"supports": (), "body": None, "stiffening": "tilt"}
+    unknown = set(options) - set(arguments)
+    if unknown:
+        raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
+    source = source_of(target, **(arguments | options))
+
+    def excess(speed: float) -> float:
+        system = source.at(speed)
+        return excess_growth(exponents(system, method, tolerance), system, tolerance)
+
+    return excess
+
+
+@dataclass(frozen=True, eq=False)
+class _HeldSpin:
+    """A rotor whose spin follows θ = Ωt: its coordinate `spin` is left out.
+
+    A spin that nothing holds is neutral, which round-off and unbalance would feign to be unstable.
+    """
+
+    rotor: LinearRotor
+    spin: int
+
+    @property
+    def size(self) -> int:
+        return self.rotor.size - 1
+
+    def at(self, speed: float) -> PeriodicSystem:
+        system = self.rotor.at(speed)
+        return PeriodicSystem(system.speed, *map(self._without, (system.M, system.D, system.K)))
+
+    def _without(self, terms: Terms) -> Terms:
+        return {
+            n: np.delete(np.delete(X, self.spin, axis=0), self.spin, axis=1)
+            for n, X in terms.items()
+        }
+
+
+def source_of(target: object, supports: Sequence[Support], body: object, stiffening: str) -> object:
+    """Return what has ``at(speed)``; a free spin is held."""
+    if hasattr(target, "at"):
+        source = target
+    else:
+        source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
+    if not isinstance(source, LinearRotor) or "spin" not in source.rotor.rigid:
+        return source
+    if any(support.matrices(0.0)[0][5].any() for support in source.supports):
+        return source
+    return _HeldSpin(source, source.rotor.rigid.index("spin"))
+
+
+def checked_speeds(speeds: ArrayLike) -> np.ndarray:
+    """Return speeds as an ascending array of finite numbers ≥ 0."""
+    values = ascending(speeds, "speeds")
+    if values[0] < 0.0:
+        raise ValueError(
+            f"speeds: needs numbers ≥ 0 [rad/s], got {values[0]:g}; turn the spin axis instead"
+        )
+    return values
+
+
+def ascending(values: ArrayLike, name: str) -> np.ndarray:
+    """Return values as an ascending array of finite numbers."""
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
+        raise ValueError(f"{name}: needs a list of finite numbers, got {values!r}")
+    if np.any(np.diff(array) <= 0.0):
+        raise ValueError(f"{name}: needs ascending numbers, got {values!r}")
+    return array
+
+
+def check_method(method: str, tolerance: float) -> None:
+    """Refuse an unknown method and an impossible tolerance."""
+    if method not in METHODS:
+        raise ValueError(f"method {method!r} is unknown; use one of {', '.join(METHODS)}")
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(f"tolerance: needs a number between 0 and 1, got {tolerance}")

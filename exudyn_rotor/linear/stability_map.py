@@ -1,0 +1,108 @@
+"""Stability over two parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import plots
+from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.linear.stability import (
+    ascending,
+    check_method,
+    excess_growth,
+    exponents,
+    source_of,
+)
+from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.system import PeriodicSystem
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class StabilityMap(Result):
+    """Growth over two parameters.
+
+    Attributes
+    ----------
+    x, y : ndarray, shapes (a,), (b,)
+    growth : ndarray, shape (a, b)
+        Largest real part of the exponents [1/s].
+    stable : ndarray of bool, shape (a, b)
+    labels : tuple of str
+        Names of x and y.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    growth: np.ndarray
+    stable: np.ndarray
+    labels: tuple[str, ...] = ("x", "y")
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the growth as a contour plot, with the limit of stability as a line."""
+        axes = plots.figure()[1] if axes is None else axes
+        growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
+        largest = np.abs(growth).max() or 1.0
+        levels = np.linspace(-largest, largest, 21)
+        filled = axes.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
+        axes.figure.colorbar(filled, ax=axes, label="growth [1/s]")
+        if not (self.stable.all() or not self.stable.any()):
+            verdict = np.where(self.stable, -1.0, 1.0).T
+            crossing = growth if growth.min() < -1e-6 * largest else verdict
+            axes.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
+        axes.set_xlabel(self.labels[0])
+        axes.set_ylabel(self.labels[1])
+        return axes
+
+
+def stability_map(
+    build: Callable[[float, float], PeriodicSystem | tuple[object, float]],
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    labels: tuple[str, str] = ("x", "y"),
+    method: str = "auto",
+    tolerance: float = 1e-9,
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> StabilityMap:
+    """Compute the growth over a grid of two parameters.
+
+    Parameters
+    ----------
+    build : callable
+        ``build(x, y)`` returns a target of :func:`stability` and the speed [rad/s], e.g.
+        ``(LinearRotor.of(rotor, [Support('left', x)]), y)``, or a :class:`PeriodicSystem`, which
+        is taken as it is; picklable for process pools.
+    x, y : array_like, shapes (a,), (b,)
+        Ascending.
+    labels : tuple of str
+        Names of x and y with units, for the plot.
+    method, tolerance, executor, progress
+        See :func:`stability`.
+    """
+    check_method(method, tolerance)
+    grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
+    points = [(a, b) for a in grid[0] for b in grid[1]]
+    point = partial(_map_point, build=build, method=method, tolerance=tolerance)
+    found = sweep(point, points, executor=executor, progress=progress, label="stability map")
+    growth, excess = np.array(found).T.reshape(2, len(grid[0]), len(grid[1]))
+    return StabilityMap(*grid, growth, excess <= 0.0, tuple(labels))
+
+
+def _map_point(
+    point: tuple[float, float], build: Callable, method: str, tolerance: float
+) -> tuple[float, float]:
+    system = build(*point)
+    if isinstance(system, tuple):
+        target, speed = system
+        system = source_of(target, (), None, "tilt").at(speed)
+    values = exponents(system, method, tolerance)
+    return values.real.max(), excess_growth(values, system, tolerance)

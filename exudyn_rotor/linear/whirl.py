@@ -1,0 +1,339 @@
+"""How a mode turns: its circumferential content, its whirl, its frequency seen from outside.
+
+In cylindrical coordinates about the axis every motion ``Re(φ exp(iνt))`` is a sum of waves
+``exp(i(νt − nα))``; n > 0 travels with a positive spin, n < 0 against it. The angle seen from
+outside is ``α + Ωt``, so that the wave n has the inertial frequency ``ν + nΩ``. Rigid
+translation, tilt and bending are n = ±1, with ``z = u_1 + i u_2 = a exp(iνt) + b̄ exp(−iνt)``: a is
+n = +1 and b is n = −1. Axial motion and torsion are n = 0. Source: Genta,
+Dynamics of Rotating Systems (2005).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.linear.places import Source
+from exudyn_rotor.linear.supports import axes_of
+
+if TYPE_CHECKING:
+    from exudyn_rotor.linear.scene import LinearScene
+    from exudyn_rotor.reduced import ReducedRotor
+
+WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
+FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))
+
+# a mode is mixed when the weaker sense has more than this share of the energy of the stronger
+MIXED_SHARE = 0.25
+# a mode has n nodal diameters when ±n hold this share of its energy
+DIAMETER_SHARE = 0.7
+
+# inertial frequencies below this share of the speed are round-off
+_STATIC = 1e-7
+_HIGHEST = 4
+_SAMPLES = 800
+_AXIAL_TERMS = 6
+_RADIAL_TERMS = 2
+_RING = 8
+# share of a field that others must leave over to count as new
+_NEW_SHARE = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class WhirlContent:
+    """Maps coordinates to the amplitudes of circumferential waves.
+
+    Attributes
+    ----------
+    orders : ndarray of int, shape (o,)
+        The waves n, from −4 to 4.
+    waves : tuple of ndarray, each (p, c)
+        Amplitudes of wave n per coordinate; their squared norm is its energy.
+    axial, tangential, radial, whole : ndarray, shape (p, c)
+        Amplitudes of the axial part of n = 0, of the motion along the circumference and along the
+        radius, and of the whole motion.
+    rows : ndarray of int or None, shape (c,)
+        Which coordinates count; all by default.
+    knows_diameters : bool
+        False where mode shapes are missing: then only n = −1, 0, 1 are seen.
+    """
+
+    orders: np.ndarray
+    waves: tuple[np.ndarray, ...]
+    axial: np.ndarray
+    tangential: np.ndarray
+    radial: np.ndarray
+    whole: np.ndarray
+    rows: np.ndarray | None = None
+    knows_diameters: bool = True
+
+    @classmethod
+    def of(cls, source: Source) -> WhirlContent:
+        """Build the content of a linear source from mode shapes, or from its interfaces.
+
+        Equal weights for up to 800 mesh nodes, spread over the node numbers. Without mode shapes,
+        rings of points that move with the interfaces take their place.
+        """
+        points, motion, rows, known = _sample(source)
+        return cls.from_points(points, motion, known, rows)
+
+    @classmethod
+    def from_points(
+        cls,
+        points: np.ndarray,
+        motion: np.ndarray,
+        knows_diameters: bool = True,
+        rows: np.ndarray | None = None,
+    ) -> WhirlContent:
+        """Build the content from points (s, 3) and their motion (3s, c) along (n1, n2, e)."""
+        return cls(*_operators(points, motion), rows, knows_diameters)
+
+    def energies(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the energy of each wave (h, o, k) of `vectors` (h, c, k)."""
+        chosen = self._chosen(vectors)
+        return np.stack([_energy(wave, chosen) for wave in self.waves], axis=1)
+
+    def polarised(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
+        """Turn modes (h, c, g) of one eigenvalue so that each holds waves of one sense.
+
+        `orders` (h,) are the multiples of Ω by which the harmonics turn. The combinations make the
+        mean wave number seen from outside extremal: circular motion instead of motion in two
+        planes.
+        """
+        shape = vectors.shape
+        span, lengths, _ = np.linalg.svd(vectors.reshape(-1, shape[2]), full_matrices=False)
+        if lengths[-1] < 1e-3 * lengths[0]:  # copies of a defective eigenvalue: one vector only
+            return vectors
+        chosen = self._chosen(span.reshape(shape))
+        mean = sum(
+            _gram(wave, chosen, orders + n) for n, wave in zip(self.orders, self.waves, strict=True)
+        )
+        # 0.4 lies between the waves, so that axial motion parts from torsion
+        mean = mean + _gram(self.axial, chosen, 0.4 + 0.0 * orders)
+        whole = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
+        floor = 1e-12 * max(np.trace(whole).real, 1e-300)
+        lower = np.linalg.cholesky(whole + floor * np.eye(shape[2]))
+        turned = np.linalg.solve(lower, np.linalg.solve(lower, mean).conj().T)
+        _, directions = np.linalg.eigh(0.5 * (turned + turned.conj().T))
+        combined = span @ np.linalg.solve(lower.conj().T, directions)
+        return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
+
+    def classify(
+        self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return inertial frequency [rad/s], index into :data:`WHIRLS`, and nodal diameter.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (h, c, k)
+            Harmonics of the modes.
+        orders : ndarray of int, shape (h,)
+        nu : ndarray, shape (k,)
+            Frequencies in the rotor frame, ≥ 0 [rad/s].
+        speed : float
+            Ω [rad/s].
+
+        Notes
+        -----
+        The frequency is that of the strongest wave. The mode is mixed where the weaker sense has
+        more than a quarter of the energy of the stronger (half its amplitude), static where the
+        strongest wave stands still, unknown where nothing of it is seen; then n is taken as 0.
+        """
+        energy = self.energies(vectors)  # (h, o, k)
+        n = self.orders[None, :, None]
+        seen = nu + (orders[:, None, None] + n) * speed
+        turns = np.sign(n * seen) * (np.sign(speed) or 1.0)
+        turns = np.where(np.abs(seen) <= _STATIC * abs(speed), 0.0, turns)
+        flat = energy.reshape(-1, energy.shape[2])
+        best = np.argmax(flat, axis=0)
+        columns = np.arange(flat.shape[1])
+        frequency = np.abs(seen.reshape(flat.shape)[best, columns])
+        forward = np.sum(energy * (turns > 0), axis=(0, 1))
+        backward = np.sum(energy * (turns < 0), axis=(0, 1))
+        code = np.where(forward >= backward, FORWARD, BACKWARD)
+        weaker, stronger = np.minimum(forward, backward), np.maximum(forward, backward)
+        code[weaker > MIXED_SHARE * stronger] = MIXED
+        wave = np.broadcast_to(n, energy.shape).reshape(flat.shape)[best, columns]
+        code[(turns.reshape(flat.shape)[best, columns] == 0) & (wave != 0)] = STATIC
+        code = np.where(wave == 0, self._without_waves(vectors), code)
+        whole = self.whole_energy(vectors)
+        unseen = whole <= 1e-12 * np.max(whole, initial=0.0)
+        code[unseen] = UNKNOWN
+        strongest = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
+        frequency = np.where(unseen, np.abs(nu + strongest * speed), frequency)
+        return frequency, code, self._diameters(energy, whole)
+
+    def whole_energy(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the energy of the whole motion, all harmonics, shape (k,)."""
+        return np.sum(_energy(self.whole, self._chosen(vectors)), axis=0)
+
+    def _without_waves(self, vectors: np.ndarray) -> np.ndarray:
+        """Return axial, torsional or radial for modes with n = 0."""
+        chosen = self._chosen(vectors)
+        parts = (self.axial, self.tangential, self.radial)
+        strongest = np.argmax([np.sum(_energy(part, chosen), axis=0) for part in parts], axis=0)
+        return np.array([AXIAL, TORSIONAL, RADIAL])[strongest]
+
+    def _diameters(self, energy: np.ndarray, whole: np.ndarray) -> np.ndarray:
+        """Return n where ±n hold most of the energy, −1 elsewhere."""
+        by_order = np.sum(energy, axis=0)
+        counts = np.arange(self.orders.max() + 1)
+        pairs = np.array([by_order[np.abs(self.orders) == n].sum(axis=0) for n in counts])
+        clear = pairs.max(axis=0) >= DIAMETER_SHARE * np.maximum(whole, 1e-300)
+        return np.where(clear, np.argmax(pairs, axis=0), -1)
+
+    def _chosen(self, vectors: np.ndarray) -> np.ndarray:
+        return vectors if self.rows is None else vectors[:, self.rows]
+
+
+def _energy(amplitudes: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    return np.sum(np.abs(amplitudes @ vectors) ** 2, axis=1)
+
+
+def _gram(amplitudes: np.ndarray, vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    moved = amplitudes @ vectors
+    return np.einsum("h,hpi,hpj->ij", weights, moved.conj(), moved)
+
+
+def _operators(points: np.ndarray, motion: np.ndarray) -> tuple:
+    """Return the fields of :class:`WhirlContent` up to `whole`."""
+    u1, u2, ue = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
+    a, b = np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)
+    fits = wave_fits(points, _HIGHEST + 1)
+    orders = np.arange(-_HIGHEST, _HIGHEST + 1)
+    # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
+    waves = tuple(
+        np.vstack(
+            [
+                fits[1 - n] @ a,
+                fits[-1 - n] @ b,
+                fits[-n] @ ue,
+            ]
+        )
+        for n in orders
+    )
+    angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
+    radial = np.cos(angle) * u1 + np.sin(angle) * u2
+    tangential = np.cos(angle) * u2 - np.sin(angle) * u1
+    axial = fits[0] @ ue
+    return (orders, waves, axial, *(_small(X) for X in (tangential, radial, motion)))
+
+
+def _small(matrix: np.ndarray) -> np.ndarray:
+    """Return a triangle with the same Gram matrix, where that is smaller."""
+    if matrix.shape[0] <= matrix.shape[1]:
+        return matrix
+    return np.linalg.qr(matrix, mode="r")
+
+
+def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
+    """Return the operators (p, s) that fit waves ``exp(ilα)`` to values at points, per l.
+
+    Least squares with the smooth fields ``r^|l| (1, r²) T_q(z) exp(ilα)``, all l together; the
+    squared norm of a wave's amplitudes is its energy, summed over the points. Where the points are
+    too few to tell waves apart, those of low |l| are taken.
+
+    Parameters
+    ----------
+    points : ndarray, shape (s, 3)
+        Coordinates along (n1, n2, e) from a point of the axis [m].
+    highest : int
+        Largest |l|.
+    """
+    x, y, z = points.T
+    radius = np.hypot(x, y)
+    length, widest = np.ptp(z), radius.max(initial=0.0)
+    # points that are on the axis to rounding have no angle
+    radius = np.where(radius <= 1e-9 * max(length, widest), 0.0, radius)
+    scaled = radius / (radius.max(initial=0.0) or 1.0)
+    along = np.polynomial.chebyshev.chebvander(
+        2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z), _AXIAL_TERMS - 1
+    )
+    direction = scaled * np.exp(1j * np.arctan2(y, x))
+    known = np.zeros((len(points), 0), dtype=complex)
+    spaces = {0: np.zeros((len(points), 0), dtype=complex)}
+    for count in range(highest + 1):
+        turn = direction[:, None] ** count
+        forward = np.hstack(
+            [turn * along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)]
+        )
+        # both senses at once, so that neither is preferred
+        both = {count: forward, -count: forward.conj()}
+        for wave, fields in both.items():
+            spaces[wave] = _new_fields(fields, known)
+        known = np.linalg.qr(np.hstack([known, *(spaces[wave] for wave in both)]))[0]
+    fit = np.linalg.pinv(np.hstack(list(spaces.values())), rcond=1e-6)
+    ends = np.cumsum([space.shape[1] for space in spaces.values()])
+    return dict(zip(spaces, np.split(fit, ends[:-1]), strict=True))
+
+
+def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis of those `fields` that the columns `known` do not hold yet."""
+    scale = np.linalg.norm(fields, 2)
+    rest = fields - known @ (known.conj().T @ fields)
+    _, lengths, turn = np.linalg.svd(rest, full_matrices=False)
+    kept = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
+    return np.linalg.qr(fields @ kept)[0]
+
+
+def _sample(source: Source) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, bool]:
+    """Return points (s, 3) and their motion (3s, c) along (n1, n2, e), the rows, and a flag."""
+    if hasattr(source, "whirl_sample"):
+        return source.whirl_sample(_SAMPLES)
+    if not hasattr(source, "rotor"):
+        return *_rings(source, _of_scene(source)), None, False
+    rotor = source.rotor
+    if rotor.shapes is not None:
+        axes = axes_of(rotor.axis)
+        nodes = spread(len(rotor.shapes.nodes), _SAMPLES)
+        points = (rotor.shapes.nodes[nodes] - rotor.axis.point) @ axes
+        motion = rotor.shapes.matrix.reshape(-1, 3, source.size)[nodes]
+        return (
+            points,
+            np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1),
+            None,
+            True,
+        )
+    return *_rings(source, _of_rotor(rotor)), None, False
+
+
+def spread(count: int, most: int) -> np.ndarray:
+    """Return up to `most` node numbers, evenly spread over `count`."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+
+
+Ring = tuple[np.ndarray, float, str]
+
+
+def _of_rotor(rotor: ReducedRotor) -> list[Ring]:
+    """Return centre (3,) along (n1, n2, e), radius and name of every interface."""
+    axes = axes_of(rotor.axis)
+    return [
+        ((entry.reference - rotor.axis.point) @ axes, entry.radius, name)
+        for name, entry in rotor.interfaces.items()
+    ]
+
+
+def _of_scene(scene: LinearScene) -> list[Ring]:
+    """Return rings of the rotor's radius of gyration, one for every marker, side by side."""
+    inertia = scene.body.motion.invariants
+    radius = np.sqrt(inertia.Theta / inertia.mass)
+    return [
+        (np.array([0.0, 0.0, float(i)]), radius, name) for i, name in enumerate(scene.body.markers)
+    ]
+
+
+def _rings(source: Source, rings: list[Ring]) -> tuple[np.ndarray, np.ndarray]:
+    """Return rings of points that move with the interfaces."""
+    # a point at rest, so that a rotor without any interface has no whirl instead of an error
+    points, motion = [np.zeros((1, 3))], [np.zeros((3, source.size))]
+    angles = 2.0 * np.pi * np.arange(_RING) / _RING
+    circle = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(_RING)])
+    for center, radius, name in rings:
+        U, arms = source.interface_motion(name), radius * circle
+        points.append(center + arms)
+        turned = np.cross(U[3:].T[None], arms[:, None]).transpose(0, 2, 1)
+        motion.append((U[:3] + turned).reshape(3 * _RING, -1))
+    return np.vstack(points), np.vstack(motion)

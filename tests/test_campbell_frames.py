@@ -1,0 +1,323 @@
+"""Campbell diagrams in both frames: closed forms, whirl, tracking, periodic and full models."""
+
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+import pytest
+from models import STEEL, block_beam, two_masses
+from point_rotors import random_rotor, ring_rotor
+
+from exudyn_rotor import SolidRotor, campbell
+from exudyn_rotor.linear.campbell import Campbell
+from exudyn_rotor.linear.full import FullRotor, Subspace
+from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.whirl import WhirlContent
+
+HERTZ = 2.0 * np.pi
+MASS = 12.0
+DISC, SHAFT = (0.3, 0.02), (0.1, 0.4)  # radius, half length of two rings
+BODIES = pytest.mark.parametrize("shape", [DISC, SHAFT], ids=["disc", "shaft"])
+
+
+def point_mass() -> SolidRotor:
+    return SolidRotor.from_matrices(
+        np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z", interfaces={"at": [0]}
+    )
+
+
+def rings(shape: tuple[float, float]) -> SolidRotor:
+    """Return a free rotor of two rings; the interface 'all' follows its mean motion."""
+    return ring_rotor(*shape, MASS).with_interface("all", range(10))
+
+
+def moments(shape: tuple[float, float]) -> tuple[float, float]:
+    """Return I_p and I_t of two rings."""
+    radius, half_length = shape
+    return MASS * radius**2, MASS * (radius**2 / 2 + half_length**2)
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+@pytest.mark.parametrize("modes", [None, 6])
+def test_whole_diagram_of_appendix_b(modes):
+    """Fig. 2: ``(k_y − Ω² − ν²)(k_z − Ω² − ν²) = 4Ω²ν²`` for each unit mass, axial ones apart."""
+    data = two_masses()
+    rotor = SolidRotor.from_matrices(data["mass"], data["stiffness"], data["nodes"], "x")
+    speeds = np.linspace(0.0, 1800.0, 37)
+    result = campbell(rotor if modes is None else rotor.reduce(modes), speeds)
+    ky, kz = 196e4, 100e4
+    half = 0.5 * (ky + kz) + speeds**2
+    root = np.sqrt(half**2 - (ky - speeds**2) * (kz - speeds**2))
+    squares = np.array([half - root, half + root])
+    axial = np.full((2, 37), 1e4) * np.array([[144.0], [400.0]])  # (125)
+    squares = np.sort(np.vstack([squares, squares, axial]).T, axis=1)
+    eigenvalues = result.growth + 1j * result.frequencies_rotating
+    found = np.sort(-(eigenvalues**2).real, axis=1)
+    # between 1000 and 1400 rad/s one ν² of each mass is negative: growth
+    np.testing.assert_allclose(found, squares, rtol=0, atol=1e-12 * squares.max())
+    grows = np.any(result.growth > 1.0, axis=1)
+    np.testing.assert_array_equal(grows, (speeds > 1000.0) & (speeds < 1400.0))
+
+
+@pytest.mark.parametrize("reduced", [True, False])
+def test_point_mass_in_both_frames(reduced):
+    """100 Hz in the inertial frame are 50 and 150 Hz from a frame that spins with 50 Hz."""
+    rotor = point_mass()
+    support = Support("at", (HERTZ * 100.0) ** 2 * np.eye(3))
+    model = rotor.reduce(0) if reduced else rotor
+    result = campbell(model, HERTZ * np.array([0.0, 50.0, 130.0]), supports=[support])
+    np.testing.assert_allclose(
+        result.frequencies_rotating / HERTZ, [[100] * 3, [50, 100, 150], [30, 100, 230]], rtol=1e-12
+    )
+    np.testing.assert_allclose(result.frequencies_inertial / HERTZ, 100.0, rtol=1e-12)
+    words = ["forward", "axial", "backward"]
+    assert result.whirl[1:].tolist() == [words, words]
+    assert sorted(result.whirl[0]) == sorted(words)  # the repeated mode parts into circles
+    assert result.nodal_diameters[1:].tolist() == [[1, 0, 1]] * 2
+    assert result.free_motions == ()
+
+
+def test_turning_the_other_way_round():
+    support = Support("at", (HERTZ * 100.0) ** 2)
+    with pytest.raises(ValueError, match="allow_negative=True"):
+        campbell(point_mass(), [-1.0, 0.0], supports=[support])
+    result = campbell(point_mass(), [-HERTZ * 50.0], supports=[support], allow_negative=True)
+    assert result.whirl[0].tolist() == ["axial", "forward", "backward"]
+    np.testing.assert_allclose(result.frequencies_inertial[0, 1:] / HERTZ, 100.0, rtol=1e-12)
+
+
+@BODIES
+@pytest.mark.parametrize("speed", [0.0, 40.0, 400.0, 4000.0])
+def test_conical_modes_of_a_rigid_rotor(shape, speed):
+    """``I_t λ² − i I_p Ω λ + k = 0`` in the inertial frame; one root forward, one backward."""
+    polar, transverse = moments(shape)
+    supports = [Support("all", 1e6 * np.eye(3), tilt_stiffness=np.diag([1e4, 1e4, 1e9]))]
+    result = campbell(rings(shape).reduce(0), speed, supports=supports)
+    roots = np.roots([-transverse, polar * speed, 1e4])
+    for root in roots:
+        column = np.argmin(np.abs(result.frequencies_inertial[0] / abs(root) - 1.0))
+        assert result.frequencies_inertial[0, column] == pytest.approx(abs(root), rel=1e-9)
+        found = {
+            word
+            for word, f in zip(result.whirl[0], result.frequencies_inertial[0], strict=True)
+            if abs(f / abs(root) - 1.0) < 1e-9
+        }
+        assert ("forward" if root > 0.0 else "backward") in found
+
+
+@BODIES
+def test_conical_modes_of_a_stiff_rotor_and_the_papers_terms(shape):
+    """Elasticity adds about (ω/ω_elastic)² = 1e-7 with ω_elastic = 9e3 rad/s."""
+    polar, transverse = moments(shape)
+    speed, k = 3.0, 9.0 * transverse
+    supports = [Support("all", 1e4 * np.eye(3), tilt_stiffness=np.diag([k, k, 1e5]))]
+    exact = np.abs(np.roots([-transverse, polar * speed, k]))
+    found = {}
+    for level in ("tilt", "none"):
+        result = campbell(rings(shape), speed, supports=supports, stiffening=level, modes=8)
+        inertial = result.frequencies_inertial[0]
+        found[level] = [np.abs(inertial / value - 1.0).min() for value in exact]
+    assert max(found["tilt"]) < 1e-6
+    assert min(found["none"]) > 1e-2
+
+
+# ------------------------------------------------------------------ zero and repeated modes
+
+
+def test_free_rotor_keeps_all_rigid_modes_and_names_them():
+    rotor = random_rotor(31)
+    result = campbell(rotor.reduce(3), [0.0, 5.0])
+    names = ("translation 1", "translation 2", "translation along axis", "spin", "tilt 1", "tilt 2")
+    assert result.free_motions == names
+    assert campbell(rotor, 0.0).free_motions == names
+    np.testing.assert_array_equal(result.frequencies_rotating[0, :6], 0.0)
+    assert result.growth.shape == (2, 9)
+
+
+def test_displaced_free_mass_stands_still_in_space():
+    """Free translations are double eigenvalues iΩ without a second vector, here to 1e-12."""
+    result = campbell(point_mass().reduce(0), [7.0])
+    np.testing.assert_allclose(result.frequencies_rotating[0], [0.0, 7.0, 7.0], rtol=1e-12)
+    np.testing.assert_allclose(result.growth, 0.0, atol=1e-12)
+    np.testing.assert_allclose(result.frequencies_inertial, 0.0, atol=1e-11)
+    assert result.whirl[0].tolist() == ["axial", "static", "static"]
+
+
+def test_motion_that_is_free_only_in_combination():
+    rotor = rings(SHAFT).with_interface("ring", range(5)).reduce(0)
+    result = campbell(rotor, 0.0, supports=[Support("ring", 1e6 * np.eye(3))])
+    assert result.free_motions[0] == "spin"
+    assert (
+        result.free_motions[1:]
+        == ("combination of translation 1, translation 2, tilt 1, tilt 2",) * 2
+    )
+
+
+def test_overdamped_modes_count():
+    """One kilogram with k = 1, d = 10: λ = −5 ± √24; the slower stands for the pair."""
+    result = campbell(point_mass(), 0.0, supports=[Support("at", np.eye(3), 10.0 * np.eye(3))])
+    np.testing.assert_allclose(result.growth[0], np.sqrt(24.0) - 5.0, rtol=1e-9)
+    np.testing.assert_array_equal(result.damping_ratio, 1.0)
+
+
+def test_damping_is_that_of_the_inertial_frequency():
+    """A damper that stands still: λ = −ζω ± iω√(1 − ζ²) in the inertial frame at every speed."""
+    omega, ratio = 100.0, 0.05
+    support = Support("at", omega**2 * np.eye(3), 2.0 * ratio * omega * np.eye(3))
+    result = campbell(point_mass(), [0.0, 60.0, 150.0], supports=[support])
+    np.testing.assert_allclose(result.damping_ratio, ratio, rtol=1e-10)
+    expected = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
+    np.testing.assert_allclose(result.log_decrement, expected, rtol=1e-10)
+
+
+# ------------------------------------------------------------------ order and whirl
+
+
+def test_columns_ascend_and_tracked_columns_follow_the_modes():
+    support = Support("at", np.diag([1e4, 1e4, 3.6e5]))
+    speeds = np.linspace(0.0, 900.0, 31)
+    result = campbell(point_mass(), speeds, supports=[support])
+    assert np.all(np.diff(result.frequencies_rotating, axis=1) >= 0.0)
+    tracked = result.tracked()
+    for column in range(3):
+        words = set(tracked.whirl[1:, column])
+        assert len(words) == 1
+        inertial = 600.0 if words == {"axial"} else 100.0
+        np.testing.assert_allclose(tracked.frequencies_inertial[:, column], inertial, rtol=1e-9)
+
+
+@pytest.mark.parametrize("wave", range(-4, 5))
+@pytest.mark.parametrize("component", ["radial", "tangential", "axial"])
+def test_a_wave_is_recognised(wave, component):
+    """Random points in a ring; smooth radial dependence r^|l| of each Cartesian component."""
+    rng = np.random.default_rng(5)
+    angle, radius, z = rng.uniform([[0.0], [0.8], [0.0]], [[HERTZ], [1.0], [2.0]], (3, 400))
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])
+    shape, zero = np.exp(-1j * wave * angle), np.zeros(400)
+    along = {
+        "radial": (np.cos(angle), np.sin(angle), zero),
+        "tangential": (-np.sin(angle), np.cos(angle), zero),
+        "axial": (zero, zero, zero + 1.0),
+    }[component]
+    field = (shape * np.array(along)).T.reshape(-1, 1)
+    content = WhirlContent.from_points(points, np.eye(1200))
+    energy = content.energies(field[None])[0, :, 0]
+    assert content.orders[np.argmax(energy)] == wave
+    # r^±5 is fitted by r^|l| (1, r²) over 0.8 … 1
+    assert energy.max() > 0.95 * np.sum(np.abs(field) ** 2)
+
+
+# ------------------------------------------------------------------ periodic systems
+
+
+def test_anisotropic_support_of_a_point_mass():
+    """In the inertial frame the two directions are apart: √k_1, √k_2, decay d/2 each."""
+    k1, k2, d = 1e4, 4e4, 4.0
+    support = Support("at", np.diag([k1, k2, 9e4]), d * np.eye(3))
+    speeds = np.array([0.0, 30.0, 77.0, 150.0, 260.0])
+    result = campbell(point_mass(), speeds, supports=[support])
+    expected = np.sqrt(np.array([k1, k2, 9e4]) - d**2 / 4.0)
+    for row in result.frequencies_inertial:
+        np.testing.assert_allclose(np.sort(row), expected, rtol=1e-9)
+    np.testing.assert_allclose(result.growth, -d / 2.0, rtol=1e-9)
+    assert np.sum(result.whirl == "mixed") == 10
+    tracked = result.tracked()
+    np.testing.assert_allclose(np.ptp(tracked.frequencies_inertial, axis=0), 0.0, atol=1e-6)
+
+
+def test_a_nearly_isotropic_support_takes_hills_way_to_the_same_result():
+    rotor = rings(SHAFT).reduce(6)
+    both = []
+    for ratio in (1.0, 1.0 + 1e-9):
+        supports = [Support("all", np.diag([1e6, 1e6 * ratio, 1e6]), tilt_stiffness=1e5)]
+        both.append(campbell(rotor, [50.0, 200.0], supports=supports))
+    constant, periodic = both
+    assert constant.free_motions == periodic.free_motions == ("spin",)
+    for name in ("frequencies_rotating", "frequencies_inertial"):
+        np.testing.assert_allclose(
+            getattr(periodic, name), getattr(constant, name), rtol=1e-7, atol=1e-3
+        )
+
+
+# ------------------------------------------------------------------ full models
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3], ids=["constant", "periodic"])
+def test_subspace_of_a_full_model_meets_the_dense_solution(ratio):
+    """Eigenvalues are accurate to about the square of the residual, 1e-10."""
+    beam = SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1).center_interfaces()
+    left = Support("left", np.diag([1e7, ratio * 1e7, 1e6]), 50.0)
+    supports = [left, Support("right", 1e7)]
+    subspace = Subspace(FullRotor.of(beam, supports), 8, 900.0)
+    for speed in (300.0, 900.0):
+        found = subspace.modes(speed, 8, 1e-5).values
+        dense = campbell(beam, speed, supports=supports, modes=8)
+        np.testing.assert_allclose(found.imag, dense.frequencies_rotating[0], rtol=1e-8, atol=1e-3)
+        np.testing.assert_allclose(found.real, dense.growth[0], rtol=1e-6, atol=1e-3)
+
+
+def test_large_full_model_by_its_residual():
+    """The equations (104) written out with nodal rotations, on modes of a mesh."""
+    rotor = SolidRotor.from_ngsolve(block_beam(0.03), STEEL, "z")
+    assert 3 * rotor.node_count > 600
+    speed = 500.0
+    result = campbell(rotor, speed, stiffening="none")
+    assert result.frequencies_rotating.shape == (1, 10)
+    assert len(result.free_motions) == 6
+    turn = np.kron(np.eye(rotor.node_count), rotor.axis.skew)
+    eigenvalues = result.growth[0] + 1j * result.frequencies_rotating[0]
+    M, K = rotor.mass, rotor.stiffness
+    for value, x in zip(eigenvalues, result.vectors[0].T, strict=True):
+        velocity = value * x + speed * (turn @ x)
+        inertia = M @ (value * velocity + speed * (turn @ velocity))
+        energy = np.abs(x.conj() @ (K @ x)) + np.abs(x.conj() @ (M @ x)) * speed**2
+        assert np.abs(x.conj() @ (inertia + K @ x)) < 1e-6 * energy
+
+
+# ------------------------------------------------------------------ results and input
+
+
+def test_result_is_stored_and_shown(tmp_path):
+    result = campbell(point_mass(), [0.0, 10.0], supports=[Support("at", 1e4)])
+    result.save(tmp_path / "result.npz")
+    loaded = load_result(tmp_path / "result.npz")
+    assert isinstance(loaded, Campbell)
+    np.testing.assert_array_equal(loaded.frequencies_inertial, result.frequencies_inertial)
+    assert loaded.free_motions == ("translation along axis",)
+    assert loaded.whirl.tolist() == result.whirl.tolist()
+    assert "free motions: translation along axis" in loaded.table()
+    assert "forward" in result.table(3)
+    for frame in ("inertial", "rotating"):
+        ax = result.plot(frame=frame)
+        assert "[Hz]" in ax.get_ylabel()
+        assert len(ax.lines) >= 3
+    with pytest.raises(ValueError, match="frame 'rotor' is unknown"):
+        result.plot(frame="rotor")
+
+
+def test_processes_give_the_same_result():
+    rotor = rings(SHAFT).reduce(2)
+    given = {"supports": [Support("all", 1e6)]}
+    here = campbell(rotor, [0.0, 10.0, 20.0], **given)
+    with ProcessPoolExecutor(1) as executor:
+        there = campbell(rotor, [0.0, 10.0, 20.0], executor=executor, **given)
+    np.testing.assert_array_equal(here.frequencies_rotating, there.frequencies_rotating)
+    np.testing.assert_array_equal(here.order, there.order)
+
+
+def test_wrong_input_is_refused():
+    rotor = rings(SHAFT)
+    with pytest.raises(ValueError, match="must ascend"):
+        campbell(rotor, [1.0, 0.0])
+    with pytest.raises(ValueError, match="no such interface; the rotor has: all"):
+        campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
+    with pytest.raises(TypeError, match="expected Support objects, got str"):
+        campbell(rotor, 0.0, supports=["all"])
+    with pytest.raises(TypeError, match="needs a ReducedRotor, a SolidRotor, or"):
+        campbell(np.eye(3), 0.0)
+    with pytest.raises(TypeError, match="body=: is only for"):
+        campbell(rotor, 0.0, body=rotor)
+    with pytest.raises(ValueError, match="99 is not between 1 and the 30"):
+        campbell(rotor, 0.0, modes=99)

@@ -1,0 +1,177 @@
+"""Critical speeds against closed forms, Campbell diagrams and the full model."""
+
+import numpy as np
+import pytest
+from models import STEEL, disc_on_shaft, two_masses
+from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
+from test_scene_linear import BEARING, on_springs
+from test_scene_linear import rings as scene_rotor
+
+from exudyn_rotor import SolidRotor, campbell
+from exudyn_rotor.linear.critical import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.full import FullRotor
+from exudyn_rotor.linear.resonance import full_resonances
+from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.linear.supports import Support
+
+KY, KZ = 196e4, 100e4  # Appendix B, unit masses
+
+
+@pytest.fixture(scope="module")
+def masses():
+    data = two_masses()
+    rotor = SolidRotor.from_matrices(data["mass"], data["stiffness"], data["nodes"], "x")
+    return rotor.reduce(6)
+
+
+def two_each(*speeds):
+    return np.repeat(speeds, 2)
+
+
+def test_asymmetric_masses_order_1(masses):
+    """Static in the rotor frame at √k_y, √k_z; ``(k_y − 5Ω²)(k_z − 5Ω²) = 16Ω⁴`` at ν = 2Ω."""
+    result = critical_speeds(masses, nodal_diameters=[1])
+    lower, upper = np.sqrt(np.sort(np.roots([9.0, -5.0 * (KY + KZ), KY * KZ])))
+    forward = result.speeds[np.equal(result.whirl, "forward")]
+    np.testing.assert_allclose(forward, two_each(1000.0, 1400.0), rtol=1e-12)  # (125)
+    # at the lower root the motion is forward with 3Ω, not of order 1
+    backward = result.speeds[np.equal(result.whirl, "backward")]
+    np.testing.assert_allclose(backward, two_each(upper), rtol=1e-12)
+    assert lower not in result.speeds
+
+
+def test_asymmetric_masses_order_2(masses):
+    """``(k_y − 2Ω²)(k_z − 2Ω²) = 4Ω⁴``: the critical speed of a horizontal, flat shaft."""
+    result = critical_speeds(masses, order=2, nodal_diameters=[1])
+    forward = result.speeds[np.equal(result.whirl, "forward")]
+    np.testing.assert_allclose(forward, two_each(np.sqrt(KY * KZ / (KY + KZ) / 2.0)), rtol=1e-12)
+
+
+def test_axial_modes_at_any_order(masses):
+    for order in (1.0, 2.0, 3.5):
+        result = critical_speeds(masses, order=order, nodal_diameters=[0])
+        np.testing.assert_allclose(result.speeds, np.array([1200, 2000]) / order, rtol=1e-12)
+        assert set(result.whirl) == {"axial"}
+        np.testing.assert_allclose(result.frequencies_rotating, [1200, 2000], rtol=1e-12)
+
+
+@BODIES
+def test_rigid_rotor_with_gyroscopic_moment(shape):
+    """Forward at ``Ω² = k/(I_t − I_p)``, for a shaft only; backward at ``k/(I_t + I_p)``."""
+    polar, transverse = moments(shape)
+    supports = [Support("all", 1e6 * np.eye(3), tilt_stiffness=np.diag([1e4, 1e4, 1e9]))]
+    result = critical_speeds(rings(shape).reduce(0), supports=supports, nodal_diameters=[1])
+    translation = np.sqrt(1e6 / MASS)
+    expected = {
+        "forward": [translation]
+        + ([np.sqrt(1e4 / (transverse - polar))] if shape == SHAFT else []),
+        "backward": [translation, np.sqrt(1e4 / (transverse + polar))],
+    }
+    for word, speeds in expected.items():
+        found = result.speeds[np.equal(result.whirl, word)]
+        np.testing.assert_allclose(found, np.sort(speeds), rtol=1e-9)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 3.0])
+def test_anisotropic_support(order):
+    support = Support("at", np.diag([1e4, 4e4]), 3.0)  # damping does not count
+    result = critical_speeds(point_mass().reduce(0), supports=[support], order=order)
+    np.testing.assert_allclose(np.unique(result.speeds.round(6)), np.array([100, 200]) / order)
+    assert set(result.whirl) == {"mixed"}
+    assert len(result.speeds) == 2
+
+
+def test_support_that_stiffens_with_the_speed():
+    """``Ω² = k (1 + Ω²/Ω₀²)``."""
+    support = Support("at", lambda speed: 1e4 * (1.0 + (speed / 200.0) ** 2))
+    rotor = point_mass().reduce(0)
+    result = critical_speeds(rotor, supports=[support], max_speed=1000.0)
+    np.testing.assert_allclose(result.speeds, 100.0 / np.sqrt(0.75), rtol=1e-11)
+    assert sorted(result.whirl) == ["backward", "forward"]
+    with pytest.raises(ValueError, match="needs the largest speed"):
+        critical_speeds(rotor, supports=[support])
+
+
+def test_table_of_a_constant_stiffness_is_a_constant():
+    table = Support("at", ([0.0, 50.0, 500.0], [1e4, 1e4, 1e4]))
+    result = critical_speeds(point_mass().reduce(0), supports=[table], max_speed=300.0)
+    np.testing.assert_allclose(result.speeds, 100.0, rtol=1e-11)
+
+
+@pytest.fixture(scope="module")
+def disc():
+    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.08), STEEL, "z", order=1)
+    return rotor.center_interfaces()
+
+
+# the spin is held, too: free, an uneven mesh lets it take part in ν = 0
+HELD_SPIN = np.diag([0.0, 0.0, 1e4])
+SUPPORTS = (Support("left", 2e7 * np.eye(3), tilt_stiffness=HELD_SPIN), Support("right", 2e7))
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_campbell_diagram_meets_the_excitation_there(disc, order):
+    reduced = disc.reduce(12)
+    result = critical_speeds(reduced, supports=SUPPORTS, order=order, max_speed=4000.0)
+    assert len(result.speeds) >= 3
+    for speed, nu in zip(result.speeds, result.frequencies_rotating, strict=True):
+        diagram = campbell(reduced, speed, supports=SUPPORTS)
+        # ν = 0 has an eigenvalue 1e-16 K away in ν²
+        close = np.abs(diagram.frequencies_rotating[0] - nu) < 1e-3 + 1e-8 * nu
+        assert np.any(close)
+        inertial = diagram.frequencies_inertial[0, close]
+        assert np.abs(inertial / (order * speed) - 1.0).min() < 1e-6
+
+
+def test_reduced_comes_close_to_the_full_model(disc):
+    full = full_resonances(FullRotor.of(disc, SUPPORTS), 1.0, [1, -1], 3000.0, 1e-5)
+    few, many = (
+        critical_speeds(
+            disc.reduce(count), supports=SUPPORTS, max_speed=3000.0, nodal_diameters=[1]
+        ).speeds
+        for count in (6, 30)
+    )
+    exact = np.array([entry.speed for entry in full])
+    assert len(exact) == len(many)
+    assert np.all(many >= exact * (1.0 - 1e-9))  # fewer coordinates are stiffer
+    assert np.abs(many / exact - 1.0).max() < 0.01
+    assert np.abs(many / exact - 1.0).max() < np.abs(few / exact - 1.0).max()
+
+
+def test_map_over_support_stiffness(tmp_path):
+    """A rigid rotor: √(k/m) forward and backward."""
+    stiffnesses = np.geomspace(1e4, 1e8, 5)
+    rotor = point_mass().reduce(0)
+    result = critical_speed_map(rotor, "at", stiffnesses)
+    expected = np.repeat(np.sqrt(stiffnesses)[:, None], 2, axis=1)
+    np.testing.assert_allclose(result.speeds, expected, rtol=1e-12)
+    result.save(tmp_path / "map.npz")
+    np.testing.assert_array_equal(load_result(tmp_path / "map.npz").speeds, result.speeds)
+    assert "critical speed" in result.plot().get_ylabel()
+    with pytest.raises(ValueError, match="positive finite numbers"):
+        critical_speed_map(rotor, "at", [0.0])
+
+
+def test_wrong_input_is_refused(masses):
+    for wrong in (-1.0, np.nan):
+        with pytest.raises(ValueError, match="order: needs"):
+            critical_speeds(masses, order=wrong)
+        with pytest.raises(ValueError, match="max_speed: needs"):
+            critical_speeds(masses, max_speed=wrong)
+    with pytest.raises(ValueError, match="numbers from 0 to 4"):
+        critical_speeds(masses, nodal_diameters=[5])
+    with pytest.raises(ValueError, match="no such interface"):
+        critical_speeds(masses, supports=[Support("left", 1.0)])
+    assert "critical speeds of order 1" in critical_speeds(masses).table()
+
+
+def test_scene_has_the_critical_speeds_of_its_rotor():
+    """The scene is linearised by differences, good to about 1e-7 of its stiffness."""
+    K, D = (np.diag(values) for values in BEARING)
+    supports = [Support(name, K, D) for name in ("left", "right")]
+    given = {"max_speed": 3000.0, "nodal_diameters": [1]}
+    rotor = critical_speeds(scene_rotor(), supports=supports, **given)
+    mbs, body = on_springs()
+    scene = critical_speeds(mbs, body=body, **given)
+    assert len(rotor.speeds) >= 4
+    np.testing.assert_allclose(scene.speeds, rotor.speeds, rtol=1e-5)

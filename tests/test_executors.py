@@ -1,0 +1,86 @@
+"""Sweeps give the same numbers here, on threads, on processes and on a cluster."""
+
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from dask.distributed import Client, LocalCluster
+from point_rotors import ring_rotor
+
+from exudyn_rotor.linear.balance import Unbalance
+from exudyn_rotor.linear.response import unbalance_response
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.sweep import sweep
+
+
+@contextmanager
+def dask_cluster():
+    with (
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client.get_executor()
+
+
+EXECUTORS = {
+    "threads": lambda: ThreadPoolExecutor(2),
+    "processes": lambda: ProcessPoolExecutor(2),
+    "dask": dask_cluster,
+}
+
+
+@pytest.fixture(params=EXECUTORS)
+def executor(request):
+    with EXECUTORS[request.param]() as made:
+        yield made
+
+
+def inverse(value: float) -> float:
+    if value == 3.0:
+        raise ValueError("three is not allowed")
+    return 1.0 / value
+
+
+def test_order_and_numbers(executor):
+    values = [float(value) for value in range(4, 204)]
+    assert sweep(inverse, values, executor=executor) == [1.0 / value for value in values]
+    assert sweep(inverse, [], executor=executor) == []
+
+
+def test_errors_name_the_value(executor):
+    with pytest.raises(ValueError, match=r"inverse at 3\.0: three is not allowed"):
+        sweep(inverse, [1.0, 2.0, 3.0], executor=executor, label="inverse")
+    with pytest.raises(RuntimeError, match=r"sweep at 0\.0: ZeroDivisionError"):
+        sweep(inverse, [1.0, 0.0], executor=executor)
+
+
+def test_errors_here_name_the_value_too():
+    with pytest.raises(ValueError, match=r"inverse at 3\.0: three is not allowed"):
+        sweep(inverse, [1.0, 3.0], label="inverse")
+
+
+def test_a_lambda_does_not_reach_other_processes():
+    with (
+        ProcessPoolExecutor(1) as pool,
+        pytest.raises(RuntimeError, match="cannot be sent to this executor"),
+    ):
+        sweep(lambda value: value, [1.0, 2.0], executor=pool)
+
+
+def test_progress_counts_all_values(executor, capsys):
+    for chosen in (None, executor):
+        sweep(inverse, np.linspace(4.0, 5.0, 130), executor=chosen, progress=True, label="counted")
+        assert "counted: 100%" in capsys.readouterr().err
+
+
+def test_a_response_is_the_same_to_the_last_bit(executor):
+    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(4)
+    supports = [Support("mid", np.diag([4e5, 6e5]), 100.0, 5e4, 10.0)]
+    arguments = (rotor, np.linspace(0.0, 500.0, 21), [Unbalance("mid", 1e-4), Unbalance(3, 1e-5)])
+    here = unbalance_response(*arguments, supports=supports)
+    there = unbalance_response(*arguments, supports=supports, executor=executor)
+    assert np.array_equal(here.orders, there.orders)
+    assert np.array_equal(here.motion, there.motion)

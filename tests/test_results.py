@@ -1,0 +1,194 @@
+"""Results are small, readable, stored without pickle, and drawn without a display."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from point_rotors import ring_rotor
+
+from exudyn_rotor.linear.balance import Unbalance
+from exudyn_rotor.linear.loads import HarmonicForce
+from exudyn_rotor.linear.response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.results import Result, load_result, save_result, storable
+from exudyn_rotor.linear.supports import Support
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Everything(Result):
+    """One field of every kind."""
+
+    reals: np.ndarray
+    counts: np.ndarray
+    name: str
+    names: tuple[str, ...]
+    number: float
+    flag: bool
+    absent: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Not registered."""
+
+    value: float
+
+
+def everything(**changes) -> Everything:
+    values = {"reals": np.array([1.0, np.nan]), "counts": np.arange(3), "name": "Läufer",
+              "names": (), "number": 0.1, "flag": True}  # fmt: skip
+    return Everything(**(values | changes))
+
+
+@pytest.fixture(scope="module")
+def ellipses() -> UnbalanceResponse:
+    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(0)
+    supports = [Support("mid", np.diag([4e5, 8e5]), 200.0, 5e4, 10.0)]
+    speeds = np.linspace(0.0, 400.0, 101)
+    return unbalance_response(
+        rotor, speeds, [Unbalance("mid", 1e-4)], supports=supports, at=["mid", 2]
+    )
+
+
+@pytest.fixture(scope="module")
+def shaken() -> HarmonicResponse:
+    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(0)
+    supports = [Support("mid", 4e5, 200.0, 5e4, 10.0)]
+    force = HarmonicForce("mid", (1.0, 0.0))
+    return harmonic_response(rotor, [100.0, 200.0], force, speed=90.0, supports=supports)
+
+
+def test_every_kind_of_field_comes_back(tmp_path):
+    kept = everything(names=("a", "b"))
+    save_result(kept, tmp_path / "kept.npz")
+    back = load_result(tmp_path / "kept.npz")
+    assert type(back) is Everything
+    assert np.array_equal(back.reals, kept.reals, equal_nan=True)
+    assert back.counts.dtype == kept.counts.dtype
+    assert (back.name, back.names, back.number, back.flag) == ("Läufer", ("a", "b"), 0.1, True)
+    assert type(back.flag) is bool
+    assert back.absent is None
+    everything().save(tmp_path / "empty.npz")
+    assert Everything.load(tmp_path / "empty.npz").names == ()
+
+
+@pytest.mark.parametrize("name", ["ellipses", "shaken"])
+def test_responses_come_back(name, request, tmp_path):
+    kept = request.getfixturevalue(name)
+    kept.save(tmp_path / "response.npz")
+    back = load_result(tmp_path / "response.npz")
+    assert type(back) is type(kept)
+    assert np.array_equal(back.motion, kept.motion, equal_nan=True)
+    assert back.table() == kept.table()
+    assert not back.motion.flags.writeable
+
+
+def test_wrong_class_is_refused(ellipses, tmp_path):
+    ellipses.save(tmp_path / "response.npz")
+    with pytest.raises(ValueError, match="holds a UnbalanceResponse, not a HarmonicResponse"):
+        HarmonicResponse.load(tmp_path / "response.npz")
+    with pytest.raises(TypeError, match="a Unknown cannot be stored"):
+        save_result(Unknown(1.0), tmp_path / "unknown.npz")
+
+
+def test_a_file_of_an_unregistered_class_is_refused(tmp_path):
+    np.savez(tmp_path / "a.npz", **{"format": "exudyn_rotor result 1", "class": "Popen"})
+    with pytest.raises(ValueError, match="holds a Popen; results that can be: "):
+        load_result(tmp_path / "a.npz")
+
+
+def test_pickle_other_and_damaged_files_are_refused(tmp_path):
+    path = tmp_path / "a.npz"
+    np.savez(path, value=np.array([object()]))
+    with pytest.raises(ValueError, match="without pickle"):
+        load_result(path)
+    np.save(tmp_path / "a.npy", np.zeros(3))
+    with pytest.raises(ValueError, match="without pickle"):
+        load_result(tmp_path / "a.npy")
+    np.savez(path, value=np.zeros(3))
+    with pytest.raises(ValueError, match="holds no result"):
+        load_result(path)
+    path.write_bytes(b"PK\x03\x04 cut")
+    with pytest.raises(ValueError, match="without pickle"):
+        load_result(path)
+    np.savez(path, **{"format": "exudyn_rotor result 1", "class": "Everything"})
+    with pytest.raises(ValueError, match="'reals' is missing"):
+        load_result(path)
+
+
+def test_what_cannot_be_stored_leaves_the_old_file(tmp_path):
+    path = tmp_path / "kept.npz"
+    everything().save(path)
+    for changes in ({"name": {"a": 1}}, {"reals": np.array([object()])}, {"names": (1.0,)}):
+        with pytest.raises(TypeError, match=r"Everything\.\w+: a \w+ cannot be stored"):
+            everything(**changes).save(path)
+    assert Everything.load(path).number == 0.1
+    assert [file.name for file in tmp_path.iterdir()] == ["kept.npz"]
+
+
+def test_only_dataclasses_of_a_new_name_are_registered():
+    with pytest.raises(TypeError, match="only a dataclass"):
+        storable(type("Plain", (), {}))
+    other = dataclass(type("UnbalanceResponse", (), {"__annotations__": {}}))
+    with pytest.raises(TypeError, match="registered already"):
+        storable(other)
+
+
+def test_bode_shows_the_amplitudes_in_micrometres_over_hertz(ellipses):
+    size, phase = ellipses.plot("mid", log=False)
+    x, y = size.lines[0].get_data()
+    assert np.allclose(x, ellipses.speeds / (2 * np.pi))
+    assert np.allclose(y, 1e6 * np.abs(ellipses.phasor("mid")))
+    assert [text.get_text() for text in size.get_legend().get_texts()] == ["n1", "n2"]
+    # far above both critical speeds the rotor is half a turn late, n2 a quarter turn behind n1
+    assert phase.lines[0].get_ydata()[-1] == pytest.approx(-180.0, abs=10.0)
+    assert phase.lines[1].get_ydata()[-1] == pytest.approx(-270.0, abs=10.0)
+    assert np.isnan(phase.lines[0].get_ydata()[0])  # no phase at rest
+
+
+def test_polar_diagram_draws_the_phasor(ellipses):
+    axes = ellipses.plot_polar("mid", direction="forward")
+    drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
+    assert np.allclose(drawn, 1e6 * ellipses.whirl("mid")[0])
+    assert "0 Hz" in [text.get_text() for text in axes.texts]
+
+
+def test_orbit_is_drawn_for_every_place(ellipses):
+    axes = ellipses.plot_orbit(240.0)
+    drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
+    major, minor = ellipses.semi_axes("mid")
+    index = np.argmin(np.abs(ellipses.speeds - 240.0))
+    assert np.abs(drawn).max() == pytest.approx(1e6 * major[index], rel=1e-3)
+    assert minor[index] < 0.0
+    area = 0.5 * np.sum((drawn[:-1].conj() * drawn[1:]).imag)
+    expected = np.pi * 1e12 * major[index] * minor[index]  # negative: it turns backward
+    assert area == pytest.approx(expected, rel=1e-3)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
+
+
+def test_table_and_peak(ellipses):
+    lines = ellipses.table("mid").splitlines()
+    assert len(lines) == 3 + len(ellipses.speeds)
+    speed, size = ellipses.peak("mid")
+    row = next(line for line in lines if line.split()[0] == f"{speed:g}")
+    assert float(row.split()[1]) <= size <= float(row.split()[1]) + float(row.split()[3])
+    assert ellipses.rates(1)[-1] == 400.0
+
+
+def test_harmonics_run_at_their_own_rate(shaken):
+    assert np.array_equal(shaken.rates(-1), [10.0, 110.0])
+    assert shaken.main_order == 0
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda r: r.phasor("top"), "there are mid, node 2"),
+        (lambda r: r.phasor("mid", "x"), "direction 'x'"),
+        (lambda r: r.whirl("mid", 7), "order 7"),
+    ],
+)
+def test_unknown_names_are_listed(ellipses, call, message):
+    with pytest.raises(ValueError, match=message):
+        call(ellipses)

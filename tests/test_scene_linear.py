@@ -1,0 +1,365 @@
+"""Scenes linearised over a revolution, against linear rotors and against their own simulation."""
+
+from dataclasses import replace
+
+import exudyn as exu
+import numpy as np
+import pytest
+from asymmetric import LENGTH, asymmetric_shaft
+from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from point_rotors import ring_rotor
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
+from exudyn_rotor.linear.floquet import constant_exponents, fold, monodromy
+from exudyn_rotor.linear.scene import LinearScene
+from exudyn_rotor.linear.stability import exponents, stability
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+
+BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
+SPEED = 200.0
+
+
+def rings():
+    """Return a slightly eccentric rotor with two flexible modes, z from −0.15 to 0.15 m."""
+    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor.reduce(2)
+
+
+def on_springs(markers="position", rotation=None, law=None, **options):
+    """Return an mbs with the rings on two springs to the ground, and the body."""
+    reduced = rings()
+    mbs = exu.SystemContainer().AddSystem()
+    kinds = dict.fromkeys(reduced.interfaces, markers)
+    body = add_rotor(mbs, reduced, markers=kinds, rotation=rotation, **options)
+    turn = np.eye(3) if rotation is None else rotation
+    ground = mbs.CreateGround()
+    for name in reduced.interfaces:
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=list(turn @ reduced.interfaces[name].reference),
+            stiffness=list(BEARING[0]),
+            damping=list(BEARING[1]),
+            springForceUserFunction=law or 0,
+        )
+    mbs.Assemble()
+    return mbs, body
+
+
+def linear_rings(turn=None):
+    """Return the rings on the same springs; `turn` takes mesh axes to inertial axes.
+
+    With another name for the spin nothing of its coupling by unbalance is left out, as in scenes.
+    """
+    turn = np.eye(3) if turn is None else turn
+    K, D = (turn.T @ np.diag(values) @ turn for values in BEARING)
+    rigid = tuple("turn" if name == "spin" else name for name in rings().rigid)
+    supports = [Support(name, K, D) for name in ("left", "right")]
+    return LinearRotor.of(replace(rings(), rigid=rigid), supports)
+
+
+def spin_held(linear, speed, moving):
+    """Return a linear rotor's equations without its spin, as a body of the scene has them.
+
+    A moving frame holds the spin about the centre of mass, one that stands still about the axis;
+    the two drives differ by the square of the eccentricity.
+    """
+    T = np.delete(np.eye(linear.size), 3, axis=1)
+    if not moving:
+        T = select_modes(rings(), Formulation("none", speed)).T
+    system = linear.at(speed)
+    return PeriodicSystem(
+        speed,
+        *({n: T.T @ X @ T for n, X in terms.items()} for terms in (system.M, system.D, system.K)),
+    )
+
+
+def distance(found, expected, base):
+    """Return the largest distance of exponents to the other set's, relative to the fastest."""
+    sets = exponents(found), exponents(expected)
+    apart = np.abs(fold(sets[0][:, None] - sets[1], base))
+    largest = max(apart.min(axis=0).max(), apart.min(axis=1).max())
+    return largest / np.abs(constant_exponents(expected)).max()
+
+
+@pytest.mark.parametrize(
+    ("markers", "options"),
+    [
+        ("position", {"spin": "free", "initial_speed": 31.0}),
+        ("rigid", {"spin": 31.0, "translation": "none"}),
+        ("rigid", {"translation": "in-plane", "initial_angle": 0.4}),
+        ("position", {"spin": SPEED, "locking": "constraints"}),
+        ("position", {"spin": "free", "translation": "none", "gravity": [0.0, -9.81, 0.0]}),
+        ("position", {"spin": PrescribedMotion.run_up(0.0, 9.0, 1.0)}),
+    ],
+)
+def test_springs_are_supports(markers, options):
+    mbs, body = on_springs(markers, **options)
+    system = LinearScene.of(mbs, body).at(SPEED)
+    moving = options.get("translation") != "none"
+    assert distance(system, spin_held(linear_rings(), SPEED, moving), 2.0 * SPEED) < 1e-9
+
+
+def test_elastic_drive_keeps_the_rotors_own_spin():
+    mbs, body = on_springs(spin=SPEED, translation="none", drive="elastic")
+    scene, linear = LinearScene.of(mbs, body), linear_rings()
+    assert scene.size == linear.size
+    assert distance(scene.at(SPEED), linear.at(SPEED), 2.0 * SPEED) < 1e-9
+
+
+def test_an_axis_skew_in_space():
+    turn = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
+    mbs, body = on_springs(rotation=turn, translation="in-plane", locking="constraints")
+    system = LinearScene.of(mbs, body).at(SPEED)
+    assert distance(system, spin_held(linear_rings(turn), SPEED, True), SPEED) < 1e-9
+
+
+def test_isotropic_springs_give_constant_matrices():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings(), initial_speed=5.0)
+    ground = mbs.CreateGround()
+    for name, z in (("left", -0.15), ("right", 0.15)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)], localPosition0=[0, 0, z], stiffness=[2e6] * 3
+        )
+    mbs.Assemble()
+    scene = LinearScene.of(mbs, body)
+    assert scene.at(SPEED).is_constant
+    assert scene.at(0.0).is_constant
+
+
+def test_interface_motion_and_unbalance_agree_with_the_linear_rotor():
+    mbs, body = on_springs("rigid", spin=SPEED, translation="none", drive="elastic")
+    scene, linear = LinearScene.of(mbs, body), linear_rings()
+    for name in ("left", "right"):
+        assert np.allclose(
+            scene.interface_motion(name), linear.interface_motion(name), rtol=0.0, atol=1e-12
+        )
+    np.testing.assert_allclose(scene.unit_unbalance, linear.unit_unbalance, atol=1e-15)
+    assert np.abs(linear.unit_unbalance).max() > 1e-6
+
+
+def test_unbalance_response_with_a_moving_frame():
+    mbs, body = on_springs("rigid", spin=SPEED, law=isotropic)
+    linear = LinearRotor.of(
+        rings(), [Support(name, np.diag([2e6] * 3)) for name in ("left", "right")]
+    )
+    T = np.delete(np.eye(linear.size), 3, axis=1)
+    motions = []
+    for source, turn in ((LinearScene.of(mbs, body), np.eye(linear.size - 1)), (linear, T)):
+        K = turn.T @ source.at(SPEED).K[0] @ turn
+        response = turn @ np.linalg.solve(K, turn.T @ source.unit_unbalance)
+        motions.append(source.interface_motion("right") @ response)
+    np.testing.assert_allclose(motions[0], motions[1], atol=1e-8 * np.abs(motions[1]).max())
+
+
+def isotropic(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+    return [2e6 * x for x in displacement]
+
+
+def foundation_scene(speed, node=exu.NodeType.RotationRxyz):
+    """Return an asymmetric shaft on anisotropic bearings on a sprung block, and the body.
+
+    The block is a rigid body with rotation parameters `node`.
+    """
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, asymmetric_shaft(), spin=speed, translation="none", markers=POSITION_MARKERS
+    )
+    block = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.1, 0.5])
+    base = mbs.CreateRigidBody(inertia=block, referencePosition=[0, -0.2, 0], nodeType=node)
+    ground = mbs.CreateGround()
+    for x, z in ((-0.15, -0.25), (-0.15, 0.25), (0.15, -0.25), (0.15, 0.25)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, base],
+            localPosition0=[x, -0.25, z],
+            localPosition1=[x, -0.05, z],
+            stiffness=[4e5, 6e5, 5e5],
+            damping=[100.0] * 3,
+        )
+    for name, z in (("left", -LENGTH / 2), ("right", LENGTH / 2)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[base, body.marker(name)],
+            localPosition0=[0, 0.2, z],
+            stiffness=[3e5, 5e5, 1e6],
+            damping=[20.0, 30.0, 20.0],
+        )
+    mbs.AddSensor(
+        SensorNode(
+            nodeNumber=body.nodes["modes"],
+            outputVariableType=exu.OutputVariableType.Coordinates,
+            storeInternal=True,
+            writeToFile=False,
+        )
+    )
+    mbs.Assemble()
+    return mbs, body
+
+
+POSITION_MARKERS = {"left": "position", "right": "position"}
+
+
+def measured_growth(mbs, scene, speed, steps, size=1e-5, revolutions=20):
+    """Return growth [1/s] of the least stable motion in the transient simulation.
+
+    It starts with its Floquet vector; once per revolution the state lies in the plane of the
+    vector's real and imaginary part, and its coefficient there grows as ``exp(λt)``.
+    """
+    half = monodromy(scene.at(speed))
+    values, vectors = np.linalg.eig(half @ half)
+    vector = vectors[:, np.argmax(np.abs(values))]
+    vector = size * vector / np.abs(vector[: scene.size]).max()
+    T, T1, _ = scene.turn(0.0)
+    y, y_t = np.split(vector, 2)
+    q, q_t = scene.rest.copy(), np.array(mbs.systemData.GetODE2Coordinates_t())
+    q[scene.free] += (T @ y).real
+    q_t[scene.free] = (T @ y_t + speed * T1 @ y).real
+    mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
+    mbs.systemData.SetODE2Coordinates_t(q_t, exu.ConfigurationType.Initial)
+    period = 2.0 * np.pi / speed
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = revolutions * steps
+    settings.timeIntegration.endTime = revolutions * period
+    settings.timeIntegration.newton.useModifiedNewton = True
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = period
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+    data = mbs.GetSensorStoredData(0)
+    shape = (T @ y)[: data.shape[1] - 1]
+    plane = np.column_stack([shape.real, -shape.imag])
+    parts = np.linalg.lstsq(plane, data[:, 1:].T, rcond=1e-9)[0]
+    return np.polyfit(data[:, 0], np.log(np.hypot(*parts)), 1)[0]
+
+
+@pytest.mark.parametrize(("speed", "stable"), [(150.0, True), (140.0, False), (160.0, False)])
+def test_growth_is_that_of_the_transient_simulation(speed, stable):
+    measured = []
+    for steps in (400, 800):
+        mbs, body = foundation_scene(speed)
+        measured.append(measured_growth(mbs, LinearScene.of(mbs, body), speed, steps))
+    result = stability(mbs, [speed], body=body)
+    assert result.stable[0] == stable
+    # the trapezoidal rule's error falls with the square of the step
+    limit = (4.0 * measured[1] - measured[0]) / 3.0
+    assert abs(measured[1] / limit - 1.0) > 1e-5
+    assert limit == pytest.approx(result.growth[0], rel=1e-4)
+
+
+def test_euler_parameters_and_their_constraint():
+    found = []
+    for node in (exu.NodeType.RotationRxyz, exu.NodeType.RotationEulerParameters):
+        mbs, body = foundation_scene(20.0, node)
+        found.append(LinearScene.of(mbs, body).at(160.0))
+    assert mbs.systemData.AEsize() == 1
+    assert found[0].size == found[1].size
+    assert distance(found[1], found[0], 320.0) < 1e-9
+
+
+def test_speed_of_the_scene_plays_no_part():
+    found = []
+    for speed in (10.0, 160.0):
+        mbs, body = foundation_scene(speed)
+        found.append(LinearScene.of(mbs, body).at(160.0))
+    assert distance(found[0], found[1], 320.0) < 1e-9
+
+
+HARDENING, WEIGHT = 1e13, 9.81  # [N/m³], [m/s²]
+
+
+def hardening(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+    x, y, z = displacement
+    return [2e4 * x, 2e4 * y + HARDENING * y**3, 2e4 * z]
+
+
+def test_nonlinear_bearings_are_linearised_at_the_sag():
+    # the sag y of m g / 2 = k y + k₃ y³; tangent k + 3 k₃ y²
+    rotor = ring_rotor(0.1, 0.15, 5.0).with_interface("left", range(5))
+    reduced = rotor.with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, gravity=[0.0, -WEIGHT, 0.0], markers=POSITION_MARKERS)
+    ground = mbs.CreateGround()
+    for name, z in (("left", -0.15), ("right", 0.15)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=[0, 0, z],
+            springForceUserFunction=hardening,
+        )
+    mbs.Assemble()
+    sag = np.roots([HARDENING, 0.0, 2e4, -2.5 * WEIGHT])
+    sag = sag[np.abs(sag.imag) < 1e-12].real[0]
+    tangent = np.diag([2e4, 2e4 + 3.0 * HARDENING * sag**2, 2e4])
+    assert tangent[1, 1] > 2.0 * 2e4
+    supports = [Support(name, tangent) for name in ("left", "right")]
+    expected = spin_held(LinearRotor.of(reduced, supports), SPEED, True)
+    scene = LinearScene.of(mbs, body)
+    assert distance(scene.at(SPEED), expected, 2.0 * SPEED) < 1e-5
+    given = LinearScene.of(mbs, body, about="given")
+    assert distance(given.at(SPEED), expected, 2.0 * SPEED) > 1e-2
+
+
+def all_states(mbs):
+    """Return every state of a system with its time, as one list of arrays."""
+    kinds = exu.ConfigurationType
+    data = mbs.systemData
+    return [
+        np.array([*part, data.GetTime(kind)])
+        for kind in (kinds.Initial, kinds.Current, kinds.StartOfStep, kinds.Visualization)
+        for part in data.GetSystemState(kind)
+    ]
+
+
+def test_the_scene_is_left_as_it_was():
+    mbs, body = on_springs(spin=40.0, gravity=[0.0, -9.81, 0.0])
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 10, 1e-3
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    before = all_states(mbs)
+    LinearScene.of(mbs, body).at(SPEED)
+    assert all(np.array_equal(a, b) for a, b in zip(all_states(mbs), before, strict=True))
+
+
+def test_refused_scenes():
+    mbs, body = on_springs()
+    other, _ = on_springs()
+    with pytest.raises(TypeError, match="RotorBody"):
+        LinearScene.of(mbs, None)
+    with pytest.raises(TypeError, match=r"exudyn\.MainSystem"):
+        LinearScene.of(body, body)
+    with pytest.raises(ValueError, match="another mbs"):
+        LinearScene.of(other, body)
+    with pytest.raises(ValueError, match="about 'rest' is unknown"):
+        LinearScene.of(mbs, body, about="rest")
+    with pytest.raises(ValueError, match="finite"):
+        LinearScene.of(mbs, body).at(np.nan)
+    add_rotor(mbs, rings(), name="second")
+    with pytest.raises(ValueError, match="not assembled"):
+        LinearScene.of(mbs, body)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="second rotor"):
+        LinearScene.of(mbs, body)
+
+
+def test_a_joint_that_turns_with_the_rotor_is_refused():
+    mbs, body = on_springs("rigid")
+    base = mbs.CreateRigidBody(
+        inertia=InertiaCuboid(2500.0, [0.3, 0.1, 0.5]), referencePosition=[0.1, 0.0, 0.15]
+    )
+    marker = mbs.AddMarker(MarkerBodyRigid(bodyNumber=base))
+    mbs.AddObject(GenericJoint(markerNumbers=[body.marker("right"), marker]))
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="constraint turns with the rotor"):
+        LinearScene.of(mbs, body)
+
+
+def test_a_load_that_nothing_holds_has_no_steady_motion():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings(), gravity=[0.0, 0.0, -9.81])
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="no steady motion"):
+        LinearScene.of(mbs, body).at(SPEED)

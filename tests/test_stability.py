@@ -1,0 +1,294 @@
+"""Exponents of constant and periodic systems against closed forms and other methods."""
+
+import numpy as np
+import pytest
+from asymmetric import DISC, END, SHAFT, asymmetric_shaft
+from point_rotors import ring_rotor
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+from scipy.special import mathieu_a, mathieu_b
+
+from exudyn_rotor.linear.floquet import (
+    UnconvergedError,
+    constant_exponents,
+    floquet_exponents,
+    fold,
+    hill_exponents,
+    monodromy,
+)
+from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.linear.stability import (
+    Stability,
+    exponents,
+    stability,
+    stability_threshold,
+    unstable_ranges,
+)
+from exudyn_rotor.linear.stability_map import stability_map
+from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+
+STIFFNESS, OUTER, INNER, MASS = 2e5, 60.0, 40.0, 5.0
+BEARING, BEARING_DAMPING = np.diag([3e5, 5e5]), np.diag([20.0, 30.0])
+
+
+def mathieu(a: float, q: float) -> PeriodicSystem:
+    """Return ``x″ + (a − 2q cos 2t) x = 0``, with t as the spin angle."""
+    one = np.eye(1)
+    return PeriodicSystem(1.0, {0: one}, {0: 0.0 * one}, {0: a * one, 2: -q * one, -2: -q * one})
+
+
+def random_system(seed: int, size: int = 4) -> PeriodicSystem:
+    """Return a damped gyroscopic system with harmonics 1 and 3 in all matrices."""
+    rng = np.random.default_rng(seed)
+
+    def terms(mean: np.ndarray, share: float) -> dict[int, np.ndarray]:
+        made = {0: mean}
+        for n in (1, 3):
+            term = share * (rng.normal(size=(size, size)) + 1j * rng.normal(size=(size, size)))
+            made[n], made[-n] = term, term.conj()
+        return made
+
+    skew = rng.normal(size=(size, size))
+    stiffness = np.diag(rng.uniform(2.0, 60.0, size))
+    return PeriodicSystem(
+        1.3,
+        terms(np.eye(size), 0.01),
+        terms(0.3 * np.eye(size) + skew - skew.T, 0.05),
+        terms(stiffness, 0.8),
+    )
+
+
+def paired(found: np.ndarray, expected: np.ndarray, base: float) -> float:
+    """Return the largest distance of `expected` to its nearest `found`, modulo i·base."""
+    return np.abs(fold(found[:, None] - expected + 0.0j, base)).min(axis=0).max()
+
+
+@pytest.mark.parametrize("q", [0.3, 1.0, 5.0])
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_mathieu_characteristic_values_bound_the_instability(order, q):
+    # at a_n(q), b_n(q) a solution is periodic in π (n even) or antiperiodic (McLachlan 1947)
+    for value in (mathieu_a(order, q), mathieu_b(order, q)):
+        trace = np.trace(monodromy(mathieu(value, q), 1e-12))
+        assert trace == pytest.approx(2.0 * (-1.0) ** order, abs=1e-9 * np.exp(q))
+    inside = mathieu(0.5 * (mathieu_a(order, q) + mathieu_b(order, q)), q)
+    beyond = mathieu(0.5 * (mathieu_a(order, q) + mathieu_b(order + 1, q)), q)
+    assert hill_exponents(inside)[0].real.max() > 1e-5
+    assert abs(hill_exponents(beyond)[0].real).max() < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_hill_and_floquet_agree(seed):
+    system = random_system(seed)
+    hill, error = hill_exponents(system, 1e-10)
+    floquet = floquet_exponents(system, 1e-12)
+    assert error <= 1e-10
+    assert len(hill) == len(floquet) == 8
+    assert paired(hill, floquet, 1.3) < 1e-8
+    assert paired(floquet, hill, 1.3) < 1e-8
+
+
+def test_the_error_of_hills_method_is_not_underestimated():
+    system = random_system(0)
+    exact = floquet_exponents(system, 1e-13)
+    for tolerance in (1e-2, 1e-4, 1e-6):
+        values, error = hill_exponents(system, tolerance)
+        assert error <= tolerance
+        assert paired(values, exact, 1.3) < 3.0 * 1.3 * error + 1e-11
+
+
+def test_exponents_sum_to_the_mean_trace():
+    # Liouville: det Φ(T) = exp ∫ tr A dt, and tr A = −tr M⁻¹D
+    system = random_system(1)
+    angles = 2.0 * np.pi * np.arange(400) / 400
+    traces = [np.trace(np.linalg.solve(M, D)) for M, D, _ in map(system.matrices, angles)]
+    assert hill_exponents(system)[0].real.sum() == pytest.approx(-np.mean(traces), abs=1e-7)
+
+
+def test_internal_damping_sets_in_at_the_closed_form_speed():
+    # rigid rotor on one spring: Ω = ω (1 + c_e/c_i), Friswell et al. (2010), Sect. 7.2
+    rotor = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+    outer = Support("all", np.diag([STIFFNESS] * 3), OUTER, tilt_stiffness=1e4)
+    inner = Support("all", damping=INNER, frame="rotor")
+    expected = np.sqrt(STIFFNESS / MASS) * (1.0 + OUTER / INNER)
+    found = stability_threshold(rotor, 100.0, 900.0, supports=[outer, inner])
+    assert found == pytest.approx(expected, rel=1e-6)
+    result = stability(rotor, [0.0, 0.99 * expected, 1.01 * expected], supports=[outer, inner])
+    assert result.stable.tolist() == [True, True, False]
+    assert np.all(result.base == 0.0)
+    assert np.isnan(result.multipliers[0]).all()
+
+
+def asymmetric_limits() -> np.ndarray:
+    """Return the speeds at which an asymmetric shaft on isotropic supports is unstable between.
+
+    A deflection along a principal direction of stiffness k is in equilibrium at Ω where
+    ``(k − mΩ²)(k + k_b − 2m_eΩ²) = k²``; k_b is the stiffness of both bearings.
+    """
+
+    def balance(speed: float, k: float) -> float:
+        disc, ends = k - DISC * speed**2, k + 2.0 * BEARING[0, 0] - 2.0 * END * speed**2
+        return disc * ends - k**2
+
+    return np.array([brentq(balance, 50.0, 250.0, args=(k,), xtol=1e-12) for k in SHAFT])
+
+
+def test_asymmetric_shaft_on_isotropic_supports():
+    supports = [Support(name, np.diag([BEARING[0, 0]] * 3)) for name in ("left", "right")]
+    found = unstable_ranges(asymmetric_shaft(), np.linspace(0.0, 250.0, 26), supports=supports)
+    assert found == pytest.approx(asymmetric_limits()[None, :], rel=1e-6)
+
+
+def inertial_multipliers(speed: float) -> np.ndarray:
+    """Return the multipliers over half a revolution of disc and bearings, inertial coordinates.
+
+    Four coordinates: the disc and the mean of the ends, integrated by an explicit Runge–Kutta
+    method of order 8.
+    """
+
+    def rate(t: float, z: np.ndarray) -> np.ndarray:
+        (c, s), states = (np.cos(speed * t), np.sin(speed * t)), z.reshape(8, 8)
+        turn = np.array([[c, -s], [s, c]])
+        disc, ends, disc_t, ends_t = states[:2], states[2:4], states[4:6], states[6:]
+        pull = turn @ np.diag(SHAFT) @ turn.T @ (disc - ends)
+        hold = 2.0 * (BEARING @ ends + BEARING_DAMPING @ ends_t)
+        return np.vstack([disc_t, ends_t, -pull / DISC, (pull - hold) / (2.0 * END)]).ravel()
+
+    span = (0.0, np.pi / speed)
+    solved = solve_ivp(rate, span, np.eye(8).ravel(), "DOP853", rtol=1e-11, atol=1e-9)
+    return np.linalg.eigvals(solved.y[:, -1].reshape(8, 8))
+
+
+def anisotropic() -> list[Support]:
+    return [
+        Support(name, np.diag([*np.diag(BEARING), 1e6]), BEARING_DAMPING)
+        for name in ("left", "right")
+    ]
+
+
+@pytest.mark.parametrize("method", ["hill", "floquet"])
+def test_asymmetric_shaft_on_anisotropic_supports(method):
+    speeds = np.array([120.0, 156.0, 200.0])
+    result = stability(asymmetric_shaft(), speeds, supports=anisotropic(), method=method)
+    assert result.base == pytest.approx(2.0 * speeds)
+    for speed, found in zip(speeds, result.exponents, strict=True):
+        expected = np.log(inertial_multipliers(speed).astype(complex)) * speed / np.pi
+        # the multipliers' frame turns by half a revolution, which takes the sign of each
+        assert paired(found + 1j * speed, expected, 2.0 * speed) < 1e-6 * speed
+    assert not result.stable.all()
+    assert result.stable.any()
+
+
+def test_limits_of_an_asymmetric_shaft_on_anisotropic_supports():
+    speeds = np.linspace(100.0, 220.0, 25)
+    found = unstable_ranges(asymmetric_shaft(), speeds, supports=anisotropic())
+    assert len(found) >= 1
+
+    def excess(speed: float) -> float:
+        return np.log(np.abs(inertial_multipliers(speed)).max())
+
+    for low, high in found:
+        assert excess(low * (1.0 - 1e-6)) < 0.0 < excess(low * (1.0 + 1e-6))
+        assert excess(high * (1.0 + 1e-6)) < 0.0 < excess(high * (1.0 - 1e-6))
+
+
+def test_a_symmetric_rotor_does_not_depend_on_the_frame():
+    # without tilts and asymmetry: eigenvalues of the plain springs, seen from the rotor ± iΩ
+    rotor = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+    support = Support("all", np.diag([4e5, 1e5, 2e5]), np.diag([8.0, 5.0, 3.0]))
+    speed = 150.0
+    found = stability(rotor, [speed], supports=[support]).exponents[0]
+    for k, c in ((4e5, 8.0), (1e5, 5.0)):
+        expected = np.roots([MASS, c, k]) + 1j * speed
+        assert paired(found, expected, 2.0 * speed) < 1e-9 * np.sqrt(k / MASS)
+
+
+def test_a_free_spin_of_an_eccentric_rotor_is_not_called_unstable():
+    rotor = ring_rotor(0.1, 0.05, MASS).add_point_mass([0.1, 0.0, 0.05], 0.05)
+    reduced = rotor.with_interface("all", range(10)).reduce(0)
+    support = Support("all", np.diag([2e5] * 3), 20.0, tilt_stiffness=1e4, tilt_damping=1.0)
+    assert stability(reduced, [50.0, 120.0], supports=[support]).stable.all()
+    torsion = Support("all", tilt_stiffness=np.diag([0.0, 0.0, 100.0]))
+    held = stability(reduced, [50.0, 120.0], supports=[support])
+    free = stability(reduced, [50.0, 120.0], supports=[support, torsion])
+    assert free.exponents.shape[1] == held.exponents.shape[1] + 2
+    assert abs(free.exponents.imag).min(axis=1) == pytest.approx(np.sqrt(100.0 / 0.05), rel=0.02)
+
+
+def test_zero_speed_is_the_rotor_at_rest():
+    result = stability(asymmetric_shaft(), [0.0], supports=anisotropic())
+    system = LinearRotor.of(asymmetric_shaft(), anisotropic()).at(0.0)
+    assert paired(constant_exponents(system), result.exponents[0], 0.0) < 1e-6
+    assert result.stable[0]
+
+
+def _jeffcott(inner: float, speed: float) -> tuple[LinearRotor, float]:
+    rotor = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+    outer = Support("all", np.diag([STIFFNESS] * 3), OUTER, tilt_stiffness=1e4)
+    return LinearRotor.of(rotor, [outer, Support("all", damping=inner, frame="rotor")]), speed
+
+
+def test_map_over_two_parameters(tmp_path):
+    inner, speeds = np.array([20.0, 40.0, 80.0]), np.array([200.0, 400.0, 700.0])
+    result = stability_map(_jeffcott, inner, speeds, labels=("c_i", "Ω"))
+    limit = np.sqrt(STIFFNESS / MASS) * (1.0 + OUTER / inner)
+    assert np.array_equal(result.stable, speeds < limit[:, None])
+    assert result.plot().get_ylabel() == "Ω"
+    result.save(tmp_path / "map.npz")
+    assert np.array_equal(load_result(tmp_path / "map.npz").growth, result.growth)
+
+
+def test_result_is_stored_drawn_and_printed(tmp_path):
+    result = stability(asymmetric_shaft(), [100.0, 156.0], supports=anisotropic())
+    result.save(tmp_path / "stability.npz")
+    again = Stability.load(tmp_path / "stability.npz")
+    assert np.array_equal(again.exponents, result.exponents)
+    assert "1/s" in result.plot().get_ylabel()
+    assert "unstable" in result.table()
+    np.testing.assert_allclose(
+        result.multipliers, np.exp(result.exponents * np.pi / result.speeds[:, None]), rtol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("speeds", "options", "message"),
+    [
+        ([200.0, 100.0], {}, "ascending"),
+        ([-1.0, 100.0], {}, "≥ 0"),
+        ([np.nan], {}, "finite"),
+        ([], {}, "finite"),
+        ([100.0], {"method": "guess"}, "unknown"),
+        ([100.0], {"tolerance": 0.0}, "tolerance"),
+        ([100.0], {"method": "eigen"}, "periodic"),
+    ],
+)
+def test_bad_input(speeds, options, message):
+    with pytest.raises(ValueError, match=message):
+        stability(asymmetric_shaft(), speeds, supports=anisotropic(), **options)
+
+
+def test_unreached_tolerances_are_errors(monkeypatch):
+    slow = mathieu(50.0, 20.0)
+    slow = PeriodicSystem(0.1, slow.M, slow.D, slow.K)
+    monkeypatch.setattr("exudyn_rotor.linear.floquet.MOST_UNKNOWNS", 30)
+    with pytest.raises(UnconvergedError, match="harmonics up to"):
+        hill_exponents(slow)
+    fallen_back = exponents(slow)
+    assert np.array_equal(np.sort(fallen_back), np.sort(floquet_exponents(slow)))
+    monkeypatch.setattr("exudyn_rotor.linear.floquet.MOST_STEPS", 512)
+    with pytest.raises(UnconvergedError, match="steps a period"):
+        floquet_exponents(slow)
+    with pytest.raises(UnconvergedError, match="steps a period"):
+        exponents(slow)
+
+
+def test_more_bad_input():
+    resting = PeriodicSystem(0.0, *({0: np.eye(1)} for _ in range(3)))
+    with pytest.raises(ValueError, match="no period"):
+        monodromy(resting)
+    with pytest.raises(ValueError, match="stable at 10 as well as at 20"):
+        stability_threshold(asymmetric_shaft(), 10.0, 20.0, supports=anisotropic())
+    with pytest.raises(TypeError, match="unknown option guess"):
+        unstable_ranges(asymmetric_shaft(), [10.0, 20.0], guess=1)
+    with pytest.raises(ValueError, match=r"y: needs ascending"):
+        stability_map(_jeffcott, [1.0, 2.0], [2.0, 1.0])

@@ -1,0 +1,102 @@
+"""Slender solid shafts against Timoshenko beams: frequencies over speed and critical speeds.
+
+The beam numbers come from the open package ROSS (``reference/timoshenko_ross.json``, written by
+``ross_reference.py``). The solid rotors are meshed with second-order tetrahedra and reduced by
+Craig–Bampton modes with averaged interfaces, so that supports act on the mean of an end face.
+
+    python validation/timoshenko.py [--json FILE] [--quick]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import ngsolve
+import numpy as np
+from netgen import occ
+
+from exudyn_rotor import ReducedRotor, SolidRotor, Support, campbell, craig_bampton_modes
+from exudyn_rotor import critical_speeds
+
+REFERENCE = Path(__file__).parent / "reference" / "timoshenko_ross.json"
+LATERAL = ("forward", "backward", "mixed")
+
+
+def solid_shaft(shaft: dict, material: dict, element_size: float) -> ReducedRotor:
+    """Return the solid rotor of a beam description, along z, reduced."""
+    radius, length = 0.5 * shaft["diameter"], shaft["length"]
+    solid = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, radius, length)
+    for z in shaft["discs"]:
+        disc = shaft["disc"]
+        corner = occ.Pnt(0, 0, z - 0.5 * disc["width"])
+        solid += occ.Cylinder(corner, occ.Z, 0.5 * disc["diameter"], disc["width"])
+    solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
+    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=element_size))
+    rotor = SolidRotor.from_ngsolve(mesh, material, axis="z").center_interfaces()
+    return rotor.reduce(craig_bampton_modes(rotor, 12, coupling="RBE3"))
+
+
+def supports(shaft: dict) -> list[Support]:
+    """Return the two bearings."""
+    return [Support(name, shaft["bearing_stiffness"]) for name in ("left", "right")]
+
+
+def lateral_frequencies(reduced: ReducedRotor, shaft: dict, speeds: list[float]) -> np.ndarray:
+    """Return the six lowest lateral frequencies in the inertial frame, shape (speeds, 6)."""
+    result = campbell(reduced, speeds, supports=supports(shaft))
+    rows = []
+    for row, words in zip(result.frequencies_inertial, result.whirl, strict=True):
+        rows.append(np.sort(row[np.isin(words, LATERAL)])[:6])
+    return np.array(rows)
+
+
+def forward_criticals(reduced: ReducedRotor, shaft: dict) -> np.ndarray:
+    """Return the three lowest forward critical speeds; a split pair counts once."""
+    found = critical_speeds(reduced, supports=supports(shaft), max_speed=4000.0)
+    forward = found.speeds[np.array(found.whirl) == "forward"]
+    return forward[np.append(True, np.diff(forward) > 1e-2 * forward[1:])][:3]
+
+
+def compare(name: str, data: dict, element_size: float) -> dict:
+    """Return relative deviations of one solid rotor from one set of beam numbers."""
+    beam = data[name]
+    reduced = solid_shaft(beam["shaft"], data["material"], element_size)
+    ours = lateral_frequencies(reduced, beam["shaft"], data["speeds"])
+    theirs = np.sort(np.array(beam["frequencies"]), axis=1)
+    criticals = forward_criticals(reduced, beam["shaft"])
+    return {
+        "frequencies": (ours / theirs - 1.0).tolist(),
+        "critical_speeds": (criticals / beam["forward_critical_speeds"] - 1.0).tolist(),
+    }
+
+
+def table(title: str, speeds: list[float], result: dict) -> str:
+    """Return deviations in per cent as text."""
+    lines = [f"{title}: deviation from the beam [%]", "  rad/s   mode 1 … 6"]
+    for speed, row in zip(speeds, result["frequencies"], strict=True):
+        lines.append(f"{speed:7.0f}   " + " ".join(f"{100 * value:8.3f}" for value in row))
+    values = " ".join(f"{100 * value:8.3f}" for value in result["critical_speeds"])
+    return "\n".join([*lines, f"forward critical speeds  {values}", ""])
+
+
+def main() -> None:
+    """Compare all shafts and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", type=Path, help="write the numbers to this file")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes")
+    options = parser.parse_args()
+    data = json.loads(REFERENCE.read_text())
+    size = 0.04 if options.quick else 0.025
+    names = ("uniform", "two discs, points", "two discs, rigid hubs")
+    results = {name: compare(name, data, size) for name in names}
+    print(f"beam numbers: {data['source']}\n")
+    for name, result in results.items():
+        print(table(name, data["speeds"], result))
+    if options.json:
+        options.json.write_text(json.dumps(results, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
