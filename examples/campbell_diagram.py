@@ -10,8 +10,8 @@ import numpy as np
 from netgen import occ
 
 from exudyn_rotor import SolidRotor, campbell, plots
-from exudyn_rotor.linear.critical import critical_speed_map, critical_speeds
-from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
 
 HERTZ = 2.0 * np.pi
 

@@ -9,19 +9,26 @@ from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.twin import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.linear.balance import Unbalance, permissible_unbalance
-from exudyn_rotor.linear.campbell import Campbell, campbell
-from exudyn_rotor.linear.critical import (
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.modal.campbell import Campbell, campbell
+from exudyn_rotor.linear.modal.critical import (
     CriticalSpeedMap,
     CriticalSpeeds,
     critical_speed_map,
     critical_speeds,
 )
-from exudyn_rotor.linear.loads import BaseAcceleration, HarmonicForce
-from exudyn_rotor.linear.response import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
+from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.results import load_result
-from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.stability.analysis import (
+    Stability,
+    stability,
+    stability_threshold,
+    unstable_ranges,
+)
+from exudyn_rotor.linear.stability.maps import StabilityMap, stability_map
 from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes
 from exudyn_rotor.modes.selection import select_modes
 from exudyn_rotor.motion import Motion
@@ -30,9 +37,14 @@ from exudyn_rotor.solid import Interface, PointMass, SolidRotor
 from exudyn_rotor.stiffening import Stiffening
 
 __all__ = [
+    "BaseAcceleration",
     "Campbell",
     "ConstantSpeed",
+    "CriticalSpeedMap",
+    "CriticalSpeeds",
     "Formulation",
+    "HarmonicForce",
+    "HarmonicResponse",
     "Interface",
     "Invariants",
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
@@ -44,10 +56,25 @@ __all__ = [
     "RotorBody",
     "SolidRotor",
     "SpinAxis",
+    "Stability",
+    "StabilityMap",
     "Stiffening",
+    "Support",
+    "Unbalance",
+    "UnbalanceResponse",
     "add_rotor",
     "campbell",
     "craig_bampton_modes",
+    "critical_speed_map",
+    "critical_speeds",
     "free_modes",
+    "harmonic_response",
+    "load_result",
+    "permissible_unbalance",
     "select_modes",
+    "stability",
+    "stability_map",
+    "stability_threshold",
+    "unbalance_response",
+    "unstable_ranges",
 ]

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.campbell import Campbell
+    from exudyn_rotor.linear.modal.campbell import Campbell
 
 # colours that stay apart in grey and for colour-blind readers (Okabe and Ito)
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")

@@ -8,11 +8,11 @@ from models import STEEL, block_beam, two_masses
 from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import SolidRotor, campbell
-from exudyn_rotor.linear.campbell import Campbell
-from exudyn_rotor.linear.full import FullRotor, Subspace
+from exudyn_rotor.linear.equations.full import FullRotor, Subspace
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.modal.campbell import Campbell
+from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.results import load_result
-from exudyn_rotor.linear.supports import Support
-from exudyn_rotor.linear.whirl import WhirlContent
 
 HERTZ = 2.0 * np.pi
 MASS = 12.0

@@ -8,11 +8,11 @@ from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import SolidRotor, campbell
-from exudyn_rotor.linear.critical import critical_speed_map, critical_speeds
-from exudyn_rotor.linear.full import FullRotor
-from exudyn_rotor.linear.resonance import full_resonances
+from exudyn_rotor.linear.equations.full import FullRotor
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.modal.resonance import full_resonances
 from exudyn_rotor.linear.results import load_result
-from exudyn_rotor.linear.supports import Support
 
 KY, KZ = 196e4, 100e4  # Appendix B, unit masses
 

@@ -7,13 +7,13 @@ import scipy.linalg as la
 from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import add_rotor
-from exudyn_rotor.linear import forced
-from exudyn_rotor.linear.balance import Unbalance, permissible_unbalance
-from exudyn_rotor.linear.forced import forced_motion
-from exudyn_rotor.linear.loads import BaseAcceleration, HarmonicForce
-from exudyn_rotor.linear.response import harmonic_response, unbalance_response
-from exudyn_rotor.linear.supports import Support
-from exudyn_rotor.linear.system import LinearRotor
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.linear.response import forced
+from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
+from exudyn_rotor.linear.response.forced import forced_motion
+from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
 
 MASS, RADIUS, LENGTH = 10.0, 0.1, 0.2  # ring rotor: I_p = m r², I_t = m (r²/2 + l²)
 K, C = 4e5, 200.0  # critical speed sqrt(K/MASS) = 200 rad/s

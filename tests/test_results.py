@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from point_rotors import ring_rotor
 
-from exudyn_rotor.linear.balance import Unbalance
-from exudyn_rotor.linear.loads import HarmonicForce
-from exudyn_rotor.linear.response import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.balance import Unbalance
+from exudyn_rotor.linear.response.loads import HarmonicForce
+from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.results import Result, load_result, save_result, storable
-from exudyn_rotor.linear.supports import Support
 
 
 @storable

@@ -12,11 +12,11 @@ from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
-from exudyn_rotor.linear.floquet import constant_exponents, fold, monodromy
-from exudyn_rotor.linear.scene import LinearScene
-from exudyn_rotor.linear.stability import exponents, stability
-from exudyn_rotor.linear.supports import Support
-from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.equations.scene import LinearScene
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.stability.analysis import exponents, stability
+from exudyn_rotor.linear.stability.floquet import constant_exponents, fold, monodromy
 
 BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
 SPEED = 200.0

@@ -8,7 +8,17 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
-from exudyn_rotor.linear.floquet import (
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.linear.stability.analysis import (
+    Stability,
+    exponents,
+    stability,
+    stability_threshold,
+    unstable_ranges,
+)
+from exudyn_rotor.linear.stability.floquet import (
     UnconvergedError,
     constant_exponents,
     floquet_exponents,
@@ -16,17 +26,7 @@ from exudyn_rotor.linear.floquet import (
     hill_exponents,
     monodromy,
 )
-from exudyn_rotor.linear.results import load_result
-from exudyn_rotor.linear.stability import (
-    Stability,
-    exponents,
-    stability,
-    stability_threshold,
-    unstable_ranges,
-)
-from exudyn_rotor.linear.stability_map import stability_map
-from exudyn_rotor.linear.supports import Support
-from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.stability.maps import stability_map
 
 STIFFNESS, OUTER, INNER, MASS = 2e5, 60.0, 40.0, 5.0
 BEARING, BEARING_DAMPING = np.diag([3e5, 5e5]), np.diag([20.0, 30.0])
@@ -270,12 +270,12 @@ def test_bad_input(speeds, options, message):
 def test_unreached_tolerances_are_errors(monkeypatch):
     slow = mathieu(50.0, 20.0)
     slow = PeriodicSystem(0.1, slow.M, slow.D, slow.K)
-    monkeypatch.setattr("exudyn_rotor.linear.floquet.MOST_UNKNOWNS", 30)
+    monkeypatch.setattr("exudyn_rotor.linear.stability.floquet.MOST_UNKNOWNS", 30)
     with pytest.raises(UnconvergedError, match="harmonics up to"):
         hill_exponents(slow)
     fallen_back = exponents(slow)
     assert np.array_equal(np.sort(fallen_back), np.sort(floquet_exponents(slow)))
-    monkeypatch.setattr("exudyn_rotor.linear.floquet.MOST_STEPS", 512)
+    monkeypatch.setattr("exudyn_rotor.linear.stability.floquet.MOST_STEPS", 512)
     with pytest.raises(UnconvergedError, match="steps a period"):
         floquet_exponents(slow)
     with pytest.raises(UnconvergedError, match="steps a period"):

@@ -11,14 +11,22 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import ReducedRotor, SolidRotor, Support, campbell, craig_bampton_modes
-from exudyn_rotor import critical_speeds
+from exudyn_rotor import (
+    ReducedRotor,
+    SolidRotor,
+    Support,
+    campbell,
+    craig_bampton_modes,
+    critical_speeds,
+)
+from exudyn_rotor.linear.equations.system import LinearRotor
 
 REFERENCE = Path(__file__).parent / "reference" / "timoshenko_ross.json"
 LATERAL = ("forward", "backward", "mixed")
@@ -35,7 +43,28 @@ def solid_shaft(shaft: dict, material: dict, element_size: float) -> ReducedRoto
     solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
     mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=element_size))
     rotor = SolidRotor.from_ngsolve(mesh, material, axis="z").center_interfaces()
-    return rotor.reduce(craig_bampton_modes(rotor, 12, coupling="RBE3"))
+    modes = craig_bampton_modes(rotor, 12, coupling="RBE3")
+    for index, z in enumerate(shaft["discs"]):
+        inside = np.abs(rotor.nodes[:, 2] - z) < 0.5 * shaft["disc"]["width"] + 1e-9
+        rotor = rotor.with_interface(f"disc {index}", np.flatnonzero(inside))
+    return rotor.reduce(modes)
+
+
+def elastic_disc_tilt(reduced: ReducedRotor, shaft: dict) -> LinearRotor:
+    """Return the rotor with the centrifugal stiffness I_p/2 of every disc's own, elastic tilt.
+
+    Level 'tilt' knows the rigid tilt of the whole rotor alone. A disc on a bending shaft tilts by
+    itself, and its stiffness per Ω² is I_p/2 times the square of that tilt.
+    """
+    plain = LinearRotor.of(reduced, supports(shaft), "none")
+    disc = shaft["disc"]
+    mass = 0.25 * np.pi * disc["diameter"] ** 2 * disc["width"] * 7850.0
+    polar = mass * disc["diameter"] ** 2 / 8.0
+    K2 = np.zeros_like(plain.K2)
+    for index in range(len(shaft["discs"])):
+        tilt = plain.interface_motion(f"disc {index}")[3:5]
+        K2 += 0.5 * polar * tilt.T @ tilt
+    return replace(plain, K2=K2)
 
 
 def supports(shaft: dict) -> list[Support]:

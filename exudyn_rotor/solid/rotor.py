@@ -331,8 +331,9 @@ class SolidRotor:
         Parameters
         ----------
         modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
-            A number of free eigenmodes (0 for a rigid rotor), modes of :mod:`exudyn_rotor.modes`, a FEMinterface whose
-            modes have been computed, or displacement columns in mesh axes [m].
+            A number of free eigenmodes (0 for a rigid rotor), modes of :mod:`exudyn_rotor.modes`,
+            a FEMinterface whose modes have been computed, or displacement columns in mesh axes
+            [m].
         stress : bool, optional
             Also recover stress modes, for stress sensors and contour pictures.
         keep_shapes : bool, optional

@@ -22,12 +22,12 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import brentq
 
-from exudyn_rotor.linear.eigen import FloquetModes
-from exudyn_rotor.linear.full import FullRotor, Subspace
-from exudyn_rotor.linear.hill import harmonic_step
-from exudyn_rotor.linear.places import Source
-from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.whirl import WhirlContent
+from exudyn_rotor.linear.equations.full import FullRotor, Subspace
+from exudyn_rotor.linear.equations.hill import harmonic_step
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.modal.eigen import FloquetModes
+from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.response.places import Source
 
 # share of a mode's energy that must turn with the excitation
 _SHARE = 0.4

@@ -1,8 +1,9 @@
 """Stability of a rotor on its supports: over the spin speed, and its limits.
 
 The exponents λ are eigenvalues where the equations are constant in the rotor frame (isotropic
-supports, or none at rest), else Floquet exponents (:mod:`exudyn_rotor.linear.floquet`). Growth is
-the largest real part; exact zeros of it, as without damping, count as stable.
+supports, or none at rest), else Floquet exponents
+(:mod:`exudyn_rotor.linear.stability.floquet`). Growth is the largest real part; exact zeros of it,
+as without damping, count as stable.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import plots
-from exudyn_rotor.linear import floquet
+from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem, Terms
 from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.source import linear_source
-from exudyn_rotor.linear.supports import Support
+from exudyn_rotor.linear.stability import floquet
 from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem, Terms
 
 METHODS = ("auto", "floquet", "hill", "eigen")
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency

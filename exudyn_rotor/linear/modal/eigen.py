@@ -12,11 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.hill import harmonic_step, harmonics, hill_matrices
-from exudyn_rotor.linear.system import PeriodicSystem
+from exudyn_rotor.linear.equations.hill import harmonic_step, harmonics, hill_matrices
+from exudyn_rotor.linear.equations.system import PeriodicSystem
 
 # a double root of a defective eigenvalue splits by the root of the rounding error
 _SPLIT = 4.0 * np.sqrt(np.finfo(float).eps)
+# relative distance from an eigenvalue that keeps its matrix invertible
+_OFF_ROOT = 1e-9
 # 1 − MAC of the state vectors of two copies of a defective eigenvalue
 _PARALLEL = 1e-4
 # distance of the exponents of two members of a Floquet family, as a share of their step
@@ -86,9 +88,25 @@ def quadratic_modes(
     resolution = _SPLIT * np.abs(values).max(initial=0.0)
     values = _merged(values, states, resolution)
     chosen = _one_of_each_pair(values, size)
-    vectors = states[:size, chosen]
-    vectors = vectors / np.maximum(np.linalg.norm(vectors, axis=0), 1e-300)
+    vectors = _refined(values[chosen], states[:size, chosen], M, D, K)
     return values[chosen], vectors, resolution
+
+
+def _refined(
+    values: np.ndarray, vectors: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
+) -> np.ndarray:
+    """Return unit vectors after one inverse iteration.
+
+    Next to stiff static modes, a free motion (a Jordan block at zero) mixes into the vectors of all
+    slow modes by rounding; the eigenvalues do not suffer.
+    """
+    refined = np.array(vectors, dtype=complex)
+    for column, value in enumerate(values):
+        if value != 0.0:
+            shifted = value * (1.0 + _OFF_ROOT)
+            matrix = shifted**2 * M + shifted * D + K
+            refined[:, column] = np.linalg.solve(matrix, M @ refined[:, column])
+    return refined / np.maximum(np.linalg.norm(refined, axis=0), 1e-300)
 
 
 def _all_modes(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,6 @@
 """Critical speeds of a rotor, and over the stiffness of its supports.
 
-The equations are in :mod:`exudyn_rotor.linear.resonance`.
+The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import plots
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.full import FullRotor
-from exudyn_rotor.linear.resonance import Resonance, full_resonances, resonances
+from exudyn_rotor.linear.equations.full import FullRotor
+from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.modal.resonance import Resonance, full_resonances, resonances
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.source import linear_source
-from exudyn_rotor.linear.supports import Support
 from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.linear.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
@@ -136,7 +136,7 @@ class CriticalSpeedMap(Result):
     speeds : ndarray, shape (s, c)
         Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
     whirl_codes : ndarray of int, shape (s, c)
-        Index into :data:`exudyn_rotor.linear.whirl.WHIRLS`; −1 where the speed is NaN.
+        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
     order : float
     """
 

@@ -1,7 +1,8 @@
 """Steady forced motion of a periodic system, by harmonic balance (Hill's method).
 
 In the rotor frame, loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give
-``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with the equations of :mod:`exudyn_rotor.linear.hill` at λ = iω.
+``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with the equations of
+:mod:`exudyn_rotor.linear.equations.hill` at λ = iω.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
 
-from exudyn_rotor.linear.hill import harmonics, hill_matrices
-from exudyn_rotor.linear.system import PeriodicSystem
+from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
+from exudyn_rotor.linear.equations.system import PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
 

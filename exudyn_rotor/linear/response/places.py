@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from exudyn_rotor.linear.supports import axes_of
-from exudyn_rotor.linear.system import PeriodicSystem
+from exudyn_rotor.linear.equations.supports import axes_of
+from exudyn_rotor.linear.equations.system import PeriodicSystem
 
 At = str | int | Sequence[float]
 

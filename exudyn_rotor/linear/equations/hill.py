@@ -15,7 +15,7 @@ from math import gcd
 
 import numpy as np
 
-from exudyn_rotor.linear.system import PeriodicSystem, Terms
+from exudyn_rotor.linear.equations.system import PeriodicSystem, Terms
 
 
 def harmonic_step(system: PeriodicSystem) -> int:

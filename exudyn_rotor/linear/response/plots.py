@@ -12,7 +12,7 @@ from matplotlib.ticker import MultipleLocator
 from exudyn_rotor.plots import COLORS, LINES, figure
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.response_results import Response
+    from exudyn_rotor.linear.response.results import Response
 
 HERTZ = 1.0 / (2.0 * np.pi)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_rotor.linear.supports import Support, axes_of
+from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.modes.basis import RIGID, rigid_columns
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor

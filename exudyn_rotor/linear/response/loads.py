@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.linear.balance import Unbalance
-from exudyn_rotor.linear.forced import into_rotor_frame
-from exudyn_rotor.linear.places import At, Place, Source, place
-from exudyn_rotor.linear.supports import FRAMES, axes_of
+from exudyn_rotor.linear.equations.supports import FRAMES, axes_of
+from exudyn_rotor.linear.response.balance import Unbalance
+from exudyn_rotor.linear.response.forced import into_rotor_frame
+from exudyn_rotor.linear.response.places import At, Place, Source, place
 
 # rounding leaves this much of the unbalance of a perfectly balanced mesh
 _BALANCED = 1e-13

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from exudyn_rotor import plots
-from exudyn_rotor.linear import whirl
+from exudyn_rotor.linear.modal import whirl
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.campbell import Campbell
+    from exudyn_rotor.linear.modal.campbell import Campbell
 
 _HERTZ = 1.0 / (2.0 * np.pi)
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a

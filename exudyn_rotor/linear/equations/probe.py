@@ -17,7 +17,7 @@ from exudyn_rotor.motion import Motion
 from exudyn_rotor.stiffening import stiffening as second_order
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.scene import LinearScene
+    from exudyn_rotor.linear.equations.scene import LinearScene
 
 _CONFIGURATIONS = exudyn.ConfigurationType
 _STATES = (

@@ -17,10 +17,10 @@ import scipy.sparse as sp
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.linear.eigen import FloquetModes, floquet_modes
-from exudyn_rotor.linear.supports import Support, axes_of
-from exudyn_rotor.linear.system import LinearRotor
-from exudyn_rotor.linear.whirl import WhirlContent, spread
+from exudyn_rotor.linear.equations.supports import Support, axes_of
+from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
+from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
 from exudyn_rotor.modes.eigen import lanczos_modes
 from exudyn_rotor.modes.factor import SparseCholesky
 from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor

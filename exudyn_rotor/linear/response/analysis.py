@@ -14,15 +14,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.balance import Unbalance
-from exudyn_rotor.linear.forced import forced_motion, into_inertial_frame
-from exudyn_rotor.linear.loads import BaseAcceleration, HarmonicForce, total, unbalance_load
-from exudyn_rotor.linear.places import At, Place, Source, places
-from exudyn_rotor.linear.response_results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.source import linear_source
-from exudyn_rotor.linear.supports import FRAMES, Support
+from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.supports import FRAMES, Support
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
+from exudyn_rotor.linear.response.balance import Unbalance
+from exudyn_rotor.linear.response.forced import forced_motion, into_inertial_frame
+from exudyn_rotor.linear.response.loads import (
+    BaseAcceleration,
+    HarmonicForce,
+    total,
+    unbalance_load,
+)
+from exudyn_rotor.linear.response.places import At, Place, Source, places
+from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.linear.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 

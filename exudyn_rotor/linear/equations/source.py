@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import exudyn
 
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.full import FullRotor, as_reduced
-from exudyn_rotor.linear.supports import Support
-from exudyn_rotor.linear.system import LinearRotor
+from exudyn_rotor.linear.equations.full import FullRotor, as_reduced
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.scene import LinearScene
+    from exudyn_rotor.linear.equations.scene import LinearScene
 
 # full models up to this size are solved with dense matrices
 DENSE_SIZE = 600
@@ -78,7 +78,7 @@ def _checked(supports: Sequence[Support]) -> tuple[Support, ...]:
 def _scene(
     mbs: exudyn.MainSystem, body: RotorBody | None, supports: tuple[Support, ...]
 ) -> LinearScene:
-    from exudyn_rotor.linear.scene import LinearScene
+    from exudyn_rotor.linear.equations.scene import LinearScene
 
     if not isinstance(body, RotorBody):
         raise TypeError(

@@ -22,8 +22,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
-from exudyn_rotor.linear.hill import harmonic_step, harmonics, hill_matrices
-from exudyn_rotor.linear.system import PeriodicSystem
+from exudyn_rotor.linear.equations.hill import harmonic_step, harmonics, hill_matrices
+from exudyn_rotor.linear.equations.system import PeriodicSystem
 
 MOST_STEPS = 2**14
 MOST_UNKNOWNS = 1600  # of Hill's problem in first-order form

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_rotor.linear.places import Source
-from exudyn_rotor.linear.supports import axes_of
+from exudyn_rotor.linear.equations.supports import axes_of
+from exudyn_rotor.linear.response.places import Source
 
 if TYPE_CHECKING:
-    from exudyn_rotor.linear.scene import LinearScene
+    from exudyn_rotor.linear.equations.scene import LinearScene
     from exudyn_rotor.reduced import ReducedRotor
 
 WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.linear.supports import Support, axes_of
+from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.stiffening import stiffening as second_order
 

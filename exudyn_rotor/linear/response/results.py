@@ -146,19 +146,19 @@ class Response(Result):
 
     def plot(self, place: str | None = None, **options) -> tuple[Axes, Axes]:
         """Draw a Bode diagram; see :func:`exudyn_rotor.linear.response_plots.plot_bode`."""
-        from exudyn_rotor.linear.response_plots import plot_bode
+        from exudyn_rotor.linear.response.plots import plot_bode
 
         return plot_bode(self, place, **options)
 
     def plot_polar(self, place: str | None = None, **options) -> Axes:
         """Draw phasors in their plane; see :func:`...response_plots.plot_polar`."""
-        from exudyn_rotor.linear.response_plots import plot_polar
+        from exudyn_rotor.linear.response.plots import plot_polar
 
         return plot_polar(self, place, **options)
 
     def plot_orbit(self, value: float, **options) -> Axes:
         """Draw orbits; see :func:`exudyn_rotor.linear.response_plots.plot_orbit`."""
-        from exudyn_rotor.linear.response_plots import plot_orbit
+        from exudyn_rotor.linear.response.plots import plot_orbit
 
         return plot_orbit(self, value, **options)
 

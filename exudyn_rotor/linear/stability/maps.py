@@ -12,8 +12,9 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import plots
+from exudyn_rotor.linear.equations.system import PeriodicSystem
 from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.stability import (
+from exudyn_rotor.linear.stability.analysis import (
     ascending,
     check_method,
     excess_growth,
@@ -21,7 +22,6 @@ from exudyn_rotor.linear.stability import (
     source_of,
 )
 from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.linear.system import PeriodicSystem
 
 
 @storable

@@ -12,17 +12,17 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.eigen import FloquetModes, floquet_modes, groups
-from exudyn_rotor.linear.free import free_motions
-from exudyn_rotor.linear.full import FullRotor, Subspace
-from exudyn_rotor.linear.places import Source
+from exudyn_rotor.linear.equations.free import free_motions
+from exudyn_rotor.linear.equations.full import FullRotor, Subspace
+from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes, groups
+from exudyn_rotor.linear.modal.tracking import track
+from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
+from exudyn_rotor.linear.response.places import Source
 from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.source import linear_source
-from exudyn_rotor.linear.supports import Support
 from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.linear.system import LinearRotor
-from exudyn_rotor.linear.tracking import track
-from exudyn_rotor.linear.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
@@ -50,7 +50,7 @@ class Campbell(Result):
     damping_ratio, log_decrement : ndarray, shape (s, k)
         ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω.
     whirl_codes : ndarray of int, shape (s, k)
-        Index into :data:`exudyn_rotor.linear.whirl.WHIRLS`; see :attr:`whirl`.
+        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; see :attr:`whirl`.
     nodal_diameters : ndarray of int, shape (s, k)
         n where ±n hold at least 70 % of the mode's energy; −1 where none does. Without mode shapes
         n comes from the interfaces and is 0 or 1.
@@ -113,7 +113,7 @@ class Campbell(Result):
         ValueError
             For an unknown frame.
         """
-        from exudyn_rotor.linear.diagram import draw_campbell
+        from exudyn_rotor.linear.modal.diagram import draw_campbell
 
         if frame not in FRAMES:
             raise ValueError(f"frame {frame!r} is unknown; use one of {', '.join(FRAMES)}")

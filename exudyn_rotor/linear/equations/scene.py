@@ -21,11 +21,11 @@ import scipy.linalg
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.floquet import UnconvergedError
-from exudyn_rotor.linear.hill import hill_matrices
-from exudyn_rotor.linear.probe import Probe, linearised, probing
-from exudyn_rotor.linear.supports import axes_of
-from exudyn_rotor.linear.system import PeriodicSystem, Terms
+from exudyn_rotor.linear.equations.hill import hill_matrices
+from exudyn_rotor.linear.equations.probe import Probe, linearised, probing
+from exudyn_rotor.linear.equations.supports import axes_of
+from exudyn_rotor.linear.equations.system import PeriodicSystem, Terms
+from exudyn_rotor.linear.stability.floquet import UnconvergedError
 from exudyn_rotor.nodal import skew
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
