@@ -22,7 +22,7 @@ DENSE_SIZE = 600
 
 
 def linear_source(
-    target: ReducedRotor | SolidRotor | exudyn.MainSystem,
+    target: ReducedRotor | SolidRotor | LinearRotor | exudyn.MainSystem,
     *,
     body: RotorBody | None = None,
     supports: Sequence[Support] = (),
@@ -32,8 +32,9 @@ def linear_source(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor or exudyn.MainSystem
-        A small SolidRotor (up to 600 degrees of freedom) gives dense equations, too.
+    target : ReducedRotor, SolidRotor, LinearRotor or exudyn.MainSystem
+        A small SolidRotor (up to 600 degrees of freedom) gives dense equations, too. A LinearRotor
+        is taken as it is.
     body : RotorBody, optional
         The rotor of a scene; only with a MainSystem.
     supports : sequence of Support, optional
@@ -49,6 +50,10 @@ def linear_source(
         For an unknown interface or level of stiffening, or supports given with a scene.
     """
     supports = _checked(supports)
+    if isinstance(target, LinearRotor):
+        if supports or body is not None:
+            raise ValueError("a LinearRotor has its supports already; leave supports and body out")
+        return target
     if isinstance(target, exudyn.MainSystem):
         return _scene(target, body, supports)
     if body is not None:
