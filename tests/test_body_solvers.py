@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorUserFunction
-from models import STEEL, disc_on_shaft
+from models import STEEL, disc_on_shaft, two_masses
 from scipy.integrate import simpson
 
 from exudyn_rotor import Motion, PrescribedMotion, SolidRotor, SpinAxis, add_rotor
@@ -246,3 +246,20 @@ def test_work_of_the_drive_is_change_of_energy_plus_losses(reduced, case):
     work = simpson(torque * speed, x=t)
     scale = simpson(abs(torque * speed), x=t)
     assert abs(work - simpson(lost, x=t) - (energy[-1] - energy[0])) < limit * scale
+
+
+def test_rotor_without_polar_inertia_spins_at_constant_speed():
+    """Two masses on the axis: nothing resists the spin, and its locked coordinate still follows."""
+    rotor = SolidRotor.from_matrices(**two_masses(), axis="x")
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    body = add_rotor(mbs, rotor.reduce(6), translation="none", spin=300.0)
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = 100
+    settings.timeIntegration.endTime = 0.01
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    angle = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)[5]
+    assert angle == pytest.approx(3.0, rel=1e-12)

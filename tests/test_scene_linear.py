@@ -8,10 +8,11 @@ import pytest
 from asymmetric import LENGTH, asymmetric_shaft
 from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
+from models import STEEL, disc_on_shaft
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
+from exudyn_rotor import Formulation, PrescribedMotion, SolidRotor, add_rotor, select_modes
 from exudyn_rotor.linear.equations.scene import LinearScene
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
@@ -363,3 +364,26 @@ def test_a_load_that_nothing_holds_has_no_steady_motion():
     mbs.Assemble()
     with pytest.raises(ValueError, match="no steady motion"):
         LinearScene.of(mbs, body).at(SPEED)
+
+
+@pytest.mark.parametrize("translation", ["free", "none"])
+def test_free_axial_motion_without_a_load_stays_at_rest(translation):
+    """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
+    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.08), STEEL, "z").center_interfaces()
+    reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    body = add_rotor(mbs, reduced, translation=translation, spin=100.0)
+    ground = mbs.CreateGround()
+    for name, interface in reduced.interfaces.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=list(interface.reference),
+            stiffness=[1e6, 2e6, 0.0],
+            damping=[100.0, 100.0, 0.0],
+        )
+    mbs.Assemble()
+    for speed in (50.0, 100.0, 150.0):
+        scene = LinearScene.of(mbs, body).at(speed)
+        assert scene.order == 2
+        assert all(np.all(np.isfinite(term)) for term in scene.K.values())

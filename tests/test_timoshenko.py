@@ -1,6 +1,6 @@
 """Slender solid shafts against Timoshenko beams of ross-rotordynamics 2.3.0.
 
-The numbers are in validation/reference/timoshenko_ross.json, written by validation/ross_reference.py.
+The numbers are in validation/reference/timoshenko_ross.json, written by ross_reference.py.
 """
 
 import sys
@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "validation"))
 
-from timoshenko import compare_all  # noqa: E402
+from timoshenko import compare_all
 
 
 @pytest.fixture(scope="module")

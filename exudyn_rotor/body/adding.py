@@ -19,6 +19,7 @@ from exudyn.itemInterface import (
 )
 from numpy.typing import ArrayLike
 
+from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body import inputs
 from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.body.locking import (
@@ -53,6 +54,7 @@ class _Plan:
     """Everything about the new body, checked, before the system is touched."""
 
     name: str | None
+    axis: SpinAxis
     formulation: Formulation
     stiffening: str
     selection: Selection
@@ -240,9 +242,12 @@ def _plan(
     # gravity on the shell exerts no moment about e by the deflection Sζ, which a free spin needs
     own_gravity = not native_shell or (formulation.has_spin and formulation.translation_count == 0)
     by_mass = locking == "mass" or (locking == "auto" and not locks.varying and not skew)
-    own = np.repeat([invariants.mass, max(invariants.Theta, 1e-300)], 3)
+    # a rotor all on its axis has no inertia about it, and its locked spin still needs one
+    spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
+    own = np.repeat([invariants.mass, spin_inertia], 3)
     return _Plan(
         name=name,
+        axis=reduced.axis,
         formulation=formulation,
         stiffening=stiffening,
         selection=selection,
@@ -390,4 +395,14 @@ def _body(mbs: exudyn.MainSystem, plan: _Plan, **added) -> RotorBody:
     return RotorBody(mbs=mbs, **(shared | added))
 
 
-_SHARED = ("name", "formulation", "stiffening", "selection", "motion", "frame", "layout", "locks")
+_SHARED = (
+    "name",
+    "axis",
+    "formulation",
+    "stiffening",
+    "selection",
+    "motion",
+    "frame",
+    "layout",
+    "locks",
+)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import exudyn
 import numpy as np
 
+from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body import sensors
 from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.body.locking import Locks
@@ -24,6 +25,8 @@ class RotorBody:
     ----------
     mbs : exudyn.MainSystem
     name : str or None
+    axis : SpinAxis
+        Mesh coordinates.
     formulation : Formulation
     stiffening : str
     selection : Selection
@@ -52,6 +55,7 @@ class RotorBody:
 
     mbs: exudyn.MainSystem
     name: str | None
+    axis: SpinAxis
     formulation: Formulation
     stiffening: str
     selection: Selection

@@ -130,16 +130,12 @@ class LinearScene:
     def unit_unbalance(self) -> np.ndarray:
         """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
 
-        A moving frame has its origin in the centre of mass; the spin axis is then taken to run
-        through the markers, on the mean.
+        A moving frame has its origin in the centre of mass, which then carries the unbalance.
         """
         inv, body = self.body.motion.invariants, self.body
         load = np.zeros(len(self.free))
-        if self._count and body.markers:
-            points = [_marker_nodes(body, name)[0].mean(axis=0) for name in body.markers]
-            offset = -body.frame.B.T @ np.mean(points, axis=0)
-            across = offset - inv.direction * (inv.direction @ offset)
-            load[: self._count] = self._axes[:, : self._count].T @ (inv.mass * across)
+        across = body.axis.radial(body.frame.origin)
+        load[: self._count] = self._axes[:, : self._count].T @ (inv.mass * across)
         load[self._own] = inv.h
         return self.N.T @ load
 
@@ -233,7 +229,9 @@ def _about_steady_motion(probe: Probe, samples: int) -> PeriodicSystem | None:
 
 def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve with motions that nothing holds left at rest; return what remains of the load, too."""
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))
+    rows = np.abs(K).max(axis=1)
+    # a row of round-off is not blown up to the size of the others
+    scale = 1.0 / np.sqrt(np.maximum(rows, max(_NOISE * rows.max(), 1e-300)))
     scaled = scale[:, None] * K * scale
     found = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
     answer = scale * found[0]
