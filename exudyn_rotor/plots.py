@@ -37,7 +37,7 @@ def plot_orbits(axes: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:
     axes.set_xlabel("horizontal displacement [µm]")
     axes.set_ylabel("vertical displacement [µm]")
     axes.grid(alpha=0.3)
-    _legend_above(axes)
+    legend_above(axes, columns=1)
     return axes
 
 
@@ -47,7 +47,7 @@ def plot_histories(axes: Axes, time: np.ndarray, histories: Mapping[str, np.ndar
         axes.plot(time, 1e6 * values, line, color=color, lw=1.0, label=label)
     axes.set_ylabel("displacement [µm]")
     axes.grid(alpha=0.3)
-    _legend_above(axes)
+    legend_above(axes)
     return axes
 
 
@@ -59,7 +59,7 @@ def plot_deviation(axes: Axes, time: np.ndarray, deviations: Mapping[str, np.nda
     axes.set_ylabel("deviation [µm]")
     axes.set_xlabel("time [s]")
     axes.grid(alpha=0.3, which="both")
-    _legend_above(axes)
+    legend_above(axes)
     return axes
 
 
@@ -74,6 +74,7 @@ def plot_campbell(axes: Axes, result: Campbell) -> Axes:
     return axes
 
 
-def _legend_above(axes: Axes) -> None:
+def legend_above(axes: Axes, columns: int = 2, handles: list | None = None) -> None:
     """Put the legend above the axes, where it hides nothing."""
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False)
+    shown = {} if handles is None else {"handles": handles}
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, **shown)

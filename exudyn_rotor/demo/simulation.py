@@ -136,7 +136,7 @@ def _integrate(mbs: exudyn.MainSystem, label: str, end_time: float, step: float)
 def draw_rotor(SC: exudyn.SystemContainer, path: Path) -> None:
     """Draw the scene with the rotor's deformation, magnified."""
     settings = SC.visualizationSettings
-    settings.general.drawCoordinateSystem = 0
+    settings.view0.scene.drawCoordinateSystem = 0
     settings.general.showSolverInformation = False
     settings.general.showSolutionInformation = False
     settings.view0.window.showComputationInfo = False

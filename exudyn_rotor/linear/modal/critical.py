@@ -158,7 +158,7 @@ class CriticalSpeedMap(Result):
         ax.set_xlabel("support stiffness [N/m]")
         ax.set_ylabel(f"critical speed of order {self.order:g} [Hz]")
         ax.grid(alpha=0.3, which="both")
-        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
+        plots.legend_above(ax, 4)
         return ax
 
 

@@ -57,7 +57,7 @@ def draw_campbell(result: Campbell, ax: Axes | None, frame: str) -> Axes:
     ax.set_ylabel(f"frequency in the {'inertial' if frame == 'inertial' else 'rotor'} frame [Hz]")
     ax.set_ylim(bottom=0.0)
     ax.grid(alpha=0.3)
-    ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
+    plots.legend_above(ax, 3, handles)
     return ax
 
 
