@@ -1,13 +1,12 @@
-"""Lossless storage in ``.npz`` files without pickle: loading never executes code."""
+"""Lossless storage of reduced rotors."""
 
 from __future__ import annotations
 
-import os
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
+from exudyn_rotor.archive import read_arrays, write_arrays
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
@@ -36,14 +35,7 @@ def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
     if rotor.shapes is not None:
         values = {key: getattr(rotor.shapes, key) for key in _SHAPES}
         data |= {f"shapes.{key}": value for key, value in values.items() if value is not None}
-    target = Path(path)
-    draft = target.with_name(target.name + ".part")
-    try:
-        with open(draft, "wb") as file:
-            np.savez_compressed(file, allow_pickle=False, **data)
-        os.replace(draft, target)
-    finally:
-        draft.unlink(missing_ok=True)
+    write_arrays(path, data)
 
 
 def load_reduced(path: str | PathLike) -> ReducedRotor:
@@ -54,25 +46,13 @@ def load_reduced(path: str | PathLike) -> ReducedRotor:
     ValueError
         When the file is not a reduced rotor of this package, or is damaged.
     """
-    data = _read_arrays(path)
+    data = read_arrays(path)
     if str(data.get("format")) != _FORMAT:
         raise ValueError(f"{path}: holds no reduced rotor; write one with ReducedRotor.save")
     try:
         return _rotor_from(data)
     except KeyError as error:
         raise ValueError(f"{path}: the entry {error} is missing; the file is damaged") from error
-
-
-def _read_arrays(path: str | PathLike) -> dict[str, np.ndarray]:
-    with open(path, "rb") as file:
-        try:
-            archive = np.load(file, allow_pickle=False)
-            return {key: archive[key] for key in archive.files}
-        # damage shows as errors of zip, zlib, struct, numpy, the file system, or as a wrong type
-        except Exception as error:
-            raise ValueError(
-                f"{path}: not a readable .npz file without pickle ({error})"
-            ) from error
 
 
 def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:

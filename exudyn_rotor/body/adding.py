@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 
 import exudyn
 import numpy as np
@@ -19,18 +18,13 @@ from exudyn.itemInterface import (
 )
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body import inputs
-from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.body.locking import (
-    LOCKINGS,
     SPIN,
     ConstraintWatch,
-    Locks,
     add_constraints,
     add_spin_guide,
     guiding_force,
-    layout,
 )
 from exudyn_rotor.body.physics import (
     Layout,
@@ -38,34 +32,13 @@ from exudyn_rotor.body.physics import (
     constant_object,
     user_function_object,
 )
+from exudyn_rotor.body.plan import Plan, make_plan
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.shell import ShellMesh, shell_mesh, shell_object
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
-from exudyn_rotor.modes.selection import Selection, select_modes
-from exudyn_rotor.motion import Motion
 from exudyn_rotor.reduced import ReducedRotor
-from exudyn_rotor.stiffening import stiffening as second_order
 
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
-
-
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """Everything about the new body, checked, before the system is touched."""
-
-    name: str | None
-    axis: SpinAxis
-    formulation: Formulation
-    stiffening: str
-    selection: Selection
-    placement: inputs.Placement
-    frame: ShellFrame
-    locks: Locks
-    layout: Layout
-    motion: Motion
-    by_mass: bool
-    shell_gravity: np.ndarray
-    modal: tuple[np.ndarray, np.ndarray]
 
 
 def add_rotor(
@@ -189,7 +162,7 @@ def add_rotor(
     if requests and not native_shell:
         raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
     inputs.check_free_names(mbs, name, requests)
-    plan = _plan(
+    plan = make_plan(
         reduced,
         name,
         formulation,
@@ -211,69 +184,7 @@ def add_rotor(
     return _add_with_shell(mbs, plan, mesh, requests, color)
 
 
-def _plan(
-    reduced: ReducedRotor,
-    name: str | None,
-    formulation: Formulation,
-    stiffening: str,
-    place: inputs.Placement,
-    gravity: np.ndarray,
-    rayleigh: tuple[float, float],
-    modal: tuple[ArrayLike | None, ArrayLike | None],
-    locking: str,
-    native_shell: bool,
-) -> _Plan:
-    if locking not in LOCKINGS:
-        raise ValueError(f"locking {locking!r} is unknown; use one of {', '.join(LOCKINGS)}")
-    selection = select_modes(reduced, formulation)
-    invariants = selection.invariants
-    mode_mass = selection.T.T @ reduced.mode_mass @ selection.T
-    damping = invariants.D + rayleigh[0] * mode_mass + rayleigh[1] * invariants.K
-    invariants = replace(invariants, D=damping)
-    direction = reduced.axis.direction
-    frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
-    locks = Locks.of(formulation, place.rotation @ direction)
-    skew = native_shell and locks.normal is not None
-    if locking == "mass" and skew:
-        raise ValueError(
-            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints', translation='free', or native_shell=False"
-        )
-    # gravity on the shell exerts no moment about e by the deflection Sζ, which a free spin needs
-    own_gravity = not native_shell or (formulation.has_spin and formulation.translation_count == 0)
-    by_mass = locking == "mass" or (locking == "auto" and not locks.varying and not skew)
-    # a rotor all on its axis has no inertia about it, and its locked spin still needs one
-    spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
-    own = np.repeat([invariants.mass, spin_inertia], 3)
-    return _Plan(
-        name=name,
-        axis=reduced.axis,
-        formulation=formulation,
-        stiffening=stiffening,
-        selection=selection,
-        placement=place,
-        frame=frame,
-        locks=locks,
-        layout=layout(locks, invariants.size, own, by_mass),
-        motion=Motion(
-            invariants,
-            # a skew plane of rotation keeps all three translations and adds a linear constraint
-            replace(formulation, translation="free") if skew else formulation,
-            second_order(invariants, stiffening),
-            orientation=place.rotation,
-            plane=locks.plane,
-            gravity=gravity if own_gravity else None,
-        ),
-        by_mass=by_mass,
-        shell_gravity=np.zeros(3) if own_gravity else gravity,
-        modal=(
-            inputs.modal_values(modal[0], "modal_coordinates", selection.labels),
-            inputs.modal_values(modal[1], "modal_velocities", selection.labels),
-        ),
-    )
-
-
-def _add_bare(mbs: exudyn.MainSystem, plan: _Plan) -> RotorBody:
+def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
     """Add only the unknowns of the formulation, on one generic node."""
     motion, spin = plan.motion, int(plan.formulation.has_spin)
     translations = np.zeros(plan.formulation.translation_count)
@@ -292,7 +203,7 @@ def _add_bare(mbs: exudyn.MainSystem, plan: _Plan) -> RotorBody:
 
 def _add_with_shell(
     mbs: exudyn.MainSystem,
-    plan: _Plan,
+    plan: Plan,
     mesh: ShellMesh,
     requests: dict[str, inputs.MarkerRequest],
     color: list[float],
@@ -331,14 +242,14 @@ def _add_with_shell(
 
 
 def _physics(
-    plan: _Plan, place: Layout, nodes: list, guide: LockedForce | None
+    plan: Plan, place: Layout, nodes: list, guide: LockedForce | None
 ) -> ObjectGenericODE2:
     if plan.motion.is_constant:
         return constant_object(plan.motion, place, nodes)
     return user_function_object(plan.motion, place, nodes, guide)
 
 
-def _rigid_node(plan: _Plan) -> NodeRigidBodyRxyz:
+def _rigid_node(plan: Plan) -> NodeRigidBodyRxyz:
     start, rate = np.zeros(6), np.zeros(6)
     start[SPIN], rate[SPIN] = plan.placement.angle, plan.placement.speed
     rate[:3] = plan.placement.velocity
@@ -365,7 +276,7 @@ def _generic_node(name: str | None, start: list, rate: list) -> NodeGenericODE2:
 
 def _add_markers(
     mbs: exudyn.MainSystem,
-    plan: _Plan,
+    plan: Plan,
     shell: exudyn.ObjectIndex,
     mesh: ShellMesh,
     requests: dict[str, inputs.MarkerRequest],
@@ -390,7 +301,7 @@ def _add_markers(
     return markers
 
 
-def _body(mbs: exudyn.MainSystem, plan: _Plan, **added) -> RotorBody:
+def _body(mbs: exudyn.MainSystem, plan: Plan, **added) -> RotorBody:
     shared = {name: getattr(plan, name) for name in _SHARED}
     return RotorBody(mbs=mbs, **(shared | added))
 

@@ -7,15 +7,13 @@ loading never executes code from the file.
 
 from __future__ import annotations
 
-import os
-import zipfile
 from dataclasses import MISSING, fields, is_dataclass
 from os import PathLike
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
+from exudyn_rotor.archive import read_arrays, write_arrays
 from exudyn_rotor.axis import read_only
 
 _FORMAT = "exudyn_rotor result 1"
@@ -92,11 +90,7 @@ def save_result(result: object, path: str | PathLike) -> None:
             data[f"field.{field.name}"] = _encoded(value, f"{name}.{field.name}")
     absent = [field.name for field in fields(result) if getattr(result, field.name) is None]
     data["none"] = np.array(absent, dtype=str)
-    target = Path(path)
-    draft = target.with_name(target.name + ".part")
-    with open(draft, "wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **data)
-    os.replace(draft, target)
+    write_arrays(path, data)
 
 
 def load_result(path: str | PathLike) -> object:
@@ -107,11 +101,7 @@ def load_result(path: str | PathLike) -> object:
     ValueError
         When the file holds no result of a registered class, or is damaged.
     """
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            data = {key: file[key] for key in file.files}
-    except (zipfile.BadZipFile, EOFError, ValueError, TypeError) as error:
-        raise ValueError(f"{path}: not a readable .npz file without pickle ({error})") from error
+    data = read_arrays(path)
     if str(data.get("format")) != _FORMAT:
         raise ValueError(f"{path}: holds no result; write one with save_result")
     cls = _REGISTERED.get(str(data.get("class")))
