@@ -285,7 +285,6 @@ WRONG = {
         {"axis": "z", "initialAngularVelocity": [1.0, 0.0, 100.0]},
         "1 rad/s across the spin axis",
     ),
-    "no axis": ({}, "give axis='x'"),
     "spin twice": (
         {"axis": "z", "spin": 100.0, "initialAngularVelocity": [0.0, 0.0, 90.0]},
         "spin given twice",
@@ -325,4 +324,26 @@ def test_wrong_input_changes_nothing(fem, case):
     arguments["femInterface"] = arguments["femInterface"](fem)
     with pytest.raises((ValueError, TypeError), match=message):
         mbs.CreateFixedAxisFFRFReducedOrderObject(**arguments)
+    assert item_counts(mbs) == before
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), TO_X, TO_Y, SKEW], ids=["z", "x", "y", "skew"])
+def test_rotor_at_rest_turns_about_the_line_through_its_seats(fem, turn):
+    """The unevenness of the mesh is left out where the line is a mesh axis, and is small else."""
+    mbs = exu.SystemContainer().AddSystem()
+    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", turned(fem, turn))
+    axis = made["FFRFReducedOrderObjectDict"]["rotorBody"].axis
+    expected = turn @ [0.0, 0.0, 1.0]
+    expected = expected * np.sign(expected[np.argmax(np.abs(expected))])
+    tolerance = 1e-3 if turn is SKEW else 1e-15
+    np.testing.assert_allclose(axis.direction, expected, atol=tolerance)
+
+
+def test_rotor_at_rest_without_seats_needs_an_axis(fem):
+    model = turned(fem, TO_X)
+    model.nodeSets = model.nodeSets[:1]
+    mbs = exu.SystemContainer().AddSystem()
+    before = item_counts(mbs)
+    with pytest.raises(ValueError, match="give axis='x'"):
+        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model)
     assert item_counts(mbs) == before

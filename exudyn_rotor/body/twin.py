@@ -66,7 +66,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         showMarkers: if True, the markers are drawn
         verbose: if True, a report of the new body is printed
         axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);
-            None takes the direction of initialAngularVelocity, through the mesh origin
+            None takes the direction of initialAngularVelocity, through the mesh origin, or at
+            rest the line through the centres of the boundaries
         translation: 'free', 'in-plane', 'none' or a PrescribedMotion
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations)
@@ -91,7 +92,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     rotation = inputs.rotation_matrix(referenceRotationMatrix)
     omega = inputs.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
     velocity = inputs.vector(initialVelocity, "initialVelocity", "m/s")
-    rotor = SolidRotor.from_fem_interface(femInterface, _axis(axis, rotation, omega))
+    if axis is None:
+        axis = SpinAxis(rotation.T @ omega) if np.any(omega) else axis_through_seats(femInterface)
+    rotor = SolidRotor.from_fem_interface(femInterface, axis)
     reduced = rotor.reduce(femInterface)
     formulation = Formulation(translation, spin)
     speed = _speed_along(rotation @ rotor.axis.direction, omega)
@@ -121,17 +124,44 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     return _dictionary(body)
 
 
-def _axis(
-    axis: SpinAxis | str | ArrayLike | None, rotation: np.ndarray, omega: np.ndarray
-) -> SpinAxis:
-    if axis is not None:
-        return SpinAxis.of(axis)
-    if not np.any(omega):
+def axis_through_seats(fem: FEMinterface) -> SpinAxis:
+    """Return the line through the centres of the node sets, for a rotor that starts at rest.
+
+    The seats of bearings and couplings lie on the spin axis. A line that is a mesh axis but for the
+    unevenness of the mesh is taken as that axis.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two seats, or their centres are not on one line.
+    """
+    positions = fem.GetNodePositionsAsArray()
+    centers = np.array(
+        [
+            np.average(positions[entry["NodeNumbers"]], axis=0, weights=entry["NodeWeights"])
+            for entry in fem.nodeSets
+        ]
+    ).reshape(-1, 3)
+    mean = centers.mean(axis=0) if len(centers) else np.zeros(3)
+    _, spread, lines = np.linalg.svd(centers - mean)
+    if len(centers) < 2 or spread[0] == 0.0 or np.any(spread[1:] > _UNEVEN * spread[0]):
         raise ValueError(
-            "the spin axis is not known: give axis='x', 'y', 'z', a direction in mesh coordinates, "
-            "or an initialAngularVelocity"
+            "the spin axis is not known: the rotor starts at rest, and the centres of its "
+            f"{len(centers)} node sets are not on one line; give axis='x', 'y', 'z' or a "
+            "direction in mesh coordinates"
         )
-    return SpinAxis(rotation.T @ omega)
+    direction = lines[0] * np.sign(lines[0][np.argmax(np.abs(lines[0]))])
+    nearest = np.eye(3)[np.argmax(direction)]
+    offset = mean - nearest * (nearest @ mean)
+    if np.linalg.norm(direction - nearest) < _UNEVEN:
+        direction = nearest
+        if np.linalg.norm(offset) < _UNEVEN * spread[0]:
+            mean = np.zeros(3)
+    return SpinAxis(direction, mean)
+
+
+# share of the length by which an uneven mesh may put the centres of round faces off the axis
+_UNEVEN = 1e-2
 
 
 def _speed_along(direction: np.ndarray, omega: np.ndarray) -> float:
