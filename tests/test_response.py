@@ -364,7 +364,7 @@ def test_bad_input_is_named(changes, message):
             lambda: harmonic_response(rings(), [1.0], HarmonicForce("mid", (1, 0)), speed=np.nan),
             "speed",
         ),
-        (lambda: unbalance_response(ring_rotor(1, 1, 1), [1.0]), "reduced rotor"),
+        (lambda: unbalance_response(ring_rotor(1, 1, 1), [1.0]), "no interfaces"),
         (
             lambda: unbalance_response(rings().without_shapes(), [1.0], at=3),
             "keep_shapes=True",

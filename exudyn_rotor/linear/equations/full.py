@@ -17,6 +17,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.equations.spin import FullSpin, seeds
 from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
@@ -78,6 +79,8 @@ class FullRotor:
     tilt : tuple of ndarray, (6, 3n) and (6, 6)
         V and W of the centrifugal stiffening ``VᵀWV`` per Ω².
     rotor : SolidRotor
+    spin : FullSpin, optional
+        The spin as a coordinate that unbalance does not couple; see :meth:`with_spin`.
     """
 
     axis: SpinAxis
@@ -87,6 +90,7 @@ class FullRotor:
     invariants: Invariants
     tilt: tuple[np.ndarray, np.ndarray]
     rotor: SolidRotor
+    spin: FullSpin | None = None
 
     @classmethod
     def of(
@@ -126,6 +130,27 @@ class FullRotor:
         """Number of coordinates 3n."""
         return self.invariants.size
 
+    @property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², ``h`` (83), shape (3n,), rotor frame."""
+        return self.invariants.h
+
+    def with_spin(self) -> FullRotor:
+        """Return the same with the spin as a coordinate, as responses and stability need it."""
+        center = self.invariants.center
+        return replace(self, spin=FullSpin.of(self.rotor, self.motions, center, self.axis))
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return the interface's motion (6, 3n): displacement and rotation along (n1, n2, e)."""
+        turn = np.kron(np.eye(2), axes_of(self.axis).T)
+        return turn @ self.rotor.interfaces[name].mean_motion(self.rotor.node_count).toarray()
+
+    def node_motion(self, number: int) -> np.ndarray:
+        """Return a mesh node's displacement along (n1, n2, e), shape (6, 3n); no rotation."""
+        rows = np.zeros((6, self.size))
+        rows[:3, 3 * number : 3 * number + 3] = axes_of(self.axis).T
+        return rows
+
     def at(self, speed: float) -> None:
         """Refuse: the equations of a full model are not formed as dense matrices."""
         raise ValueError(
@@ -133,25 +158,36 @@ class FullRotor:
             "reduce the rotor first, e.g. rotor.reduce(30)"
         )
 
-    def residual(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
+    def residual(
+        self,
+        speed: float,
+        values: np.ndarray,
+        stack: dict[int, np.ndarray],
+        strained: dict[int, np.ndarray] | None = None,
+    ) -> dict[int, np.ndarray]:
         """Return what modes leave of the equations, per harmonic (3n, k) [N].
 
-        ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C)) X_n + supports`` with ``s = λ + inΩ``.
+        ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C)) X_n + supports`` with ``s = λ + inΩ``. K
+        is applied to `strained`, the stack itself by default; without free rigid motions in it,
+        rounding does not make forces of them.
         """
-        inv, (V, W) = self.invariants, self.tilt
-        left = {}
+        inv, left = self.invariants, {}
+        strained = stack if strained is None else strained
         for n, X in stack.items():
             rate = values + 1j * n * speed
-            stiffening = V.T @ (W @ (V @ X))
             left[n] = (
                 inv.M @ (X * rate**2)
                 + (inv.D @ X + 2.0 * speed * (inv.G @ X)) * rate
-                + inv.K @ X
-                + speed**2 * (stiffening - inv.C @ X)
+                + inv.K @ strained[n]
+                + speed**2 * self._centrifugal(X)
             )
-        for support, U in zip(self.supports, self.motions, strict=True):
+        for index, support in enumerate(self.supports):
             damping, stiffness = support.terms(speed)
-            moved = {m: U @ X for m, X in stack.items()}
+            if speed == 0.0:  # θ stands still: all harmonics are one
+                zero = np.zeros((6, 6))
+                damping = {0: sum(damping.values(), zero)}
+                stiffness = {0: sum(stiffness.values(), zero)}
+            moved = {m: self._moved(index, X) for m, X in stack.items()}
             for n, residual in left.items():
                 for m, u in moved.items():
                     rate = values + 1j * m * speed
@@ -161,8 +197,31 @@ class FullRotor:
                     if n - m in damping:
                         force = force + damping[n - m] @ (u * rate)
                     if np.ndim(force):
-                        residual += U.T @ force
+                        residual += self._pulled(index, force)
         return left
+
+    def _centrifugal(self, X: np.ndarray) -> np.ndarray:
+        """Return ``(K2 − C) X``, shape (3n, k)."""
+        V, W = self.tilt
+
+        def apply(Y: np.ndarray) -> np.ndarray:
+            return V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
+
+        return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
+
+    def _moved(self, index: int, X: np.ndarray) -> np.ndarray:
+        """Return the motion (6, k) at a support."""
+        u = self.motions[index] @ X
+        if self.spin is not None:
+            u = u + np.outer(self.spin.shifts[index], self.spin.amount(X))
+        return u
+
+    def _pulled(self, index: int, force: np.ndarray) -> np.ndarray:
+        """Return the nodal forces (3n, k) of forces and moments (6, k) at a support."""
+        nodal = self.motions[index].T @ force
+        if self.spin is not None:
+            nodal = nodal + np.outer(self.spin.momentum, self.spin.shifts[index] @ force)
+        return nodal
 
     def whirl_sample(self, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool]:
         """Return points, their motion and the coordinates they use, for WhirlContent."""
@@ -197,6 +256,10 @@ class Subspace:
         self.V = np.zeros((full.size, 0))
         self._small: LinearRotor | None = None
         self._projected = {name: np.zeros((0, 0)) for name in ("M", "K", "D", "G", "C")}
+        # one by one, so that each stays a column of its own: a free one is told by its stiffness
+        for column in np.hstack(seeds(full.rotor)).T:
+            self.grow(column[:, None])
+        self.rigid = self.V.shape[1]
         wanted = min(2 * count + 8, full.size - 1)
         _, modes = lanczos_modes(self._shifted, inv.M, self._factor.solve, wanted, 1e-6)
         self.grow(modes)
@@ -236,7 +299,9 @@ class Subspace:
     def _project(self) -> LinearRotor:
         full, rotor = self.full, self.full.rotor
         inv = full.invariants
-        blocks = {name: X for name, X in self._projected.items()}
+        blocks = {name: X.copy() for name, X in self._projected.items()}
+        # exactly, so that rounding does not hold what is free
+        blocks["K"][: self.rigid] = blocks["K"][:, : self.rigid] = 0.0
         # as one contiguous matrix, which is many times faster than nine products
         P = (np.ascontiguousarray(inv.P).reshape(9, -1) @ self.V).reshape(3, 3, -1)
         invariants = replace(inv, S=inv.S @ self.V, P=P, **blocks)
@@ -250,8 +315,9 @@ class Subspace:
             )
             for s, U in zip(full.supports, full.motions, strict=True)
         }
+        spin = () if full.spin is None else ("spin",)
         reduced = ReducedRotor(
-            full.axis, rotor.center_of_mass, invariants, (), interfaces, blocks["M"]
+            full.axis, rotor.center_of_mass, invariants, spin, interfaces, blocks["M"]
         )
         tilt = V @ self.V
         return LinearRotor(reduced, full.supports, invariants, tilt.T @ W @ tilt)
@@ -260,6 +326,16 @@ class Subspace:
         """Return the circumferential content of the basis V."""
         points, motion, rows, known = self.full.whirl_sample(800)
         return WhirlContent.from_points(points, motion @ self.V[rows], known)
+
+    def solve(self, forces: np.ndarray) -> np.ndarray:
+        """Return ``(K + αM)⁻¹ f`` for forces (3n, k), real or complex."""
+        if np.iscomplexobj(forces):
+            return self._factor.solve(forces.real) + 1j * self._factor.solve(forces.imag)
+        return self._factor.solve(forces)
+
+    def left(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
+        """Return what modes leave of the full equations; see :meth:`FullRotor.residual`."""
+        return self.full.residual(speed, values, stack)
 
     def trial(self, speed: float, count: int) -> FloquetModes:
         """Return the lowest modes in the present subspace."""
@@ -271,10 +347,10 @@ class Subspace:
     def errors(self, speed: float, modes: FloquetModes) -> tuple[np.ndarray, np.ndarray]:
         """Return the relative residual of each mode (k,), and corrections (3n, k h)."""
         stack = dict(zip(modes.orders.tolist(), modes.vectors, strict=True))
-        left = self.full.residual(speed, modes.values, stack)
+        left = self.left(speed, modes.values, stack)
         squared, size, corrections = 0.0, 0.0, []
         for n, residual in left.items():
-            answer = self._factor.solve(residual.real) + 1j * self._factor.solve(residual.imag)
+            answer = self.solve(residual.astype(complex))
             squared = squared + np.einsum("ck,ck->k", residual.conj(), answer).real
             size = size + np.einsum("ck,ck->k", stack[n].conj(), self._shifted @ stack[n]).real
             corrections.append(answer)
@@ -283,6 +359,8 @@ class Subspace:
 
     def grow(self, columns: np.ndarray) -> None:
         """Add directions to V, and their rows and columns to the projected matrices."""
+        if columns.shape[1] == 0:
+            return
         inv = self.full.invariants
         # scaled first, so that rounding can be told from small corrections
         columns = columns / np.sqrt(np.maximum(_norms(columns, inv.M), 1e-300))

@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import FRAMES, Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.response.balance import Unbalance
 from exudyn_rotor.linear.response.forced import forced_motion, into_inertial_frame
+from exudyn_rotor.linear.response.full import FullSteady
 from exudyn_rotor.linear.response.loads import (
     BaseAcceleration,
     HarmonicForce,
@@ -31,7 +33,7 @@ from exudyn_rotor.linear.sweep import sweep
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
-Target = ReducedRotor | exudyn.MainSystem
+Target = ReducedRotor | SolidRotor | exudyn.MainSystem
 Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 
@@ -47,6 +49,7 @@ def unbalance_response(
     frame: str = "inertial",
     stiffening: str = "tilt",
     tolerance: float = 1e-9,
+    residual: float = 1e-9,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> UnbalanceResponse:
@@ -58,8 +61,9 @@ def unbalance_response(
 
     Parameters
     ----------
-    target : ReducedRotor or exudyn.MainSystem
-        A rotor with `supports`, or an assembled scene with its `body`.
+    target : ReducedRotor, SolidRotor or exudyn.MainSystem
+        A rotor with `supports`, or an assembled scene with its `body`. A SolidRotor is solved
+        unreduced, each speed checked by the residual of the full equations.
     speeds : array_like, shape (s,)
         Ascending spin speeds ≥ 0 [rad/s].
     unbalances : sequence of Unbalance, optional
@@ -67,7 +71,7 @@ def unbalance_response(
     own : bool, optional
         Whether the rotor's own eccentricity counts: that of added point masses, and of the mesh.
     supports : sequence of Support, optional
-        Of a ReducedRotor.
+        Of a rotor.
     body : RotorBody, optional
         The rotor in a scene.
     at : sequence of str, int or position, optional
@@ -78,25 +82,33 @@ def unbalance_response(
         Centrifugal stiffening.
     tolerance : float, optional
         Largest relative change of the motion by further harmonics; smaller harmonics are left out.
+    residual : float, optional
+        Largest residual of the equations of a SolidRotor, relative to the loads in the norm of
+        their static response.
     executor : concurrent.futures.Executor, optional
-        Computes the speeds; see :func:`exudyn_rotor.linear.sweep.sweep`.
+        Computes the speeds; see :func:`exudyn_rotor.linear.sweep.sweep`. A SolidRotor does not use
+        it: its speeds share one subspace.
     progress : bool, optional
         Show a progress bar.
 
     Raises
     ------
     ValueError
-        For speeds that do not ascend or are negative, unknown places, no unbalance at all, or a
-        speed without a steady motion.
+        For speeds that do not ascend or are negative, unknown places, no unbalance at all, a
+        speed without a steady motion, or a `residual` that is not reached.
     """
     values = _ascending(speeds, "speeds", "rad/s")
     source = _source(target, body, supports, stiffening)
-    _check(frame, tolerance)
+    _check(frame, tolerance, residual)
     found = places(source, at)
     load = unbalance_load(source, _all_of(unbalances, Unbalance, "unbalances"), own)
     rows = np.array([one.motion for one in found])
     watch = _Watch(rows, frame, tolerance, _driven(source))
-    task = _UnbalanceTask(_light(source, values), load, watch)
+    if isinstance(source, FullRotor):
+        solver, executor = FullSteady(source, [load], values[-1], residual), None
+    else:
+        solver = _light(source, values[values > 0.0])
+    task = _UnbalanceTask(solver, load, watch)
     motions = sweep(task, values, executor=executor, progress=progress, label="unbalance response")
     labels = tuple(one.label for one in found)
     return UnbalanceResponse(
@@ -116,6 +128,7 @@ def harmonic_response(
     frame: str = "inertial",
     stiffening: str = "tilt",
     tolerance: float = 1e-9,
+    residual: float = 1e-9,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> HarmonicResponse:
@@ -129,26 +142,31 @@ def harmonic_response(
         All of one frequency, with their complex amplitudes.
     speed : float, optional
         Spin speed Ω [rad/s].
-    target, supports, body, at, frame, stiffening, tolerance, executor, progress
+    target, supports, body, at, frame, stiffening, tolerance, residual, executor, progress
         See :func:`unbalance_response`.
 
     Raises
     ------
     ValueError
         For frequencies that do not ascend or are negative, unknown places, loads that are all
-        zero, or a frequency without a steady motion.
+        zero, a frequency without a steady motion, or a `residual` that is not reached.
     """
     values = _ascending(frequencies, "frequencies", "rad/s")
     if not np.isfinite(speed):
         raise ValueError(f"speed: needs a finite number [rad/s], got {speed!r}")
     source = _source(target, body, supports, stiffening)
-    _check(frame, tolerance)
+    _check(frame, tolerance, residual)
     found = places(source, at)
     kinds = (HarmonicForce, BaseAcceleration)
     load = total(_all_of(loads, kinds, "loads"), source)
     rows = np.array([one.motion for one in found])
     watch = _Watch(rows, frame, tolerance, _driven(source))
-    task = _HarmonicTask(source.at(speed), load, watch)
+    if isinstance(source, FullRotor):
+        fastest = max(values[-1], abs(speed))
+        solver, executor = FullSteady(source, load.values(), fastest, residual), None
+    else:
+        solver = _Tabulated({float(speed): source.at(speed)})
+    task = _HarmonicTask(solver, float(speed), load, watch)
     motions = sweep(task, values, executor=executor, progress=progress, label="harmonic response")
     labels = tuple(one.label for one in found)
     collected = _collected(motions, found, tolerance, _length(source))
@@ -165,44 +183,45 @@ class _Watch:
     driven: tuple[int, ...]
 
     def motion(
-        self, system: PeriodicSystem, loads: Mapping[int, np.ndarray], rate: float
+        self, solver: Solver, speed: float, loads: Mapping[int, np.ndarray], rate: float
     ) -> Motion:
         """Return the harmonics (p, 6) of the steady motion."""
-        solved = forced_motion(system, loads, rate, self.tolerance, self.driven)
-        seen = {n: self.rows @ x for n, x in solved.items()}
-        if self.frame == "rotor":
-            return seen
-        if system.speed == 0.0:  # rotor and inertial axes are the same at θ = 0
+        if isinstance(solver, FullSteady):
+            seen = solver.seen(self.rows, speed, loads, rate, self.tolerance)
+        else:
+            solved = forced_motion(solver.at(speed), loads, rate, self.tolerance, self.driven)
+            seen = {n: self.rows @ x for n, x in solved.items()}
+        if self.frame == "rotor" or speed == 0.0:  # at θ = 0 the axes are the same
             return seen
         return into_inertial_frame(seen)
 
 
 @dataclass(frozen=True, eq=False)
 class _UnbalanceTask:
-    """Steady motion at one speed; picklable."""
+    """Steady motion at one speed; picklable but for a full model."""
 
-    source: LinearRotor | _Tabulated
+    solver: Solver
     load: np.ndarray
     watch: _Watch
 
     def __call__(self, speed: float) -> Motion:
         if speed == 0.0:  # no load, and nothing that would have to hold the rotor
             return {0: np.zeros(self.watch.rows.shape[:2])}
-        system = self.source.at(speed)
-        motion = self.watch.motion(system, {0: speed**2 * self.load + 0j}, 0.0)
-        return _folded(motion)
+        loads = {0: speed**2 * self.load + 0j}
+        return _folded(self.watch.motion(self.solver, float(speed), loads, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
 class _HarmonicTask:
-    """Steady motion at one frequency; picklable."""
+    """Steady motion at one frequency; picklable but for a full model."""
 
-    system: PeriodicSystem
+    solver: Solver
+    speed: float
     loads: Mapping[int, np.ndarray]
     watch: _Watch
 
     def __call__(self, frequency: float) -> Motion:
-        return self.watch.motion(self.system, self.loads, float(frequency))
+        return self.watch.motion(self.solver, self.speed, self.loads, float(frequency))
 
 
 def _folded(motion: Motion) -> Motion:
@@ -234,12 +253,12 @@ def _collected(
 def _source(
     target: Target, body: RotorBody | None, supports: Sequence[Support], stiffening: str
 ) -> Source:
-    if isinstance(target, SolidRotor):
-        raise ValueError(
-            "responses need a reduced rotor: rotor.reduce(30) keeps 30 modes, and so the response "
-            "up to about half the frequency of the last one"
-        )
-    return linear_source(target, body=body, supports=supports, stiffening=stiffening)
+    source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
+    if not isinstance(target, SolidRotor):
+        return source
+    if not isinstance(source, FullRotor):  # dense equations do not know the spin
+        source = FullRotor.of(target, source.supports, stiffening)
+    return source.with_spin()
 
 
 def _driven(source: Source) -> tuple[int, ...]:
@@ -256,14 +275,14 @@ def _driven(source: Source) -> tuple[int, ...]:
 
 def _length(source: Source) -> float:
     """Return the rotor's radius of gyration [m]; one metre where it is unknown."""
-    if not isinstance(source, LinearRotor):
+    if not isinstance(source, LinearRotor | FullRotor):
         return 1.0
     return float(np.sqrt(np.trace(source.invariants.J) / source.invariants.mass))
 
 
 @dataclass(frozen=True, eq=False)
 class _Tabulated:
-    """Equations of a scene, which cannot leave its process, at the speeds needed."""
+    """Equations at the speeds needed; a scene itself cannot leave its process."""
 
     systems: Mapping[float, PeriodicSystem]
 
@@ -275,7 +294,11 @@ def _light(source: Source, speeds: np.ndarray) -> LinearRotor | _Tabulated:
     """Return what workers need of a source."""
     if isinstance(source, LinearRotor):
         return replace(source, rotor=source.rotor.without_shapes())
-    return _Tabulated({float(speed): source.at(speed) for speed in speeds if speed > 0.0})
+    return _Tabulated({float(speed): source.at(speed) for speed in speeds})
+
+
+# what solves the equations at a speed
+Solver = LinearRotor | _Tabulated | FullSteady
 
 
 def _ascending(values: ArrayLike, name: str, unit: str) -> np.ndarray:
@@ -300,8 +323,10 @@ def _all_of(given: object, kinds: type | tuple[type, ...], name: str) -> list:
     return items
 
 
-def _check(frame: str, tolerance: float) -> None:
+def _check(frame: str, tolerance: float, residual: float) -> None:
     if frame not in FRAMES:
         raise ValueError(f"frame {frame!r} is unknown; use 'inertial' or 'rotor'")
     if not 1e-13 <= tolerance <= 0.1:
         raise ValueError(f"tolerance: needs a number from 1e-13 to 0.1, got {tolerance!r}")
+    if not 1e-13 <= residual <= 0.1:
+        raise ValueError(f"residual: needs a number from 1e-13 to 0.1, got {residual!r}")

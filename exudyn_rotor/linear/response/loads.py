@@ -93,7 +93,7 @@ class BaseAcceleration:
         """Return the harmonics (k,) of the load in the rotor frame."""
         if not hasattr(source, "invariants"):
             raise ValueError(
-                "base acceleration needs a ReducedRotor with supports; in a scene, put a force on "
+                "base acceleration needs a rotor with supports; in a scene, put a force on "
                 "the moving parts"
             )
         S = axes_of(source.rotor.axis).T @ source.invariants.S

@@ -57,6 +57,9 @@ def place(source: Source, at: At) -> Place:
     """
     if isinstance(at, str):
         return _interface(source, at)
+    if hasattr(source, "node_motion"):  # a full model
+        number = _node_number(at, source.nodes)
+        return Place(f"node {number}", source.node_motion(number), is_node=True)
     rotor = getattr(source, "rotor", None)
     if rotor is None or rotor.shapes is None:
         raise ValueError(

@@ -19,11 +19,13 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import plots
+from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem, Terms
+from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability import floquet
+from exudyn_rotor.linear.stability.full import FullExponents, without
 from exudyn_rotor.linear.sweep import sweep
 
 METHODS = ("auto", "floquet", "hill", "eigen")
@@ -43,8 +45,9 @@ class Stability(Result):
     exponents : ndarray, shape (s, 2k)
         λ, the least stable first; real part [1/s], imaginary part [rad/s] in the rotor frame.
         Where the system is periodic, frequencies are known but for multiples of `base` and lie in
-        (−base/2, base/2].
-    multipliers : ndarray, shape (s, 2k)
+        (−base/2, base/2]. Of a large SolidRotor one of each conjugate pair, and of two real ones
+        the less damped, shape (s, modes).
+    multipliers : ndarray, as exponents
         ``exp(2πλ/base)``; over one revolution where the system is constant; NaN at 0 rad/s.
     growth : ndarray, shape (s,)
         Largest real part [1/s].
@@ -101,6 +104,8 @@ def stability(
     stiffening: str = "tilt",
     method: str = "auto",
     tolerance: float = 1e-9,
+    modes: int | None = None,
+    residual: float = 1e-7,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Stability:
@@ -108,33 +113,48 @@ def stability(
 
     Parameters
     ----------
-    target : ReducedRotor, LinearRotor, LinearScene, exudyn.MainSystem, or with ``at(speed)``
-        ``at(speed)`` returns the :class:`PeriodicSystem` at a speed.
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem, LinearRotor, or with ``at(speed)``
+        ``at(speed)`` returns the :class:`PeriodicSystem` at a speed. Of a SolidRotor with more than
+        600 degrees of freedom only the lowest `modes` are looked at, each checked by the residual
+        of the full equations.
     speeds : array_like, shape (s,)
         Spin speeds [rad/s], not negative, ascending.
     supports : sequence of Support
-        For a ReducedRotor. Without a support that holds it, the rotor's spin is held.
+        For a rotor. Without a support that holds it, the rotor's spin is held.
     body : RotorBody, optional
         The rotor in a ``MainSystem``.
     stiffening : {'tilt', 'none'}
-        For a ReducedRotor.
+        For a rotor.
     method : {'auto', 'floquet', 'hill', 'eigen'}
         ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
-        where that does not converge.
+        where that does not converge. A large SolidRotor takes 'auto' only, without Floquet's.
     tolerance : float
         Error of periodic exponents relative to Ω.
+    modes : int, optional
+        How many modes of a large SolidRotor, those of smallest |λ| in the rotor frame; 10 by
+        default. The growth of modes above them is not looked at.
+    residual : float, optional
+        Largest relative residual of those modes; see :meth:`Subspace.modes`.
     executor : concurrent.futures.Executor, optional
-        Where the exponents are computed; see :func:`exudyn_rotor.linear.sweep.sweep`.
+        Where the exponents are computed; see :func:`exudyn_rotor.linear.sweep.sweep`. A large
+        SolidRotor does not use it: its speeds share one subspace.
     progress : bool
 
     Raises
     ------
     ValueError
-        For bad input, and where `tolerance` is not reached.
+        For bad input, and where `tolerance` or `residual` is not reached.
     """
     values = checked_speeds(speeds)
     check_method(method, tolerance)
     source = source_of(target, supports, body, stiffening)
+    if isinstance(source, FullRotor):
+        full = _full(source, modes, values[-1], residual, method, tolerance)
+        found = sweep(partial(_full_exponents, full=full), values, progress=progress,
+                      label="stability")  # fmt: skip
+        return _result(values, [full.at(speed) for speed in values], np.array(found), tolerance)
+    if modes is not None:
+        raise ValueError("modes=: is only for a large SolidRotor; this target gives all exponents")
     systems = [source.at(speed) for speed in values]
     found = sweep(
         partial(exponents, method=method, tolerance=tolerance),
@@ -185,8 +205,34 @@ def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1
         values = floquet.floquet_exponents(system, tolerance)
     else:
         values = _hill(system, tolerance, fall_back=method == "auto")
-    values[np.abs(values) < _NEUTRAL * system.speed] = 0.0
+    return _in_order(values, system.speed)
+
+
+def _in_order(values: np.ndarray, speed: float) -> np.ndarray:
+    """Return exponents with neutral ones set to zero, descending in their real parts."""
+    values[np.abs(values) < _NEUTRAL * speed] = 0.0
     return values[np.lexsort((-values.imag, -values.real))]
+
+
+def _full(
+    source: FullRotor,
+    modes: int | None,
+    speed: float,
+    residual: float,
+    method: str,
+    tolerance: float,
+) -> FullExponents:
+    if method != "auto":
+        raise ValueError(
+            f"method={method!r} needs a reduced rotor; a large SolidRotor takes 'auto' only"
+        )
+    return FullExponents(source, modes, speed, residual, tolerance)
+
+
+def _full_exponents(speed: float, full: FullExponents) -> np.ndarray:
+    """Return one exponent of every pair of a full model, as :func:`exponents` does."""
+    values = full.values(speed)
+    return _in_order(floquet.fold(values, abs(floquet.base_frequency(full.at(speed)))), speed)
 
 
 def _hill(system: PeriodicSystem, tolerance: float, fall_back: bool) -> np.ndarray:
@@ -216,7 +262,7 @@ def stability_threshold(target: object, low: float, high: float, **options) -> f
         If both ends are stable, or both unstable.
     """
     checked_speeds([low, high])
-    excess = _excess_function(target, options)
+    excess = _excess_function(target, options, high)
     ends = excess(low), excess(high)
     if (ends[0] > 0.0) == (ends[1] > 0.0):
         verdict = "unstable" if ends[0] > 0.0 else "stable"
@@ -232,7 +278,7 @@ def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
     there. `options` are those of :func:`stability`.
     """
     values = checked_speeds(speeds)
-    excess = _excess_function(target, options)
+    excess = _excess_function(target, options, values[-1])
     unstable = [excess(speed) > 0.0 for speed in values]
     edges = [values[0]] if unstable[0] else []
     for i in np.flatnonzero(np.diff(unstable)):
@@ -241,14 +287,18 @@ def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
     return np.array(edges).reshape(-1, 2)
 
 
-def _excess_function(target: object, options: dict) -> Callable[[float], float]:
+def _excess_function(target: object, options: dict, highest: float) -> Callable[[float], float]:
     method, tolerance = options.pop("method", "auto"), options.pop("tolerance", 1e-9)
+    modes, residual = options.pop("modes", None), options.pop("residual", 1e-7)
     check_method(method, tolerance)
     arguments = {"supports": (), "body": None, "stiffening": "tilt"}
     unknown = set(options) - set(arguments)
     if unknown:
         raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
     source = source_of(target, **(arguments | options))
+    if isinstance(source, FullRotor):
+        full = _full(source, modes, highest, residual, method, tolerance)
+        return lambda speed: excess_growth(_full_exponents(speed, full), full.at(speed), tolerance)
 
     def excess(speed: float) -> float:
         system = source.at(speed)
@@ -272,14 +322,7 @@ class _HeldSpin:
         return self.rotor.size - 1
 
     def at(self, speed: float) -> PeriodicSystem:
-        system = self.rotor.at(speed)
-        return PeriodicSystem(system.speed, *map(self._without, (system.M, system.D, system.K)))
-
-    def _without(self, terms: Terms) -> Terms:
-        return {
-            n: np.delete(np.delete(X, self.spin, axis=0), self.spin, axis=1)
-            for n, X in terms.items()
-        }
+        return without(self.rotor.at(speed), self.spin)
 
 
 def source_of(target: object, supports: Sequence[Support], body: object, stiffening: str) -> object:

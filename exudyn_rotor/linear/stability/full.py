@@ -1,0 +1,120 @@
+"""Exponents of the lowest modes of a full finite-element rotor, checked by their residual."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.linear.equations.full import FullRotor, Subspace
+from exudyn_rotor.linear.equations.system import PeriodicSystem, Terms
+from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
+
+MODES = 10
+
+
+def held(full: FullRotor) -> bool:
+    """Return whether the spin follows θ = Ωt because no support resists it."""
+    if full.spin is None:
+        return False
+    return not any(support.matrices(0.0)[0][5].any() for support in full.supports)
+
+
+def without(system: PeriodicSystem, column: int) -> PeriodicSystem:
+    """Return the equations without one coordinate."""
+
+    def cut(terms: Terms) -> Terms:
+        return {
+            n: np.delete(np.delete(X, column, axis=0), column, axis=1) for n, X in terms.items()
+        }
+
+    return PeriodicSystem(system.speed, cut(system.M), cut(system.D), cut(system.K))
+
+
+class HeldSubspace(Subspace):
+    """The subspace of a full rotor whose spin follows θ = Ωt where no support resists it.
+
+    Parameters
+    ----------
+    full, count, speed
+        See :class:`Subspace`; the rotor with its spin.
+    tolerance : float
+        Error of Hill's method relative to Ω.
+    """
+
+    def __init__(self, full: FullRotor, count: int, speed: float, tolerance: float) -> None:
+        super().__init__(full, count, speed)
+        self.tolerance = tolerance
+
+    def small(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
+        """Return the projected equations at a speed, and the basis (3n, k) they are in."""
+        system = self.projected.at(speed)
+        return (without(system, 0), self.V[:, 1:]) if held(self.full) else (system, self.V)
+
+    def trial(self, speed: float, count: int) -> FloquetModes:
+        """Return the modes of smallest |λ| in the present subspace.
+
+        Not of smallest |Im λ|: damping of the material makes the highest modes overdamped.
+        """
+        system, basis = self.small(speed)
+        modes = floquet_modes(system, tolerance=self.tolerance)
+        chosen = np.argsort(np.abs(modes.values), kind="stable")[:count]
+        vectors = np.einsum("cv,hvk->hck", basis, modes.vectors[:, :, chosen])
+        return FloquetModes(modes.values[chosen], vectors, modes.orders, modes.resolution)
+
+    def left(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
+        """Return what modes leave of the full equations but for the torque of the drive."""
+        left = super().left(speed, values, stack)
+        if not held(self.full):
+            return left
+        return {n: self.full.spin.without_torque(force) for n, force in left.items()}
+
+
+class FullExponents:
+    """Finds the exponents of the lowest modes at any speed, in one subspace that grows.
+
+    Parameters
+    ----------
+    full : FullRotor
+    count : int, optional
+        Number of modes, those of smallest |λ| in the rotor frame.
+    speed : float
+        Largest spin speed [rad/s].
+    residual : float
+        Largest relative residual of a mode, see :meth:`Subspace.modes`.
+    tolerance : float
+        Error of Hill's method relative to Ω.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the number of modes is not a whole number from 1 to a quarter of the coordinates.
+    """
+
+    def __init__(
+        self, full: FullRotor, count: int | None, speed: float, residual: float, tolerance: float
+    ) -> None:
+        count = MODES if count is None else count
+        if isinstance(count, bool) or not isinstance(count, int | np.integer):
+            raise TypeError(f"modes: needs a whole number, got {count!r}")
+        if not 1 <= count <= full.size // 4:
+            raise ValueError(
+                f"modes: {count} is not between 1 and {full.size // 4}, a quarter of the "
+                "coordinates"
+            )
+        if not 1e-13 <= residual <= 0.1:
+            raise ValueError(f"residual: needs a number from 1e-13 to 0.1, got {residual!r}")
+        self.count, self.residual = int(count), residual
+        self.subspace = HeldSubspace(full.with_spin(), self.count, speed, tolerance)
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the projected equations at a speed [rad/s]."""
+        return self.subspace.small(speed)[0]
+
+    def values(self, speed: float) -> np.ndarray:
+        """Return one exponent of every pair, shape (count,) [1/s], in any order.
+
+        Raises
+        ------
+        ValueError
+            If the residual does not fall below its limit.
+        """
+        return self.subspace.modes(speed, self.count, self.residual).values.astype(complex)
