@@ -1,0 +1,82 @@
+"""Time of the set-up, mesh to free modes: Exudyn's FEMinterface and SolidRotor side by side.
+
+python validation/set_up.py [--json FILE] [--quick]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from exudyn.FEM import FEMinterface
+
+from exudyn_rotor import SolidRotor, free_modes
+from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
+
+MODES = 20
+ELEMENT_SIZES, QUICK_SIZES = (0.0155, 0.0085), (0.05,)  # m
+
+
+def by_fem_interface(element_size: float) -> np.ndarray:
+    """Return the eigenfrequencies [rad/s] that FEMinterface computes."""
+    fem = FEMinterface()
+    fem.ImportMeshFromNGsolve(
+        disc_on_shaft(element_size),
+        materials=STEEL,
+        boundaryNamesList=list(BEARINGS),
+        meshOrder=2,
+    )
+    fem.ComputeEigenmodes(MODES, excludeRigidBodyModes=6)
+    return np.sqrt(fem.eigenValues)
+
+
+def by_solid_rotor(element_size: float) -> np.ndarray:
+    """Return the eigenfrequencies [rad/s] of the same rotor from SolidRotor."""
+    rotor = SolidRotor.from_ngsolve(disc_on_shaft(element_size), STEEL, axis="x")
+    return free_modes(rotor, MODES).frequencies
+
+
+def timed(compute: Callable[[float], np.ndarray], element_size: float) -> tuple[np.ndarray, float]:
+    """Return the result and the seconds it took."""
+    start = time.perf_counter()
+    return compute(element_size), time.perf_counter() - start
+
+
+def compare(element_size: float) -> dict:
+    """Return degrees of freedom, seconds of both, their ratio, and how far the results differ."""
+    mesh = disc_on_shaft(element_size)
+    mesh.ngmesh.SecondOrder()
+    theirs, slow = timed(by_fem_interface, element_size)
+    ours, fast = timed(by_solid_rotor, element_size)
+    return {
+        "degrees_of_freedom": 3 * len(mesh.ngmesh.Points()),
+        "fem_interface": slow,
+        "solid_rotor": fast,
+        "ratio": slow / fast,
+        "deviation": float(np.abs(np.sort(ours) / np.sort(theirs) - 1.0).max()),
+    }
+
+
+def main() -> None:
+    """Compare and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", type=Path, help="write the numbers to this file")
+    parser.add_argument("--quick", action="store_true", help="a coarse mesh")
+    options = parser.parse_args()
+    rows = [compare(size) for size in (QUICK_SIZES if options.quick else ELEMENT_SIZES)]
+    print("  dofs   FEMinterface [s]   SolidRotor [s]   ratio   deviation")
+    for row in rows:
+        print(
+            f"{row['degrees_of_freedom']:6d}{row['fem_interface']:19.1f}{row['solid_rotor']:17.1f}"
+            f"{row['ratio']:8.1f}{row['deviation']:12.1e}"
+        )
+    if options.json:
+        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
