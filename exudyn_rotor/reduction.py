@@ -11,7 +11,7 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.modes.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
-from exudyn_rotor.modes.component import ModeBasis, free_modes
+from exudyn_rotor.modes.component import ModeBasis, check_same_mesh, free_modes
 from exudyn_rotor.modes.fem_interface import fem_interface_modes
 from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
 
@@ -60,7 +60,7 @@ def reduce_rotor(
 
 def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
     if isinstance(modes, ModeBasis):
-        _check_same_mesh(rotor, modes)
+        check_same_mesh(rotor.nodes, modes.nodes)
         return modes
     if isinstance(modes, FEMinterface):
         return fem_interface_modes(rotor, modes)
@@ -75,16 +75,6 @@ def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
         f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
         f"an array of displacement columns, got {type(modes).__name__}"
     )
-
-
-def _check_same_mesh(rotor: SolidRotor, modes: ModeBasis) -> None:
-    size = np.ptp(rotor.nodes, axis=0).max()
-    same = modes.nodes.shape == rotor.nodes.shape
-    if not same or np.abs(modes.nodes - rotor.nodes).max() > 1e-9 * size:
-        raise ValueError(
-            f"the modal basis is from another mesh: {len(modes.nodes)} nodes in the basis, "
-            f"{rotor.node_count} in the rotor; compute the modes from this rotor"
-        )
 
 
 def _rigid_motions(rotor: SolidRotor, center: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""A function over many values: here, on threads, on processes or on a cluster."""
+"""A function over many values: here, on threads, on processes or on a cluster; and the values."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from concurrent.futures import Executor, Future
 from pickle import PicklingError
 from typing import TypeVar
 
+import numpy as np
+from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 Value = TypeVar("Value")
@@ -103,3 +105,32 @@ def _named(function: Callable[[Value], Result], value: Value, label: str) -> Res
         kind = ValueError if isinstance(error, ValueError) else RuntimeError
         cause = str(error) if kind is ValueError else f"{type(error).__name__}: {error}"
         raise kind(f"{label or 'sweep'} at {value}: {cause}") from error
+
+
+def ascending(values: ArrayLike, name: str) -> np.ndarray:
+    """Return what a sweep goes over as an ascending array of finite numbers, shape (s,).
+
+    Raises
+    ------
+    ValueError
+        If there is none, or one is not finite or not above the one before.
+    """
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
+        raise ValueError(f"{name}: needs a list of finite numbers, got {values!r}")
+    if np.any(np.diff(array) <= 0.0):
+        raise ValueError(
+            f"{name}: needs ascending numbers, got {values!r}; they must ascend without "
+            "repetition, e.g. by np.unique"
+        )
+    return array
+
+
+def ascending_from_zero(
+    values: ArrayLike, name: str, otherwise: str = "turn the spin axis round for the other sense"
+) -> np.ndarray:
+    """Return :func:`ascending` values, none of them negative; `otherwise` says what else to do."""
+    array = ascending(values, name)
+    if array[0] < 0.0:
+        raise ValueError(f"{name}: {array[0]:g} is negative; give values ≥ 0, or {otherwise}")
+    return array

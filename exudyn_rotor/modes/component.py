@@ -14,6 +14,9 @@ from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions, relativ
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
 
+# node positions agree if they differ by less than this share of the mesh's size
+_POSITION_TOLERANCE = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class ModeBasis:
@@ -72,6 +75,26 @@ class ModeBasis:
                     f"mode basis: {key} has the shape {value.shape}, but {nodes} nodes and "
                     f"{modes} labels need {shape}"
                 )
+
+
+def check_same_mesh(nodes: np.ndarray, others: np.ndarray) -> None:
+    """Refuse modes whose nodes (n, 3) are not those of the rotor.
+
+    Raises
+    ------
+    ValueError
+        If the numbers of nodes or their positions differ.
+    """
+    if others.shape != nodes.shape:
+        raise ValueError(
+            f"modal basis from another mesh: the rotor has other nodes ({len(others)} nodes in "
+            f"the basis, {len(nodes)} in the rotor); compute the modes from this rotor"
+        )
+    distance = np.linalg.norm(nodes - others, axis=1).max()
+    if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
+        raise ValueError(
+            f"modal basis from another mesh: node positions differ by up to {distance:.3g} m"
+        )
 
 
 def free_modes(rotor: SolidRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:

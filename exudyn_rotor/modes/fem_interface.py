@@ -6,15 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_rotor.modes.component import ModeBasis
+from exudyn_rotor.modes.component import ModeBasis, check_same_mesh
 
 if TYPE_CHECKING:
     from exudyn.FEM import FEMinterface
 
     from exudyn_rotor.solid.rotor import SolidRotor
-
-# node positions agree if they differ by less than this share of the mesh's size
-_POSITION_TOLERANCE = 1e-9
 
 
 def fem_interface_modes(rotor: SolidRotor, fem: FEMinterface) -> ModeBasis:
@@ -42,22 +39,14 @@ def fem_interface_modes(rotor: SolidRotor, fem: FEMinterface) -> ModeBasis:
             "fem.ComputeHurtyCraigBamptonModes(…) first"
         )
     matrix = np.asarray(fem.modeBasis["matrix"], dtype=float)
-    _check_mesh(rotor.nodes, np.asarray(fem.nodes.get("Position", ()), dtype=float), matrix)
+    check_same_mesh(rotor.nodes, np.asarray(fem.nodes.get("Position", ()), dtype=float))
+    if matrix.shape[0] != rotor.nodes.size:
+        raise ValueError(
+            f"modal basis from another mesh: the rotor has {len(rotor.nodes)} nodes, the modes "
+            f"{matrix.shape[0]} rows"
+        )
     labels = tuple(f"FEMinterface mode {number}" for number in range(1, matrix.shape[1] + 1))
     return ModeBasis(matrix, labels, rotor.nodes, stress=_stress(fem, matrix))
-
-
-def _check_mesh(nodes: np.ndarray, others: np.ndarray, matrix: np.ndarray) -> None:
-    if others.shape != nodes.shape or matrix.shape[0] != nodes.size:
-        raise ValueError(
-            f"modal basis from another mesh: the rotor has {len(nodes)} nodes, the FEMinterface "
-            f"{len(others)} with {matrix.shape[0]} rows in its modes"
-        )
-    distance = np.linalg.norm(nodes - others, axis=1).max()
-    if distance > _POSITION_TOLERANCE * np.linalg.norm(np.ptp(nodes, axis=0)):
-        raise ValueError(
-            f"modal basis from another mesh: node positions differ by up to {distance:.3g} m"
-        )
 
 
 def _stress(fem: FEMinterface, matrix: np.ndarray) -> np.ndarray | None:

@@ -22,7 +22,7 @@ from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.response.places import Source
 from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.sweep import ascending, ascending_from_zero, sweep
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
@@ -283,17 +283,10 @@ def light(source: Source) -> Source:
 
 
 def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
-    values = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)):
-        raise ValueError(f"speeds: needs a list of finite numbers [rad/s], got {speeds!r}")
-    if np.any(np.diff(values) <= 0.0):
-        raise ValueError("speeds: must ascend without repetition; sort them, e.g. np.unique")
-    if values[0] < 0.0 and not allow_negative:
-        raise ValueError(
-            f"speeds: {values[0]:g} rad/s is negative; pass allow_negative=True if the rotor is "
-            "meant to spin the other way round"
-        )
-    return values
+    if allow_negative:
+        return ascending(speeds, "speeds")
+    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
+    return ascending_from_zero(speeds, "speeds", turn)
 
 
 def _checked_count(modes: int | None, source: Source) -> int:

@@ -29,7 +29,7 @@ from exudyn_rotor.linear.response.loads import (
 )
 from exudyn_rotor.linear.response.places import At, Place, Source, places
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.sweep import ascending_from_zero, sweep
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
@@ -97,7 +97,7 @@ def unbalance_response(
         For speeds that do not ascend or are negative, unknown places, no unbalance at all, a
         speed without a steady motion, or a `residual` that is not reached.
     """
-    values = _ascending(speeds, "speeds", "rad/s")
+    values = ascending_from_zero(speeds, "speeds")
     source = _source(target, body, supports, stiffening)
     _check(frame, tolerance, residual)
     found = places(source, at)
@@ -151,7 +151,9 @@ def harmonic_response(
         For frequencies that do not ascend or are negative, unknown places, loads that are all
         zero, a frequency without a steady motion, or a `residual` that is not reached.
     """
-    values = _ascending(frequencies, "frequencies", "rad/s")
+    values = ascending_from_zero(
+        frequencies, "frequencies", "conjugate the loads: a negative frequency is that"
+    )
     if not np.isfinite(speed):
         raise ValueError(f"speed: needs a finite number [rad/s], got {speed!r}")
     source = _source(target, body, supports, stiffening)
@@ -299,20 +301,6 @@ def _light(source: Source, speeds: np.ndarray) -> LinearRotor | _Tabulated:
 
 # what solves the equations at a speed
 Solver = LinearRotor | _Tabulated | FullSteady
-
-
-def _ascending(values: ArrayLike, name: str, unit: str) -> np.ndarray:
-    array = np.atleast_1d(np.asarray(values, dtype=float))
-    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
-        raise ValueError(f"{name}: needs a list of finite numbers [{unit}], got {values!r}")
-    if array[0] < 0.0:
-        raise ValueError(
-            f"{name}: {array.min():g} is negative; give values ≥ 0 [{unit}], and turn the spin "
-            "axis round for the other sense"
-        )
-    if np.any(np.diff(array) <= 0.0):
-        raise ValueError(f"{name}: must ascend without repetition; sort them, e.g. np.unique")
-    return array
 
 
 def _all_of(given: object, kinds: type | tuple[type, ...], name: str) -> list:

@@ -26,7 +26,7 @@ from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability import floquet
 from exudyn_rotor.linear.stability.full import FullExponents, without
-from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.sweep import ascending_from_zero, sweep
 
 METHODS = ("auto", "floquet", "hill", "eigen")
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
@@ -145,7 +145,7 @@ def stability(
     ValueError
         For bad input, and where `tolerance` or `residual` is not reached.
     """
-    values = checked_speeds(speeds)
+    values = ascending_from_zero(speeds, "speeds")
     check_method(method, tolerance)
     source = source_of(target, supports, body, stiffening)
     if isinstance(source, FullRotor):
@@ -261,7 +261,7 @@ def stability_threshold(target: object, low: float, high: float, **options) -> f
     ValueError
         If both ends are stable, or both unstable.
     """
-    checked_speeds([low, high])
+    ascending_from_zero([low, high], "speeds")
     excess = _excess_function(target, options, high)
     ends = excess(low), excess(high)
     if (ends[0] > 0.0) == (ends[1] > 0.0):
@@ -277,7 +277,7 @@ def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
     narrower than their spacing can be missed. A range that is open at the first or last speed ends
     there. `options` are those of :func:`stability`.
     """
-    values = checked_speeds(speeds)
+    values = ascending_from_zero(speeds, "speeds")
     excess = _excess_function(target, options, values[-1])
     unstable = [excess(speed) > 0.0 for speed in values]
     edges = [values[0]] if unstable[0] else []
@@ -336,26 +336,6 @@ def source_of(target: object, supports: Sequence[Support], body: object, stiffen
     if any(support.matrices(0.0)[0][5].any() for support in source.supports):
         return source
     return _HeldSpin(source, source.rotor.rigid.index("spin"))
-
-
-def checked_speeds(speeds: ArrayLike) -> np.ndarray:
-    """Return speeds as an ascending array of finite numbers ≥ 0."""
-    values = ascending(speeds, "speeds")
-    if values[0] < 0.0:
-        raise ValueError(
-            f"speeds: needs numbers ≥ 0 [rad/s], got {values[0]:g}; turn the spin axis instead"
-        )
-    return values
-
-
-def ascending(values: ArrayLike, name: str) -> np.ndarray:
-    """Return values as an ascending array of finite numbers."""
-    array = np.atleast_1d(np.asarray(values, dtype=float))
-    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
-        raise ValueError(f"{name}: needs a list of finite numbers, got {values!r}")
-    if np.any(np.diff(array) <= 0.0):
-        raise ValueError(f"{name}: needs ascending numbers, got {values!r}")
-    return array
 
 
 def check_method(method: str, tolerance: float) -> None:

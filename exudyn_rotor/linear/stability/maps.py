@@ -15,13 +15,12 @@ from exudyn_rotor import plots
 from exudyn_rotor.linear.equations.system import PeriodicSystem
 from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability.analysis import (
-    ascending,
     check_method,
     excess_growth,
     exponents,
     source_of,
 )
-from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.linear.sweep import ascending, sweep
 
 
 @storable
