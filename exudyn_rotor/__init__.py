@@ -6,6 +6,7 @@ Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exud
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.adding import add_rotor
 from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.settings import recommended_settings
 from exudyn_rotor.body.twin import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.invariants import Invariants
@@ -71,6 +72,7 @@ __all__ = [
     "harmonic_response",
     "load_result",
     "permissible_unbalance",
+    "recommended_settings",
     "select_modes",
     "stability",
     "stability_map",

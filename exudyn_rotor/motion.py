@@ -60,6 +60,16 @@ class Motion:
         Number of unknowns: translations, then θ, then modal coordinates.
     free_directions : ndarray, shape (3, 0…3)
         Inertial directions of the unknown translations, ``N`` (89).
+    C, W, B : shape (m, m)
+        ``C − K2``, ``G + B`` and B of the kinetic energy above.
+    translations, modes : slice
+        Where the translations and the modal coordinates stand among the unknowns.
+    is_coupled, is_pushed : bool
+        Whether translations are coupled with other unknowns, and whether gravity or the frame's
+        acceleration acts on any but them. Terms that vanish for this rotor are left out of every
+        step.
+    weight : ndarray
+        Gravity on the unknown translations [N].
     """
 
     def __init__(
@@ -78,22 +88,20 @@ class Motion:
         self._e = skew(invariants.direction)
         self._turn = SpinAxis(invariants.direction)
         self.free_directions = self._free_directions(plane)
-        self._C = invariants.C - second_order.K2
-        self._B = second_order.B
-        self._W = invariants.G + second_order.B
+        self.C = invariants.C - second_order.K2
+        self.B = second_order.B
+        self.W = invariants.G + second_order.B
         counts = (formulation.translation_count, int(formulation.has_spin), invariants.size)
         ends = np.cumsum(counts)
-        self._t, self._r, self._f = (
+        self.translations, self._r, self.modes = (
             slice(end - count, end) for end, count in zip(ends, counts, strict=True)
         )
         self.size = int(ends[-1])
-        # terms that vanish for this rotor are left out of every step, and A(θ) with them
-        self._coupled = self.couples_translation
-        self._pushed = bool(
+        self.is_pushed = bool(
             (formulation.moves_origin or np.any(self.gravity))
-            and (np.any(invariants.S) or np.any(self._lever))
+            and (np.any(invariants.S) or np.any(self.lever))
         )
-        self._weight = invariants.mass * (self.free_directions.T @ self.gravity)
+        self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
 
     def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
         count = self.formulation.translation_count
@@ -104,13 +112,13 @@ class Motion:
         return np.zeros((3, 0))
 
     @cached_property
-    def _lever(self) -> np.ndarray:
-        """``mχ*`` (67)."""
+    def lever(self) -> np.ndarray:
+        """``mχ*`` (67) [kg m]."""
         return self.invariants.mass * self._e @ self.invariants.center
 
     @cached_property
-    def _S1(self) -> np.ndarray:
-        """``S* = ẽS`` (69)."""
+    def S1(self) -> np.ndarray:
+        """``S* = ẽS`` (69), shape (3, m)."""
         return self._e @ self.invariants.S
 
     @cached_property
@@ -124,12 +132,12 @@ class Motion:
         empty = sp.csr_array(zero) if self.invariants.is_sparse else np.zeros(zero)
         return self._placed(blocks, empty)
 
-    @property
-    def couples_translation(self) -> bool:
+    @cached_property
+    def is_coupled(self) -> bool:
         """True when ``mχ*`` or S couple unknown translations with the other coordinates."""
         count = self.formulation.translation_count
-        seen = self.invariants.S if count == 3 else self._S1  # in the plane, S* is S turned
-        return bool(count and (np.any(self._lever) or np.any(seen)))
+        seen = self.invariants.S if count == 3 else self.S1  # in the plane, S* is S turned
+        return bool(count and (np.any(self.lever) or np.any(seen)))
 
     @property
     def is_constant(self) -> bool:
@@ -137,9 +145,9 @@ class Motion:
         form = self.formulation
         return (
             form.is_constant_speed
-            and not self.couples_translation
+            and not self.is_coupled
             and not form.moves_origin
-            and not np.any(self.gravity)
+            and not self.is_pushed
         )
 
     def mass_matrix(self, t: float, q: np.ndarray) -> np.ndarray | sp.csr_array:
@@ -147,14 +155,14 @@ class Motion:
         inv = self.invariants
         now = self._state(t, q, np.zeros(self.size))
         blocks = {}
-        if self._coupled:
+        if self.is_coupled:
             blocks["t", "f"] = now.A @ inv.S
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
             blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
-            blocks["r", "f"] = (inv.g + self._W @ now.zeta)[None, :]
+            blocks["r", "f"] = (inv.g + self.W @ now.zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
-            if self._coupled:
+            if self.is_coupled:
                 blocks["t", "r"] = (now.A @ self._imbalance(now.zeta))[:, None]
                 blocks["r", "t"] = blocks["t", "r"].T
         return self._placed(blocks, self._constant_mass)
@@ -168,19 +176,19 @@ class Motion:
         now = self._state(t, q, q_t)
         omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
         force = np.zeros(self.size)
-        outward = inv.h + self._C @ zeta
-        force[self._f] = (
+        outward = inv.h + self.C @ zeta
+        force[self.modes] = (
             outward * omega**2 - 2.0 * omega * (inv.G @ zeta_t) - inv.K @ zeta - inv.D @ zeta_t
         )
         if now.omega_t:
-            force[self._f] -= (inv.g + self._W @ zeta) * now.omega_t
+            force[self.modes] -= (inv.g + self.W @ zeta) * now.omega_t
         if self.formulation.has_spin:
-            force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self._B @ zeta_t)
-        force[self._t] = self._weight
-        if self._pushed:
+            force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self.B @ zeta_t)
+        force[self.translations] = self.weight
+        if self.is_pushed:
             self._add_push(now, force)
-        if self._coupled:
-            force[self._t] -= now.A @ self._swing(now)
+        if self.is_coupled:
+            force[self.translations] -= now.A @ self._swing(now)
         return force
 
     def jacobian(
@@ -190,29 +198,29 @@ class Motion:
         inv = self.invariants
         now = self._state(t, q, q_t)
         omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
-        by_q = {("f", "f"): omega**2 * self._C - inv.K}
+        by_q = {("f", "f"): omega**2 * self.C - inv.K}
         by_v = {("f", "f"): -2.0 * omega * inv.G - inv.D}
         if now.omega_t:
-            by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self._W
+            by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self.W
         if self.formulation.has_spin:
-            outward = inv.h + self._C @ zeta
-            by_q["r", "f"] = -2.0 * omega * (self._C @ zeta_t)[None, :]
+            outward = inv.h + self.C @ zeta
+            by_q["r", "f"] = -2.0 * omega * (self.C @ zeta_t)[None, :]
             by_v["f", "r"] = (2.0 * omega * outward - 2.0 * (inv.G @ zeta_t))[:, None]
             by_v["r", "r"] = [[-2.0 * outward @ zeta_t]]
-            by_v["r", "f"] = (-2.0 * omega * outward - 2.0 * (self._B @ zeta_t))[None, :]
-            if self._pushed:
+            by_v["r", "f"] = (-2.0 * omega * outward - 2.0 * (self.B @ zeta_t))[None, :]
+            if self.is_pushed:
                 turned = -self._e @ now.push
                 by_q["f", "r"] = (inv.S.T @ turned)[:, None]
                 by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
-                by_q["r", "f"] = by_q["r", "f"] + self._S1.T @ now.push
-        if self._coupled:
+                by_q["r", "f"] = by_q["r", "f"] + self.S1.T @ now.push
+        if self.is_coupled:
             self._add_translational_jacobian(now, by_q, by_v)
         empty = 0.0 * self._constant_mass
         return self._placed(by_q, empty), self._placed(by_v, empty)
 
     def energy(self, t: float, q: np.ndarray, q_t: np.ndarray) -> float:
         """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
-        zeta = q[self._f]
+        zeta = q[self.modes]
         kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
         return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
 
@@ -231,26 +239,24 @@ class Motion:
         """
         inv = self.invariants
         now = self._state(t, q, q_t)
-        inertia = (
-            self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self._W @ now.zeta) @ zeta_tt
-        )
-        coriolis = 2.0 * now.omega * (inv.h + self._C @ now.zeta) @ now.zeta_t
-        return float(inertia + coriolis + now.zeta_t @ (self._B @ now.zeta_t)) - (
-            float(self._imbalance(now.zeta) @ now.push) if self._pushed else 0.0
+        inertia = self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self.W @ now.zeta) @ zeta_tt
+        coriolis = 2.0 * now.omega * (inv.h + self.C @ now.zeta) @ now.zeta_t
+        return float(inertia + coriolis + now.zeta_t @ (self.B @ now.zeta_t)) - (
+            float(self._imbalance(now.zeta) @ now.push) if self.is_pushed else 0.0
         )
 
     def _spin_inertia(self, zeta: np.ndarray) -> float:
         """(85)."""
         inv = self.invariants
-        return inv.Theta + (2.0 * inv.h + self._C @ zeta) @ zeta
+        return inv.Theta + (2.0 * inv.h + self.C @ zeta) @ zeta
 
     def _imbalance(self, zeta: np.ndarray) -> np.ndarray:
         """``mχ* + S*ζ``, the bracket of (65), rotor axes."""
-        return self._lever + self._S1 @ zeta
+        return self.lever + self.S1 @ zeta
 
     def _add_push(self, now: _State, force: np.ndarray) -> None:
         """Add gravity (App. A) and the frame's prescribed acceleration (108)."""
-        force[self._f] += self.invariants.S.T @ now.push
+        force[self.modes] += self.invariants.S.T @ now.push
         if self.formulation.has_spin:
             force[self._r] += self._imbalance(now.zeta) @ now.push
 
@@ -258,16 +264,16 @@ class Motion:
         """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
         arm = self._imbalance(now.zeta)
         centrifugal = now.omega**2 * (self._e @ arm)
-        return centrifugal + 2.0 * now.omega * (self._S1 @ now.zeta_t) + now.omega_t * arm
+        return centrifugal + 2.0 * now.omega * (self.S1 @ now.zeta_t) + now.omega_t * arm
 
     def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
         omega, arm = now.omega, self._imbalance(now.zeta)
         turning = omega**2 * self._e + now.omega_t * np.eye(3)
-        by_q["t", "f"] = -now.A @ turning @ self._S1
-        by_v["t", "f"] = -2.0 * omega * now.A @ self._S1
+        by_q["t", "f"] = -now.A @ turning @ self.S1
+        by_v["t", "f"] = -2.0 * omega * now.A @ self.S1
         if self.formulation.has_spin:
             by_q["t", "r"] = -(now.A @ self._e @ self._swing(now))[:, None]
-            by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self._S1 @ now.zeta_t)
+            by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self.S1 @ now.zeta_t)
             by_v["t", "r"] = -(now.A @ by_rate)[:, None]
 
     def _state(self, t: float, q: np.ndarray, q_t: np.ndarray) -> _State:
@@ -277,8 +283,8 @@ class Motion:
         else:
             theta, omega = form.spin.value(t), form.spin.rate(t)
             omega_t = form.spin.acceleration(t)
-        zeta, zeta_t = q[self._f], q_t[self._f]
-        if not (self._coupled or self._pushed):
+        zeta, zeta_t = q[self.modes], q_t[self.modes]
+        if not (self.is_coupled or self.is_pushed):
             return _State(omega, omega_t, zeta, zeta_t)
         rotation = self.orientation @ self._turn.rotation(theta)
         push = self.gravity
@@ -289,7 +295,7 @@ class Motion:
 
     def _placed(self, blocks: dict, base: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
         """Return `base` with the blocks of t, r, f put in, sparse where the invariants are."""
-        places = {"t": self._t, "r": self._r, "f": self._f}
+        places = {"t": self.translations, "r": self._r, "f": self.modes}
         matrix = base.copy()
         for (row, column), block in blocks.items():
             if not self.invariants.is_sparse:

@@ -11,12 +11,12 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     Formulation,
-    Motion,
     PrescribedMotion,
     SolidRotor,
     add_rotor,
     select_modes,
 )
+from exudyn_rotor.kernel import Kernel
 
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 TO_Y = Rotation.from_euler("x", -np.pi / 2).as_matrix()
@@ -284,13 +284,13 @@ def test_python_is_called_only_where_the_report_says_so(
     assert body.uses_python == python
     assert set(body.locked) == locked
     calls = []
-    forces = Motion.forces
+    update = Kernel.update
 
     def counted(self, *arguments):
         calls.append(arguments)
-        return forces(self, *arguments)
+        return update(self, *arguments)
 
-    monkeypatch.setattr(Motion, "forces", counted)
+    monkeypatch.setattr(Kernel, "update", counted)
     mbs.Assemble()
     mbs.SolveDynamic(settings(5, 1e-4))
     assert bool(calls) == python

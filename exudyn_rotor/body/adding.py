@@ -36,6 +36,7 @@ from exudyn_rotor.body.plan import Plan, make_plan
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.shell import ShellMesh, shell_mesh, shell_object
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.modes.selection import NEGLIGIBLE
 from exudyn_rotor.reduced import ReducedRotor
 
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
@@ -60,11 +61,12 @@ def add_rotor(
     gravity: ArrayLike = (0.0, 0.0, 0.0),
     mass_damping: float = 0.0,
     stiffness_damping: float = 0.0,
-    markers: Mapping[str, str] | None = None,
+    markers: Mapping[str, str] | str | None = None,
     marker_offsets: Mapping[str, ArrayLike] | None = None,
     show_markers: bool = True,
     locking: str = "auto",
     native_shell: bool = True,
+    negligible: float = NEGLIGIBLE,
     color: Sequence[float] = DEFAULT_COLOR,
 ) -> RotorBody:
     """Add a fixed-axis rotor to `mbs`.
@@ -96,9 +98,10 @@ def add_rotor(
         Inertial axes [m/s²].
     mass_damping, stiffness_damping : float
         Rayleigh factors of the component modes [1/s], [s], acting in the rotor frame.
-    markers : mapping of str to {'rigid', 'position'}, optional
-        Interfaces that get a marker; all of them, rigid, by default. A position marker costs a
-        fraction of a rigid one.
+    markers : {'rigid', 'position'} or mapping of str to these, optional
+        Kind of the markers at all interfaces, or interfaces that get a marker; all of them, rigid,
+        by default. A position marker serves springs and forces at a fifth of the cost of a rigid
+        one.
     marker_offsets : mapping of str to array_like, shape (3,), optional
         Offset of a marker from the interface's reference point, mesh axes [m].
     show_markers : bool
@@ -110,6 +113,9 @@ def add_rotor(
         masses else.
     native_shell : bool
         False leaves out markers, mesh sensors and drawing, and with them every locked coordinate.
+    negligible : float
+        Share of their upper bound below which couplings are left out of a time step; see
+        :func:`exudyn_rotor.select_modes`.
     color : sequence of 4 floats
         RGBA.
 
@@ -176,6 +182,7 @@ def add_rotor(
         (modal_coordinates, modal_velocities),
         locking,
         native_shell,
+        negligible,
     )
     if not native_shell:
         return _add_bare(mbs, plan)
@@ -287,16 +294,21 @@ def _add_markers(
         common = {
             "name": inputs.marker_name(plan.name, interface),
             "bodyNumber": shell,
-            "meshNodeNumbers": mesh.interface_nodes[interface],
-            "weightingFactors": [1.0 / 3.0] * 3,
             "visualization": {"show": request.show, "showMarkerNodes": False},
         }
         if request.kind == "rigid":
             turn = np.eye(4)
             turn[:3, :3] = plan.frame.B
-            item = MarkerSuperElementRigid(**common, localHT=turn)
+            item = MarkerSuperElementRigid(
+                meshNodeNumbers=mesh.rigid_nodes[interface],
+                weightingFactors=[1.0 / 3.0] * 3,
+                localHT=turn,
+                **common,
+            )
         else:
-            item = MarkerSuperElementPosition(**common)
+            item = MarkerSuperElementPosition(
+                meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
+            )
         markers[interface] = mbs.AddMarker(item)
     return markers
 

@@ -160,12 +160,14 @@ class MarkerRequest:
 
 def marker_requests(
     reduced: ReducedRotor,
-    markers: Mapping[str, str] | None,
+    markers: Mapping[str, str] | str | None,
     offsets: Mapping[str, ArrayLike],
     show: bool,
 ) -> dict[str, MarkerRequest]:
     """Return the markers to make; None asks for rigid markers at all interfaces."""
-    kinds = dict.fromkeys(reduced.interfaces, "rigid") if markers is None else markers
+    kinds = "rigid" if markers is None else markers
+    if isinstance(kinds, str):
+        kinds = dict.fromkeys(reduced.interfaces, kinds)
     for name in (*kinds, *offsets):
         if name not in reduced.interfaces:
             known = ", ".join(reduced.interfaces) or "none"

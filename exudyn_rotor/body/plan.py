@@ -49,6 +49,7 @@ def make_plan(
     modal: tuple[ArrayLike | None, ArrayLike | None],
     locking: str,
     native_shell: bool,
+    negligible: float,
 ) -> Plan:
     """Check what is left to check, and lay out the equations.
 
@@ -56,7 +57,7 @@ def make_plan(
     """
     if locking not in LOCKINGS:
         raise ValueError(f"locking {locking!r} is unknown; use one of {', '.join(LOCKINGS)}")
-    selection = select_modes(reduced, formulation)
+    selection = select_modes(reduced, formulation, negligible)
     invariants = selection.invariants
     mode_mass = selection.T.T @ reduced.mode_mass @ selection.T
     damping = invariants.D + rayleigh[0] * mode_mass + rayleigh[1] * invariants.K

@@ -18,10 +18,11 @@ from exudyn_rotor.reduced import ReducedRotor
 
 @dataclass(frozen=True, eq=False)
 class ShellMesh:
-    """Nodes of the shell: mesh nodes first, then three virtual nodes per interface.
+    """Nodes of the shell: mesh nodes first, then four virtual nodes per interface.
 
     The virtual nodes move as the interface's mean rigid motion says, so a marker on them is exact
-    and its cost does not depend on the mesh.
+    and its cost does not depend on the mesh: three around the reference point for rigid markers,
+    and the point itself for position markers.
 
     Attributes
     ----------
@@ -32,7 +33,8 @@ class ShellMesh:
     triangles : ndarray of int
     stress : ndarray, shape (N, 6 m) or (0, 0)
         Stress columns in Exudyn's layout, mesh axes [Pa].
-    interface_nodes : dict of str to list of int
+    rigid_nodes, point_nodes : dict of str to list of int
+        Nodes of every interface's rigid and position marker.
     mesh_node_count : int
         Number of leading nodes that are mesh nodes.
     """
@@ -41,7 +43,8 @@ class ShellMesh:
     modes: np.ndarray
     triangles: np.ndarray
     stress: np.ndarray
-    interface_nodes: dict[str, list[int]]
+    rigid_nodes: dict[str, list[int]]
+    point_nodes: dict[str, list[int]]
     mesh_node_count: int
 
 
@@ -63,7 +66,7 @@ def shell_mesh(
         modes.append(reduced.shapes.matrix @ selection.T)
         triangles = reduced.shapes.triangles
     mesh_count = count = sum(map(len, positions))
-    interface_nodes = {}
+    rigid_nodes, point_nodes = {}, {}
     for name, interface in reduced.interfaces.items():
         motion = interface.motion @ selection.T
         offset = offsets.get(name, np.zeros(3))
@@ -71,10 +74,10 @@ def shell_mesh(
         points, columns = virtual_nodes(
             interface.reference + offset, interface.radius, motion, reduced.axis
         )
-        positions.append(points)
-        modes.append(columns)
-        interface_nodes[name] = [count, count + 1, count + 2]
-        count += 3
+        positions += [points, interface.reference[None, :] + offset]
+        modes += [columns, motion[:3]]
+        rigid_nodes[name], point_nodes[name] = [count, count + 1, count + 2], [count + 3]
+        count += 4
     if reduced.shapes is not None and reduced.shapes.stress is not None:
         stress = _stress_columns(reduced.shapes.stress @ selection.T, count)
     return ShellMesh(
@@ -82,7 +85,8 @@ def shell_mesh(
         modes=frame.columns(np.vstack(modes)),
         triangles=triangles,
         stress=stress,
-        interface_nodes=interface_nodes,
+        rigid_nodes=rigid_nodes,
+        point_nodes=point_nodes,
         mesh_node_count=mesh_count,
     )
 

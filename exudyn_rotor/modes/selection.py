@@ -11,7 +11,7 @@ from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.modes.basis import RIGID
 from exudyn_rotor.reduced import ReducedRotor
 
-_ROUND_OFF = 1e-10
+NEGLIGIBLE = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,27 +36,54 @@ class Selection:
     invariants: Invariants
 
 
-def select_modes(reduced: ReducedRotor, formulation: Formulation) -> Selection:
+def select_modes(
+    reduced: ReducedRotor, formulation: Formulation, negligible: float = NEGLIGIBLE
+) -> Selection:
     """Pick the columns of `reduced` for `formulation`.
 
     Rigid motions held by the frame leave the basis; the others become orthogonal to them, so that
     ``S = 0`` for the frame's translations and ``g = 0`` for its spin.
 
+    Parameters
+    ----------
+    reduced : ReducedRotor
+    formulation : Formulation
+    negligible : float
+        Couplings and moments of mass below this share of their upper bound, which Cauchy and
+        Schwarz give, are taken as zero, and what belongs to them is not evaluated in a time step.
+        A real unbalance is such a moment: leave this at the level of round-off to keep it.
+
     Raises
     ------
     ValueError
-        When the rotor cannot be used in this formulation.
+        When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
     """
     _check_possible(reduced, formulation)
+    if not 0.0 <= negligible < 1.0:
+        raise ValueError(f"negligible: needs a share from 0 to below 1, got {negligible!r}")
     if formulation.translation_count:
         origin = reduced.center_of_mass
     else:
         origin = reduced.axis.project(reduced.center_of_mass)
     T, labels = _columns(reduced, formulation, origin)
     invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
-    limit = _ROUND_OFF * np.sqrt(invariants.mass)
-    coupling = np.where(np.abs(invariants.S) < limit, 0.0, invariants.S)
-    return Selection(T, origin, labels, replace(invariants, S=coupling))
+    return Selection(T, origin, labels, _without_noise(invariants, negligible))
+
+
+def _without_noise(invariants: Invariants, negligible: float) -> Invariants:
+    """Put zeros for what is negligible; the columns are mass-orthonormal."""
+    size = np.sqrt(invariants.mass)
+    spread = np.sqrt(np.diag(invariants.J))[:, None, None]
+
+    def cut(values: np.ndarray, bound: float | np.ndarray) -> np.ndarray:
+        return np.where(np.abs(values) < negligible * bound, 0.0, values)
+
+    return replace(
+        invariants,
+        S=cut(invariants.S, size),
+        P=cut(invariants.P, spread),
+        center=cut(invariants.center, np.linalg.norm(spread) / size),
+    )
 
 
 def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:

@@ -1,0 +1,162 @@
+"""The fast arrangement of the equations against their plain statement, and solver settings."""
+
+from dataclasses import replace
+
+import exudyn
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    Formulation,
+    Motion,
+    PrescribedMotion,
+    SpinAxis,
+    add_rotor,
+    select_modes,
+)
+from exudyn_rotor.body.settings import recommended_settings
+from exudyn_rotor.formulation import ConstantSpeed
+from exudyn_rotor.kernel import Kernel, constant_part
+from exudyn_rotor.stiffening import stiffening
+
+ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
+SHAKE = PrescribedMotion(
+    lambda t: np.array([0.3, -0.2, 0.4]) * np.sin(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * 2 * np.cos(2 * t),
+    lambda t: np.array([0.3, -0.2, 0.4]) * -4 * np.sin(2 * t),
+)
+SWING = PrescribedMotion(
+    lambda t: 0.5 * t + np.sin(t), lambda t: 0.5 + np.cos(t), lambda t: -np.sin(t)
+)
+ANGLE = Formulation("none", "free")
+FORMULATIONS = {
+    "free spin": ANGLE,
+    "constant speed": Formulation("none", ConstantSpeed(1.3, 0.2)),
+    "prescribed spin": Formulation("none", SWING),
+    "constant speed, shaken": Formulation(SHAKE, ConstantSpeed(1.3, 0.2)),
+    "prescribed spin, shaken": Formulation(SHAKE, SWING),
+    "free spin, shaken": Formulation(SHAKE, "free"),
+}
+FORCES = {
+    True: "forces_of_free_spin",
+    False: "forces_of_driven_spin",
+}
+
+
+def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
+    invariants, _, _ = random_invariants(seed, 3)
+    terms = stiffening(invariants, "tilt")
+    return Motion(
+        invariants, formulation, terms, ORIENTATION, gravity=gravity * np.array([1.0, -2.0, 3.0])
+    )
+
+
+def kernel_forces(kernel: Kernel, motion: Motion, t: float, q: list, q_t: list) -> np.ndarray:
+    form = motion.formulation
+    if form.is_constant_speed:
+        if not motion.is_pushed:
+            return np.zeros(motion.size)
+        return kernel.push_at_constant_speed(t, q, q_t)
+    return getattr(kernel, FORCES[form.has_spin])(t, q, q_t)
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS)
+@given(
+    seed=st.integers(0, 10_000),
+    gravity=st.sampled_from([0.0, 1.0]),
+    time=st.floats(-3.0, 3.0),
+)
+@settings(max_examples=15, deadline=None, derandomize=True)
+def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
+    motion = motion_of(formulation, seed, gravity)
+    kernel = Kernel(motion, range(motion.size), motion.size)
+    constant = constant_part(motion)
+    for q, q_t in np.random.default_rng(seed).normal(size=(2, 2, motion.size)):
+        forces = kernel_forces(kernel, motion, time, q.tolist(), q_t.tolist())
+        total = forces + constant.force - constant.stiffness @ q - constant.damping @ q_t
+        expected = motion.forces(time, q, q_t)
+        assert total == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
+        if formulation.has_spin:
+            kernel.update(q.tolist())
+            mass = motion.mass_matrix(time, q)
+            assert kernel.spin_inertia == pytest.approx(mass[0, 0], rel=1e-12)
+            assert kernel.spin_coupling == pytest.approx(mass[0, 1:], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("translation", ["free", "in-plane"])
+def test_unknowns_may_stand_among_others(translation):
+    """With the frame in the centre of mass, translations have only their weight."""
+    invariants, _, _ = random_invariants(3, 3)
+    invariants = replace(invariants, center=np.zeros(3), S=np.zeros((3, 3)))
+    motion = Motion(
+        invariants,
+        Formulation(translation, "free"),
+        stiffening(invariants, "none"),
+        plane=SpinAxis(SKEW_AXIS).plane,
+        gravity=np.array([1.0, -2.0, 3.0]),
+    )
+    count = motion.formulation.translation_count
+    unknowns = np.array([*range(count), 5, 6, 7, 8])
+    kernel, constant = Kernel(motion, unknowns, 9), constant_part(motion)
+    q, q_t = np.random.default_rng(5).normal(size=(2, 9))
+    forces = kernel.forces_of_free_spin(0.0, q.tolist(), q_t.tolist())
+    assert not forces[[i for i in range(9) if i not in unknowns]].any()
+    own, rate = q[unknowns], q_t[unknowns]
+    total = forces[unknowns] + constant.force - constant.stiffness @ own - constant.damping @ rate
+    assert total == pytest.approx(motion.forces(0.0, own, rate), rel=1e-12, abs=1e-12)
+    assert constant.force[:count] == pytest.approx(motion.weight)
+
+
+def test_recommended_settings_follow_the_accuracy():
+    given = exudyn.SimulationSettings()
+    made = recommended_settings(0.1, 3e-4, accuracy=1e-6, settings=given)
+    assert made is given
+    assert made.timeIntegration.numberOfSteps == 334
+    assert made.timeIntegration.endTime == 0.1
+    assert made.timeIntegration.newton.relativeTolerance == pytest.approx(1e-7)
+    assert recommended_settings(0.1, 1e-3).timeIntegration.numberOfSteps == 100
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((0.0, 1e-3), "end_time: must be positive"),
+        ((1.0, -1e-3), "step: must be positive"),
+        ((1.0, float("nan")), "step"),
+        ((1e-3, 1.0), "longer than end_time"),
+    ],
+)
+def test_bad_settings_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        recommended_settings(*arguments)
+
+
+def test_bad_accuracy_is_refused():
+    with pytest.raises(ValueError, match="accuracy: needs a share"):
+        recommended_settings(1.0, 1e-3, accuracy=2.0)
+
+
+def test_negligible_decides_what_is_evaluated():
+    """A slight unbalance stays by default, and goes where the caller takes it for nothing."""
+    rotor = ring_rotor(0.1, 0.2, 5.0).add_point_mass([0.1, 0.0, 0.2], 1e-5)
+    reduced, fixed = rotor.reduce(0), Formulation("none", 10.0)
+    kept = select_modes(reduced, fixed).invariants
+    gone = select_modes(reduced, fixed, negligible=1e-4).invariants
+    # the mass m at radius r shifts the centre by m r / M, 4.5e-6 of the radius of gyration
+    assert np.linalg.norm(kept.center) == pytest.approx(1e-6 / 5.0, rel=1e-5)
+    assert np.any(kept.h)
+    assert not np.any(gone.center)
+    assert not np.any(gone.h)
+    with pytest.raises(ValueError, match="negligible: needs a share"):
+        select_modes(reduced, fixed, negligible=1.0)
+
+
+def test_one_word_sets_the_kind_of_all_markers():
+    rotor = ring_rotor(0.1, 0.2, 5.0).with_interface("end", range(5)).reduce(2)
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, markers="position")
+    assert mbs.GetMarker(body.marker("end"))["markerType"] == "SuperElementPosition"
