@@ -184,10 +184,29 @@ def _timed(call: Callable, kind: str, count: dict, spent: dict) -> Callable:
     return timed
 
 
+def with_points(mbs: exudyn.MainSystem, fem: FEMinterface) -> dict:
+    """Add the 3D body with position markers on one virtual node an interface."""
+    return add_3d_rotor_with_virtual_nodes(mbs, fem, markers="position")
+
+
+FREE_SPIN = {"translation": "free"}
+CONSTANT_SPEED = {"spin": START_SPEED, "translation": "none"}
+
 BODIES: dict[str, AddRotor] = {
     "3D, markers on all face nodes": add_3d_rotor,
     "3D, virtual nodes": add_3d_rotor_with_virtual_nodes,
-    "fixed axis, free spin": fixed_axis(),
-    "fixed axis, free spin, floor": without_python(fixed_axis()),
-    "fixed axis, constant speed": fixed_axis(spin=START_SPEED, translation="none"),
+    "fixed axis, free spin": fixed_axis(**FREE_SPIN),
+    "fixed axis, free spin, floor": without_python(fixed_axis(**FREE_SPIN)),
+    "fixed axis, constant speed": fixed_axis(**CONSTANT_SPEED),
+    "fixed axis, constant speed, floor": without_python(fixed_axis(**CONSTANT_SPEED)),
+}
+# the bearings need no more than these, and they cost a fraction
+POINT_BODIES: dict[str, AddRotor] = {
+    "3D, virtual nodes": with_points,
+    "fixed axis, free spin": fixed_axis(**FREE_SPIN, markers="position"),
+    "fixed axis, free spin, floor": without_python(fixed_axis(**FREE_SPIN, markers="position")),
+    "fixed axis, constant speed": fixed_axis(**CONSTANT_SPEED, markers="position"),
+    "fixed axis, constant speed, floor": without_python(
+        fixed_axis(**CONSTANT_SPEED, markers="position")
+    ),
 }

@@ -37,12 +37,12 @@ def recommended_settings(
 
     Notes
     -----
-    What is changed under ``timeIntegration``, and what it does (20 modes, two bearings, by
-    ``python validation/ablation.py``):
+    What is changed under ``timeIntegration``, and what it does (two bearings, by
+    ``python validation/ablation.py`` and ``python validation/speed.py``):
 
     ``newton.useModifiedNewton`` : True
-        The Jacobian is kept over many steps. Full Newton needs one iteration instead of three, and
-        each is more than ten times as long.
+        The Jacobian is kept over many steps. Full Newton needs fewer iterations, but a step costs
+        twice as much with 10 modes and ten times as much with 20 modes and rigid markers.
     ``newton.relativeTolerance`` : a tenth of `accuracy`, from 1e-9 to 1e-5
         The default, 1e-8, iterates far below the error of the step size; 1e-5 changes the motion
         by 1e-5 of its size and saves a third of the iterations.

@@ -41,6 +41,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     stiffening: str = "tilt",
     locking: str = "auto",
+    markers: str = "rigid",
 ) -> dict:
     """Create a flexible rotor that spins about one fixed axis.
 
@@ -72,6 +73,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations)
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.body.locking
+        markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
+            at a fraction of the cost
 
     Returns:
         :dict: marker number of every boundary under its marker name, and under
@@ -116,6 +119,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         stiffness_damping=stiffnessProportionalDamping,
         marker_offsets=_offsets(list(reduced.interfaces), superElementRigidMarkersOffsets),
         locking=locking,
+        markers=markers,
         color=color,
         show_markers=showMarkers,
     )

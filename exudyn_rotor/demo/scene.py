@@ -13,7 +13,7 @@ import exudyn
 import ngsolve
 import numpy as np
 from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
-from exudyn.itemInterface import MarkerSuperElementRigid
+from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementRigid
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
@@ -62,31 +62,39 @@ def add_3d_rotor(mbs: exudyn.MainSystem, fem: FEMinterface) -> dict:
     )
 
 
-def add_3d_rotor_with_virtual_nodes(mbs: exudyn.MainSystem, fem: FEMinterface) -> dict:
-    """Add Exudyn's own flexible body with the fixed-axis rotor's cheap interface nodes."""
+def add_3d_rotor_with_virtual_nodes(
+    mbs: exudyn.MainSystem, fem: FEMinterface, markers: str = "rigid"
+) -> dict:
+    """Add Exudyn's own flexible body with the fixed-axis rotor's cheap interface nodes.
+
+    `markers` is 'rigid', on three nodes an interface, or 'position', on one.
+    """
     model = SolidRotor.from_fem_interface(fem, "x")
     body = ObjectFFRFreducedOrderInterface(fem)
     modes, places = body.modeBasis, {}
     for name, interface in model.interfaces.items():
         motion = interface.mean_motion(model.node_count) @ modes
         points, columns = virtual_nodes(interface.reference, interface.radius, motion, model.axis)
-        places[name] = [len(body.xRef) // 3 + i for i in range(3)]
+        if markers == "position":
+            points, columns = interface.reference[None, :], motion[:3]
+        places[name] = list(range(len(body.xRef) // 3, len(body.xRef) // 3 + len(points)))
         body.xRef = np.append(body.xRef, points)
         body.modeBasis = np.vstack([body.modeBasis, columns])
     items = body.AddObjectFFRFreducedOrder(
         mbs, name="rotor", initialAngularVelocity=[START_SPEED, 0, 0], gravity=GRAVITY
     )
-    markers = {
+    kind = MarkerSuperElementPosition if markers == "position" else MarkerSuperElementRigid
+    made = {
         f"rotor:{name}": mbs.AddMarker(
-            MarkerSuperElementRigid(
+            kind(
                 bodyNumber=items["oFFRFreducedOrder"],
                 meshNodeNumbers=nodes,
-                weightingFactors=[1.0 / 3.0] * 3,
+                weightingFactors=[1.0 / len(nodes)] * len(nodes),
             )
         )
         for name, nodes in places.items()
     }
-    return markers | {"FFRFReducedOrderObjectDict": items}
+    return made | {"FFRFReducedOrderObjectDict": items}
 
 
 def add_fixed_axis_rotor(translation: str) -> AddRotor:
