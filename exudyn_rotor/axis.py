@@ -51,13 +51,15 @@ class SpinAxis:
                 raise ValueError(
                     f"spin axis: the {label} needs three finite numbers, got {vector.tolist()}"
                 )
-        length = np.linalg.norm(direction)
-        if length == 0.0:
+        largest = np.abs(direction).max()
+        if largest == 0.0:
             raise ValueError(
                 "spin axis: the direction [0, 0, 0] has no length; "
                 "give a vector along the axis, e.g. [0, 0, 1] or 'z'"
             )
-        object.__setattr__(self, "direction", read_only(direction / length))
+        # scaled first: the squares of very long and very short vectors leave the range of floats
+        scaled = direction / largest
+        object.__setattr__(self, "direction", read_only(scaled / np.linalg.norm(scaled)))
         object.__setattr__(self, "point", point)
 
     @classmethod

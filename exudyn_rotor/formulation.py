@@ -54,6 +54,8 @@ class PrescribedMotion:
         """
         if not duration > 0.0:
             raise ValueError(f"run-up: the duration must be positive, got {duration}")
+        if not np.all(np.isfinite([start_speed, end_speed, duration, angle])):
+            raise ValueError("run-up: speeds, duration and angle must be finite numbers")
         gain = end_speed - start_speed
 
         def share(t: float) -> float:

@@ -105,6 +105,8 @@ class Support:
 def _interpolate(speeds: ArrayLike, values: ArrayLike, speed: float) -> np.ndarray:
     """Interpolate a table over the spin speed; constant beyond its ends."""
     speeds, values = np.asarray(speeds, dtype=float), np.asarray(values, dtype=float)
+    if not (np.all(np.isfinite(speeds)) and np.all(np.isfinite(values))):
+        raise ValueError("support table: speeds and values must be finite numbers")
     if speeds.ndim != 1 or len(speeds) != len(values) or np.any(np.diff(speeds) <= 0.0):
         raise ValueError(
             f"support table: needs ascending speeds (s,) and as many values, got shapes "

@@ -9,6 +9,7 @@ included: Eqs. (105) and (109) with centrifugal stiffening.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,6 +22,8 @@ from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.stiffening import stiffening as second_order
 
 Terms = Mapping[int, np.ndarray]
+
+_ECCENTRIC = 1e-3  # relative error of frequencies that is worth a warning
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +105,8 @@ class LinearRotor:
                 )
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+        if "spin" in rotor.rigid:
+            _warn_of_eccentricity(invariants)
         return cls(rotor, tuple(supports), invariants, second_order(invariants, stiffening).K2)
 
     @property
@@ -156,6 +161,20 @@ class LinearRotor:
             _add(D, damping, U)
             _add(K, stiffness, U)
         return PeriodicSystem(float(speed), M, D, K)
+
+
+def _warn_of_eccentricity(invariants: Invariants) -> None:
+    """Tell that spin and lateral motion are coupled where they are taken apart."""
+    distance = float(np.linalg.norm(invariants.center))
+    error = 0.5 * invariants.mass * distance**2 / invariants.Theta
+    if error > _ECCENTRIC:
+        warnings.warn(
+            f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this "
+            f"as a load and leave out that it couples spin with lateral motion, which changes "
+            f"frequencies by about {error:.1%}; balance the rotor, or analyse its SolidRotor",
+            UserWarning,
+            stacklevel=4,
+        )
 
 
 def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:

@@ -78,7 +78,7 @@ def unbalance_response(
         Interfaces and mesh nodes to look at; all interfaces by default.
     frame : {'inertial', 'rotor'}
         Axes of the resulting motion.
-    stiffening : {'tilt', 'none'}
+    stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening.
     tolerance : float, optional
         Largest relative change of the motion by further harmonics; smaller harmonics are left out.
@@ -243,6 +243,8 @@ def _collected(
     for row, motion in zip(full, motions, strict=True):
         for n, part in motion.items():
             row[:, orders.index(n)] = part
+    if not np.all(np.isfinite(full)):
+        raise ValueError("the response left the range of floats; check speeds and loads (SI units)")
     # a rotation counts as the displacement that it makes at the rotor's radius of gyration
     sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(0, 1, 3))
     keep = sizes > tolerance * sizes.max()

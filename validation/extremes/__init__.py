@@ -1,0 +1,1 @@
+"""Measurements behind ``extremes.py``: one function makes one row of its table."""

@@ -1,0 +1,228 @@
+"""Sizes, units and materials far from those of a steel rotor of half a metre."""
+
+from __future__ import annotations
+
+import netgen.occ as occ
+import ngsolve as ngs
+import numpy as np
+
+from extremes.bases import STEEL, orthonormality
+from extremes.rotors import held, two_rings
+from extremes.rows import EPS, Row, breaking_point, message
+from exudyn_rotor import Formulation, SolidRotor, Support, campbell, select_modes, stability
+
+MODES = 6
+
+
+def block(scale: float = 1.0) -> ngs.Mesh:
+    """Return a mesh of a block of 0.04 × 0.06 × 0.3 m times `scale`, always of the same shape."""
+    solid = occ.Box((-0.02, -0.03, 0), (0.02, 0.03, 0.3))
+    solid.mat("steel")
+    solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
+    netgen_mesh = occ.OCCGeometry(solid).GenerateMesh(maxh=0.05)
+    netgen_mesh.Scale(scale)
+    return ngs.Mesh(netgen_mesh)
+
+
+def dimensionless(length: float, stress: float = 1.0, density: float = 1.0) -> np.ndarray:
+    """Return the frequencies of a turning block, in units of ``√(E/ρ) / L``.
+
+    Lengths, stresses and densities are multiples of those in SI. The block turns at a fixed
+    dimensionless speed on springs of a fixed dimensionless stiffness.
+    """
+    steel = {
+        "youngsModulus": stress * STEEL["youngsModulus"],
+        "poissonsRatio": 0.3,
+        "density": density * STEEL["density"],
+    }
+    rotor = SolidRotor.from_ngsolve(
+        block(length), {"steel": steel}, "z", order=1, check_units=False
+    )
+    reduced = rotor.center_interfaces().reduce(MODES)
+    unit = np.sqrt(stress / density) / length
+    springs = held(1e8 * stress * length, "left", "right")
+    return campbell(reduced, [300.0 * unit], supports=springs).frequencies_rotating[0] / unit
+
+
+def mismatch(length: float, stress: float = 1.0, density: float = 1.0) -> float:
+    """Return the largest relative difference from the block in SI."""
+    expected, found = dimensionless(1.0), dimensionless(length, stress, density)
+    turning = expected > 0.0  # nothing holds the spin
+    return float(np.abs(found[turning] / expected[turning] - 1.0).max())
+
+
+def lengths(quick: bool = False) -> Row:
+    """Scale a block of 0.3 m to 10 µm and to 100 m."""
+    scales = (1e-5 / 0.3, 100.0 / 0.3) if quick else np.geomspace(1e-5, 100.0, 8) / 0.3
+    found = [mismatch(scale) for scale in scales]
+    steel = {"steel": STEEL}
+    text = message(lambda: SolidRotor.from_ngsolve(block(100.0 / 0.3), steel, "z", order=1))
+    return Row(
+        "length of the rotor",
+        "10 µm to 100 m",
+        "frequencies × length on springs while turning, against those of 0.3 m; limit: 1e-9",
+        max(found),
+        1e-9,
+        "100 m: 5·10⁷ kg" if text else "not reached",
+        "input" if text else "",
+        text,
+    )
+
+
+def units(quick: bool = False) -> Row:
+    """Give everything in mm, t, s and MPa."""
+    found = mismatch(1e3, 1e-6, 1e-12)
+    steel = {"youngsModulus": 2.1e5, "poissonsRatio": 0.3, "density": 7.85e-9}
+    text = message(lambda: SolidRotor.from_ngsolve(block(1e3), {"steel": steel}, "z", order=1))
+    return Row(
+        "units",
+        "mm, t, s with check_units=False",
+        "frequencies against SI; limit: 1e-9",
+        found if text.startswith("ValueError") else np.inf,
+        1e-9,
+        "without check_units=False",
+        "input",
+        text,
+    )
+
+
+def cylinder_modes(poissons_ratio: float, order: int) -> tuple[np.ndarray, float]:
+    """Return the flexible frequencies of a free cylinder, and the orthonormality error."""
+    solid = occ.Cylinder((0, 0, 0), occ.Z, 0.03, 0.3)
+    solid.mat("steel")
+    mesh = ngs.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04))
+    steel = STEEL | {"poissonsRatio": poissons_ratio}
+    rotor = SolidRotor.from_ngsolve(mesh, {"steel": steel}, "z", order=order)
+    reduced = rotor.reduce(8)
+    return reduced.frequencies[6:], orthonormality(rotor, reduced)
+
+
+def poisson(quick: bool = False) -> Row:
+    """Bring Poisson's ratio to 0.4999."""
+    reference, near = (cylinder_modes(ratio, 2)[0][0] for ratio in (0.3, 0.4999))
+    linear = [cylinder_modes(ratio, 1)[0][0] for ratio in (0.3, 0.4999)]
+    return Row(
+        "Poisson's ratio",
+        "0.4999 on quadratic elements",
+        "first bending frequency against that at 0.3, both of one Young's modulus; limit: the "
+        "share of shear, (r/L)² = 1 %, and the mesh's 1 %",
+        abs(near / reference - 1.0),
+        0.02,
+        f"linear elements lock: {100 * (linear[1] / reference - 1):.0f} % too high at 0.4999, "
+        f"{100 * (linear[0] / reference - 1):.0f} % at 0.3",
+        "physics",
+        "at 0.5: " + message(lambda: cylinder_modes(0.5, 1)),
+    )
+
+
+def density_ratio(ratio: float) -> tuple[float, float]:
+    """Return errors of a cylinder that is `ratio` times denser in its lower half.
+
+    Of the centre of mass, whose closed form is that of two equal halves, relative to the length;
+    and of orthonormality.
+    """
+    lower = occ.Cylinder((0, 0, 0), occ.Z, 0.1, 0.2)
+    lower.mat("heavy")
+    upper = occ.Cylinder((0, 0, 0.2), occ.Z, 0.1, 0.2)
+    upper.mat("light")
+    netgen_mesh = occ.OCCGeometry(occ.Glue([lower, upper])).GenerateMesh(maxh=0.08)
+    light = {"youngsModulus": 2e9, "poissonsRatio": 0.3, "density": 7850.0}
+    materials = {"light": light, "heavy": light | {"density": ratio * 7850.0}}
+    mesh = ngs.Mesh(netgen_mesh)
+    rotor = SolidRotor.from_ngsolve(mesh, materials, "z", order=1, check_units=False)
+    # volumes of the polyhedral halves differ a little: the mesh itself is the reference
+    volume = dict(zip(mesh.GetMaterials(), ngs.Integrate(1.0, mesh, region_wise=True), strict=True))
+    first = dict(
+        zip(mesh.GetMaterials(), ngs.Integrate(ngs.z, mesh, region_wise=True), strict=True)
+    )
+    exact = (ratio * first["heavy"] + first["light"]) / (ratio * volume["heavy"] + volume["light"])
+    center = abs(rotor.center_of_mass[2] - exact) / 0.4
+    return float(center), orthonormality(rotor, rotor.reduce(20)) / (3 * rotor.node_count)
+
+
+def densities(quick: bool = False) -> Row:
+    """Join two materials whose densities differ by a factor of ten thousand."""
+    return Row(
+        "density ratio in one mesh",
+        "10⁴",
+        "centre of mass against the integral over the mesh, and ΨᵀMΨ − I per coordinate; limit: "
+        "round-off × 10",
+        max(density_ratio(1e4)),
+        10.0 * EPS,
+    )
+
+
+def far_axis_error(distance: float) -> float:
+    """Return the error of frequencies with the spin axis far outside of the body.
+
+    `distance` in radii of the body. Around whatever axis it is carried, a body on isotropic
+    springs has the same small motions in the rotor frame.
+    """
+    rotors = _carried(0.0), _carried(distance)
+    if rotors[1].rigid_motions != 6:
+        return np.inf
+    near, far = (
+        np.sort(np.abs(stability(rotor.reduce(0), [150.0], supports=CARRIER).exponents[0]))
+        for rotor in rotors
+    )
+    return float(np.abs(near - far).max() / near.max())
+
+
+def eccentric_error(distance: float) -> float:
+    """Return the difference of Campbell frequencies of the reduced and the full rotor at rest.
+
+    The centre of mass is `distance` radii off the axis; nothing holds the spin.
+    """
+    rotor = _carried(distance)
+    found, exact = (
+        campbell(target, [0.0], supports=CARRIER).frequencies_rotating[0, 1:6]
+        for target in (rotor.reduce(0), rotor)
+    )
+    return float(np.abs(found / exact - 1.0).max())
+
+
+CARRIER = [Support("all", np.diag([1e5] * 3), tilt_stiffness=2e3)]
+
+
+def _carried(distance: float) -> SolidRotor:
+    return two_rings(offset=[0.1 * distance, 0.0, 0.0])
+
+
+def eccentricity(quick: bool = False) -> Row:
+    """Move the centre of mass off the axis, and compare the reduced rotor with the full one."""
+    found = breaking_point(lambda d: eccentric_error(d) < 0.01, 1e-4, 10.0)
+    return Row(
+        "eccentric rotor with a free spin, Campbell",
+        "eccentricity of 1e-3 radii of gyration",
+        "reduced against full rotor; limit: the square of the eccentricity, and √eps",
+        eccentric_error(1e-3),
+        1e-6 + np.sqrt(EPS),
+        f"1 % at {found:.2g} radii" if np.isfinite(found) else "not reached",
+        "physics" if np.isfinite(found) else "",
+        "a warning from an error of 0.1 % on, with the eccentricity and the error to expect",
+    )
+
+
+def far_inertia_error(distance: float) -> float:
+    """Return the error of ``Θ = I_p + m d²`` and of ``g = 0`` for a free spin about a far axis."""
+    rotor = two_rings(offset=[0.1 * distance, 0.0, 0.0])
+    chosen = select_modes(rotor.reduce(0), Formulation("none")).invariants
+    exact = 2.0 * 0.1**2 * (1.0 + distance**2)
+    return float(max(abs(chosen.Theta / exact - 1.0), np.abs(chosen.g).max() / np.sqrt(exact)))
+
+
+def far_axis(quick: bool = False) -> Row:
+    """Put the spin axis 1000 sizes of the body outside of it."""
+    found = breaking_point(lambda d: far_axis_error(d) < 1e-6, 10.0, 1e12, 1.1)
+    text = message(lambda: select_modes(_carried(2.0 * found).reduce(0), Formulation("none")))
+    return Row(
+        "axis far outside of the body",
+        "1000 × the radius",
+        "frequencies, Θ = I_p + md², g = 0; limit: round-off × 100 × distance",
+        max(far_axis_error(1e3), far_inertia_error(1e3)),
+        100.0 * EPS * 1e3,
+        f"{found:.1g} radii: rotations are no longer seen to be free, or frequencies are wrong by "
+        "1e-6",
+        "numerics",
+        f"SolidRotor.summary: rigid motions held; with a free spin {text}",
+    )
