@@ -30,12 +30,15 @@ from exudyn_rotor.linear.stability.analysis import (
     unstable_ranges,
 )
 from exudyn_rotor.linear.stability.maps import StabilityMap, stability_map
-from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes
+from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes, spinning_modes
 from exudyn_rotor.modes.selection import select_modes
 from exudyn_rotor.motion import Motion
 from exudyn_rotor.reduced import ReducedRotor
-from exudyn_rotor.solid import Interface, PointMass, SolidRotor
+from exudyn_rotor.solid import Interface, PointMass, Prestress, SolidRotor
 from exudyn_rotor.stiffening import Stiffening
+from exudyn_rotor.strength.field import StressField
+from exudyn_rotor.strength.history import StressHistory, stress_history
+from exudyn_rotor.truncation import keep_modes
 
 __all__ = [
     "BaseAcceleration",
@@ -53,6 +56,7 @@ __all__ = [
     "Motion",
     "PointMass",
     "PrescribedMotion",
+    "Prestress",
     "ReducedRotor",
     "RotorBody",
     "SolidRotor",
@@ -60,6 +64,8 @@ __all__ = [
     "Stability",
     "StabilityMap",
     "Stiffening",
+    "StressField",
+    "StressHistory",
     "Support",
     "Unbalance",
     "UnbalanceResponse",
@@ -70,13 +76,16 @@ __all__ = [
     "critical_speeds",
     "free_modes",
     "harmonic_response",
+    "keep_modes",
     "load_result",
     "permissible_unbalance",
     "recommended_settings",
     "select_modes",
+    "spinning_modes",
     "stability",
     "stability_map",
     "stability_threshold",
+    "stress_history",
     "unbalance_response",
     "unstable_ranges",
 ]

@@ -48,6 +48,9 @@ class Invariants:
         ``M*_ψ̃ψ = ΨᵀMẽ_bdΨ`` (80), skew-symmetric.
     C : shape (k, k)
         ``M*_ψ̃ψ̃ = (ẽ_bdΨ)ᵀM(ẽ_bdΨ)`` (81), symmetric and non-negative.
+    K2, B : shape (k, k), optional
+        Stiffness per ω² and per ω̇ of a static prestress, see
+        :class:`exudyn_rotor.stiffening.Stiffening`; None where none was computed.
     """
 
     direction: np.ndarray
@@ -61,6 +64,8 @@ class Invariants:
     D: Matrix
     G: Matrix
     C: Matrix
+    K2: Matrix | None = None
+    B: Matrix | None = None
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -149,15 +154,10 @@ class Invariants:
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
 
-        def project(matrix: Matrix) -> np.ndarray:
-            return T.T @ (matrix @ T)
-
-        return replace(
-            self,
-            S=self.S @ T,
-            P=self.P @ T,
-            **{name: project(getattr(self, name)) for name in ("M", "K", "D", "G", "C")},
-        )
+        names = ("M", "K", "D", "G", "C", "K2", "B")
+        given = {name: getattr(self, name) for name in names}
+        projected = {name: T.T @ (X @ T) for name, X in given.items() if X is not None}
+        return replace(self, S=self.S @ T, P=self.P @ T, **projected)
 
 
 def _row_sum(block: Matrix) -> np.ndarray:

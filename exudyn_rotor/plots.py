@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.modal.campbell import Campbell
@@ -72,6 +74,41 @@ def plot_campbell(axes: Axes, result: Campbell) -> Axes:
     axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     return axes
+
+
+def draw_surface(
+    positions: np.ndarray, triangles: np.ndarray, values: np.ndarray, label: str
+) -> Figure:
+    """Return a picture of nodal values on a surface.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (n, 3)
+        Nodes [m].
+    triangles : ndarray of int, shape (t, 3) or (t, 6)
+    values : ndarray, shape (n,)
+    label : str
+        Of the colour bar.
+    """
+    corners = triangles
+    if triangles.shape[1] == 6:
+        corners = triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+    mapped = ScalarMappable(cmap="viridis")
+    mapped.set_array(values[corners].mean(axis=1))
+    colors = mapped.to_rgba(mapped.get_array())
+    made = Figure(figsize=(8.0, 5.0), layout="constrained")
+    axes = made.add_subplot(projection="3d")
+    # edges of the faces' own colour close the gaps between them
+    faces = Poly3DCollection(positions[corners], facecolors=colors, edgecolors=colors, lw=0.3)
+    axes.add_collection3d(faces)
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(np.maximum(high - low, 1e-3 * np.max(high - low)), zoom=0.85)
+    for name, extent in zip("xyz", (high - low) / np.max(high - low), strict=True):
+        getattr(axes, f"set_{name}label")(f"{name} [m]", labelpad=8.0)
+        axes.locator_params(axis=name, nbins=max(1, round(5 * extent)))
+    made.colorbar(mapped, ax=axes, label=label, shrink=0.7)
+    return made
 
 
 def legend_above(axes: Axes, columns: int = 2, handles: list | None = None) -> None:

@@ -62,6 +62,28 @@ class ModeShapes:
 
 
 @dataclass(frozen=True, eq=False)
+class Centrifugal:
+    """Static fields by the rotation, about which the rotor vibrates; all of them, not modes only.
+
+    Attributes
+    ----------
+    displacement : ndarray or None, shape (3n,)
+        Per ω², mesh axes [m s²].
+    stress : ndarray or None, shape (n, 6)
+        Per ω² at the nodes, components xx, yy, zz, yz, xz, xy, mesh axes [Pa s²].
+    yield_stress : float or None
+        Yield stress of the material [Pa].
+    """
+
+    displacement: np.ndarray | None = None
+    stress: np.ndarray | None = None
+    yield_stress: float | None = None
+
+    def __post_init__(self) -> None:
+        _freeze(self, "displacement", "stress")
+
+
+@dataclass(frozen=True, eq=False)
 class ReducedRotor:
     """Rotor in a mass-orthonormal basis: the rigid motions, then the flexible modes.
 
@@ -87,6 +109,8 @@ class ReducedRotor:
         True when the stiffness matrix holds the rotor in its own frame.
     shapes : ModeShapes or None
         None when the rotor was reduced without them: then no mesh nodes, no drawing.
+    centrifugal : Centrifugal or None
+        None when the rotor was reduced without a computed prestress, or without shapes.
     """
 
     axis: SpinAxis
@@ -98,6 +122,7 @@ class ReducedRotor:
     dropped: tuple[str, ...] = ()
     grounded: bool = False
     shapes: ModeShapes | None = None
+    centrifugal: Centrifugal | None = None
 
     def __post_init__(self) -> None:
         _freeze(self, "center_of_mass", "mode_mass")
@@ -119,8 +144,49 @@ class ReducedRotor:
         return self.rigid + tuple(f"mode {i + 1} ({f:.4g} Hz)" for i, f in enumerate(hertz))
 
     def without_shapes(self) -> ReducedRotor:
-        """Return the rotor without mode shapes: the least to store and to simulate."""
-        return replace(self, shapes=None)
+        """Return the rotor without fields at mesh nodes: the least to store and to simulate."""
+        return replace(self, shapes=None, centrifugal=None)
+
+    def static_displacement(self, speed: float) -> np.ndarray:
+        """Return the static centrifugal displacement at a spin speed.
+
+        Linear elasticity, so it grows with ω². What that leaves out is, relative to it, of the
+        order of the centrifugal strain, divided by ``1 − ω²/ω_d²`` where ω_d is the speed at which
+        the elastic rotor would diverge.
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed ω [rad/s].
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Mesh axes [m], balanced by inertia relief where nothing holds the rotor.
+
+        Raises
+        ------
+        ValueError
+            If the rotor was reduced without a computed prestress.
+        """
+        return speed**2 * self._static("displacement").reshape(-1, 3)
+
+    def static_stress(self, speed: float) -> np.ndarray:
+        """Return the static centrifugal stress at a spin speed ω [rad/s], shape (n, 6) [Pa].
+
+        Components xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
+        :meth:`static_displacement`. A stress at rest is not in it.
+        """
+        return speed**2 * self._static("stress")
+
+    def _static(self, name: str) -> np.ndarray:
+        field = getattr(self.centrifugal, name, None)
+        if field is None:
+            raise ValueError(
+                f"static_{name}: the rotor was reduced without the static centrifugal field; use "
+                "reduce(..., prestress=True) with an NGSolve model, and keep the shapes"
+            )
+        return field
 
     def save(self, path: str | PathLike) -> None:
         """Write the rotor to an ``.npz`` file, lossless and without pickle."""

@@ -13,9 +13,12 @@ from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.modes.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
 from exudyn_rotor.modes.component import ModeBasis, check_same_mesh, free_modes
 from exudyn_rotor.modes.fem_interface import fem_interface_modes
-from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.reduced import Centrifugal, ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.solid.stressed import relief_rotations, stressed
+from exudyn_rotor.stiffening import with_prestress
 
 if TYPE_CHECKING:
+    from exudyn_rotor.solid.prestress import Prestress
     from exudyn_rotor.solid.rotor import SolidRotor
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -28,8 +31,12 @@ def reduce_rotor(
     stress: bool = False,
     keep_shapes: bool = True,
     rank_tolerance: float = 1e-7,
+    prestress: Prestress | bool | None = None,
 ) -> ReducedRotor:
     """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
+    rotor = stressed(rotor, prestress)
+    if not 0.0 <= rank_tolerance < 1.0:
+        raise ValueError(f"rank_tolerance: needs a share from 0 to below 1, got {rank_tolerance!r}")
     component = _component_modes(rotor, modes)
     center = rotor.center_of_mass
     rigid, names = _rigid_motions(rotor, center)
@@ -44,17 +51,19 @@ def reduce_rotor(
         basis.matrix,
         rotor.axis.direction,
     )
+    _check_stable(invariants, len(basis.rigid))
     raw_mass = component.matrix.T @ (rotor.mass @ component.matrix)
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
-        invariants=_cleaned(invariants, len(basis.rigid)),
+        invariants=_stiffened(rotor, _cleaned(invariants, len(basis.rigid)), basis.matrix),
         rigid=basis.rigid,
         interfaces=_interfaces(rotor, basis.matrix),
         mode_mass=basis.from_modes.T @ raw_mass @ basis.from_modes,
         dropped=basis.dropped,
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
+        centrifugal=_centrifugal(rotor) if keep_shapes else None,
     )
 
 
@@ -102,6 +111,33 @@ def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
         G=0.5 * (invariants.G - invariants.G.T),
         C=0.5 * (invariants.C + invariants.C.T),
     )
+
+
+def _check_stable(invariants: Invariants, rigid_count: int) -> None:
+    """Refuse a rotor that its stress at rest makes buckle."""
+    stiffness = np.diag(invariants.K)[rigid_count:]
+    if stiffness.size and stiffness.min() < -1e-9 * abs(stiffness).max():
+        raise ValueError(
+            f"a mode has the stiffness {stiffness.min():.4g} 1/s²: the rotor buckles under its "
+            "stress at rest; check sign and unit of prestress(stress=…) [Pa, tension positive]"
+        )
+
+
+def _stiffened(rotor: SolidRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
+    """Add what the carried prestress gives to the invariants of the basis."""
+    carried = rotor.carried_prestress
+    if carried is None:
+        return invariants
+    K2 = basis.T @ (carried.matrix @ basis)
+    B = None if carried.euler is None else basis.T @ (carried.euler @ basis)
+    return with_prestress(invariants, K2, B, relief_rotations(rotor))
+
+
+def _centrifugal(rotor: SolidRotor) -> Centrifugal | None:
+    carried = rotor.carried_prestress
+    if carried is None or carried.displacement is None:
+        return None
+    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
 
 
 def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:

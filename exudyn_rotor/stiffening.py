@@ -11,6 +11,10 @@ Levels
     The paper's equations.
 ``'tilt'``
     Exact for the rigid rotations contained in the basis, from M and x alone.
+``'full'``
+    The geometric stiffness of the static centrifugal stress, which stiffens flexible modes, too
+    (blades, discs), and contains ``'tilt'``: a stress in equilibrium does the work of its load.
+    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.solid.prestress`).
 
 Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
 φ about the centre of mass and a flexible rest ψ; composing them gives
@@ -20,7 +24,7 @@ Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into tra
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,7 +32,12 @@ import scipy.sparse as sp
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.nodal import skew
 
-LEVELS = ("none", "tilt")
+LEVELS = ("none", "tilt", "full")
+NO_PRESTRESS = (
+    "stiffening='full' needs the static centrifugal stress: reduce the rotor with prestress=True "
+    "(NGSolve model) or with Prestress.from_matrix (imported model), carry it in a full model with "
+    "rotor.with_prestress, or use stiffening='tilt'"
+)
 
 _EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
@@ -57,12 +66,12 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
     ----------
     invariants : Invariants
         With the origin on the spin axis.
-    level : {'none', 'tilt'}
+    level : {'none', 'tilt', 'full'}
 
     Raises
     ------
     ValueError
-        For an unknown level.
+        For an unknown level, or 'full' without a prestress.
     """
     if level not in LEVELS:
         raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
@@ -70,9 +79,58 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
         shape = (invariants.size, invariants.size)
         zero = sp.csr_array(shape) if invariants.is_sparse else np.zeros(shape)
         return Stiffening(zero, zero)
+    if level == "full":
+        return _full(invariants)
     e = skew(invariants.direction)
     split = _rigid_split(invariants)
     return Stiffening(K2=-_work_hessian(split, -e @ e), B=_work_hessian(split, e))
+
+
+def _full(invariants: Invariants) -> Stiffening:
+    if invariants.K2 is None:
+        raise ValueError(NO_PRESTRESS)
+    B = invariants.B
+    if B is None:  # of the Euler field only what rigid rotations feel
+        B = _work_hessian(_rigid_split(invariants), skew(invariants.direction))
+    return Stiffening(invariants.K2, B)
+
+
+def with_prestress(
+    invariants: Invariants, K2: np.ndarray, B: np.ndarray | None, relief: np.ndarray
+) -> Invariants:
+    """Return the invariants with the stiffness of a static prestress.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Dense.
+    K2 : ndarray, shape (k, k)
+        ``ΨᵀK_GΨ`` per ω².
+    B : ndarray or None, shape (k, k)
+        The same per ω̇.
+    relief : ndarray, shape (2, 3)
+        Angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a
+        load strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
+    """
+    split = _rigid_split(invariants)
+
+    def whole(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        return 0.5 * (matrix + matrix.T) - _work_hessian(split, skew(turn))
+
+    return replace(
+        invariants,
+        K2=whole(K2, relief[0]),
+        B=None if B is None else whole(B, relief[1]),
+    )
+
+
+def relief_factors(invariants: Invariants, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6): ``VᵀWV`` is what `with_prestress` adds to K2 for a turn (3,).
+
+    The form for full models.
+    """
+    V, W = _work_factors(_rigid_split(invariants), skew(turn))
+    return V, -W
 
 
 def tilt_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:

@@ -9,10 +9,13 @@ import numpy as np
 from exudyn_rotor.archive import read_arrays, write_arrays
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.reduced import Centrifugal, ModeShapes, ReducedInterface, ReducedRotor
 
 _FORMAT = "exudyn_rotor reduced rotor 1"
 _INVARIANTS = ("direction", "mass", "center", "J", "S", "P", "M", "K", "D", "G", "C")
+# entries that a rotor without prestress does not have
+_PRESTRESS = ("K2", "B")
+_CENTRIFUGAL = ("displacement", "stress", "yield_stress")
 _SHAPES = ("nodes", "matrix", "triangles", "stress")
 _INTERFACE = ("reference", "center", "radius", "motion")
 
@@ -30,12 +33,18 @@ def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
         "grounded": rotor.grounded,
     }
     data |= {f"invariants.{key}": getattr(rotor.invariants, key) for key in _INVARIANTS}
+    data |= _given("invariants", rotor.invariants, _PRESTRESS)
+    data |= _given("centrifugal", rotor.centrifugal, _CENTRIFUGAL)
     for index, interface in enumerate(rotor.interfaces.values()):
         data |= {f"interface{index}.{key}": getattr(interface, key) for key in _INTERFACE}
-    if rotor.shapes is not None:
-        values = {key: getattr(rotor.shapes, key) for key in _SHAPES}
-        data |= {f"shapes.{key}": value for key, value in values.items() if value is not None}
+    data |= _given("shapes", rotor.shapes, _SHAPES)
     write_arrays(path, data)
+
+
+def _given(group: str, owner: object, names: tuple[str, ...]) -> dict[str, object]:
+    """Return the entries of `owner` that are not None."""
+    values = {name: getattr(owner, name, None) for name in names}
+    return {f"{group}.{name}": value for name, value in values.items() if value is not None}
 
 
 def load_reduced(path: str | PathLike) -> ReducedRotor:
@@ -58,6 +67,7 @@ def load_reduced(path: str | PathLike) -> ReducedRotor:
 def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
     invariants = {key: data[f"invariants.{key}"] for key in _INVARIANTS}
     invariants["mass"] = float(invariants["mass"])
+    invariants |= {key: data.get(f"invariants.{key}") for key in _PRESTRESS}
     interfaces = {}
     for index, name in enumerate(data["interface_names"]):
         values = {key: data[f"interface{index}.{key}"] for key in _INTERFACE}
@@ -65,6 +75,10 @@ def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
     shapes = None
     if "shapes.matrix" in data:
         shapes = ModeShapes(**{key: data.get(f"shapes.{key}") for key in _SHAPES})
+    static = {key: data.get(f"centrifugal.{key}") for key in _CENTRIFUGAL}
+    if static["yield_stress"] is not None:
+        static["yield_stress"] = float(static["yield_stress"])
+    has_static = any(value is not None for value in static.values())
     return ReducedRotor(
         axis=SpinAxis(*data["axis"]),
         center_of_mass=data["center_of_mass"],
@@ -75,4 +89,5 @@ def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
         dropped=tuple(str(name) for name in data["dropped"]),
         grounded=bool(data["grounded"]),
         shapes=shapes,
+        centrifugal=Centrifugal(**static) if has_static else None,
     )

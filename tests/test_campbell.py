@@ -117,7 +117,7 @@ def test_wrong_speeds_are_refused(rotor, speeds):
 
 def test_unknown_stiffening_is_refused(rotor):
     with pytest.raises(ValueError, match="is unknown"):
-        campbell(rotor, 1.0, stiffening="full")
+        campbell(rotor, 1.0, stiffening="bend")
 
 
 def test_progress_bar(rotor, capsys):

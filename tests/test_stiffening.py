@@ -62,8 +62,8 @@ def test_level_none_has_no_terms():
 
 def test_unknown_level_is_refused():
     invariants, _, _ = random_invariants(1)
-    with pytest.raises(ValueError, match="'full' is unknown; use one of none, tilt"):
-        stiffening(invariants, "full")
+    with pytest.raises(ValueError, match="'bend' is unknown; use one of none, tilt, full"):
+        stiffening(invariants, "bend")
 
 
 # ------------------------------------------------------------------ work on exact displacements

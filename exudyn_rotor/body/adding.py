@@ -81,8 +81,9 @@ def add_rotor(
     translation, spin, drive
         The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
         speed [rad/s].
-    stiffening : {'tilt', 'none'}
-        Centrifugal stiffening; ``'none'`` gives the paper's own equations.
+    stiffening : {'tilt', 'none', 'full'}
+        Centrifugal stiffening; ``'none'`` gives the paper's own equations, ``'full'`` needs a
+        rotor reduced with a prestress.
     position : array_like, shape (3,)
         Place of the mesh origin, inertial axes [m].
     rotation : array_like, shape (3, 3), optional

@@ -105,6 +105,11 @@ def virtual_nodes(
     return reference + arms, np.vstack(columns)
 
 
+def around(nodes: list[int]) -> list[int]:
+    """Return the three nodes of an interface from those of its marker; a point comes after them."""
+    return nodes if len(nodes) == 3 else [nodes[0] - 3, nodes[0] - 2, nodes[0] - 1]
+
+
 def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
     """Return (n, 6, m) stress as Exudyn's (N, 6 m), zero at virtual nodes."""
     full = np.zeros((node_count, 6 * stress.shape[2]))

@@ -71,7 +71,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             rest the line through the centres of the boundaries
         translation: 'free', 'in-plane', 'none' or a PrescribedMotion
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
-        stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations)
+        stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
+            a rotor from NGSolve, see add_rotor
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.body.locking
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost

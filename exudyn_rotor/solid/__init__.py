@@ -2,6 +2,7 @@
 
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.prestress import Prestress
 from exudyn_rotor.solid.rotor import SolidRotor
 
-__all__ = ["Interface", "PointMass", "SolidRotor"]
+__all__ = ["Interface", "PointMass", "Prestress", "SolidRotor"]

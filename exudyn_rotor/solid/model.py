@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.geometric import NgsolveElements
 
 StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
@@ -28,6 +31,8 @@ class FiniteElementModel:
         Surface for drawing.
     stress_recovery : callable or None
         See :class:`exudyn_rotor.solid.SolidRotor`.
+    elements : NgsolveElements or None
+        What matrices of a static stress are assembled on.
     """
 
     nodes: Any
@@ -37,3 +42,4 @@ class FiniteElementModel:
     node_sets: Mapping[str, NodeSet] = field(default_factory=dict)
     triangles: Any = ()
     stress_recovery: StressRecovery | None = None
+    elements: NgsolveElements | None = None

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solid import units
+from exudyn_rotor.solid.geometric import NgsolveElements, assembled, nodal_space, node_by_node
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.stress import TetrahedronStress
 from exudyn_rotor.solid.surface import area_weights
@@ -46,7 +47,7 @@ def assemble_model(
     _check_used(tetrahedra, len(nodes))
     lame = np.array([_lame_parameters(by_region[name]) for name in regions])
     densities = [by_region[name]["density"] for name in regions]
-    space = ngs.NodalFESpace(mesh, order=2) if order == 2 else ngs.H1(mesh, order=1)
+    space = nodal_space(mesh, order)
     triangles, faces = _triangles(mesh, order)
     return FiniteElementModel(
         nodes=nodes,
@@ -55,6 +56,7 @@ def assemble_model(
         node_sets=_node_sets(nodes, triangles, faces, interfaces),
         triangles=triangles,
         stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),
+        elements=NgsolveElements(mesh, order, nodes, lame),
     )
 
 
@@ -142,7 +144,7 @@ def _assemble_mass(space: ngs.FESpace, densities: list[float]) -> sp.csr_array:
     u, v = space.TnT()
     form = ngs.BilinearForm(space)
     form += ngs.CoefficientFunction(densities) * u * v * ngs.dx
-    return sp.csr_array(sp.kron(_assembled(form), sp.eye_array(3), format="csr"))
+    return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
 
 
 def _assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
@@ -154,19 +156,4 @@ def _assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
     stress = 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
     form = ngs.BilinearForm(displacement)
     form += ngs.InnerProduct(stress, ngs.Sym(ngs.Grad(v))) * ngs.dx
-    return _node_by_node(_assembled(form))
-
-
-def _assembled(form: ngs.BilinearForm) -> sp.csr_array:
-    with ngs.TaskManager():
-        form.Assemble()
-    # the arrays belong to the form, which ends here
-    return sp.csr_array(form.mat.CSR(), copy=True)
-
-
-def _node_by_node(matrix: sp.csr_array) -> sp.csr_array:
-    """Return `matrix` reordered from x0 x1 … y0 y1 … z0 z1 … to x0 y0 z0 x1 …."""
-    count = matrix.shape[0] // 3
-    entries = matrix.tocoo()
-    rows, columns = (3 * (index % count) + index // count for index in entries.coords)
-    return sp.csr_array((entries.data, (rows, columns)), shape=matrix.shape)
+    return node_by_node(assembled(form))

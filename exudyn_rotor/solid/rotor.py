@@ -17,6 +17,7 @@ from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet, StressRecovery
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions
+from exudyn_rotor.solid.stressed import StressedRotor, check_unstressed
 from exudyn_rotor.solid.summary import summary
 
 if TYPE_CHECKING:
@@ -25,12 +26,14 @@ if TYPE_CHECKING:
 
     from exudyn_rotor.reduced import ReducedRotor
     from exudyn_rotor.reduction import ModeSource
+    from exudyn_rotor.solid.geometric import NgsolveElements
+    from exudyn_rotor.solid.prestress import Prestress
 
 AxisLike = SpinAxis | str | ArrayLike
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolidRotor:
+class SolidRotor(StressedRotor):
     """Solid finite-element rotor; immutable. Make one with a ``from_…`` constructor.
 
     Attributes
@@ -55,6 +58,10 @@ class SolidRotor:
     rigid_motions : int
         How many of the six rigid motions the stiffness leaves free; 6 for a free rotor. A
         rotation that displaces no node (all nodes on its axis) counts as free.
+    elements : NgsolveElements or None
+        What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
+    carried_prestress : Prestress or None
+        Set by :meth:`with_prestress`.
     """
 
     nodes: np.ndarray
@@ -67,6 +74,8 @@ class SolidRotor:
     stress_recovery: StressRecovery | None = None
     point_masses: tuple[PointMass, ...] = ()
     rigid_motions: int = 6
+    elements: NgsolveElements | None = None
+    carried_prestress: Prestress | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "interfaces", MappingProxyType(dict(self.interfaces)))
@@ -224,6 +233,7 @@ class SolidRotor:
             triangles=checks.as_triangles(model.triangles, len(nodes)),
             stress_recovery=model.stress_recovery,
             rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
+            elements=model.elements,
         )
 
     @property
@@ -267,9 +277,10 @@ class SolidRotor:
         Raises
         ------
         ValueError
-            If the mass is zero or not finite, more is taken away than the node carries, or the
-            position is not finite.
+            If the mass is zero or not finite, more is taken away than the node carries, the
+            position is not finite, or the rotor carries a prestress, whose load would change.
         """
+        check_unstressed(self)
         node = self.nearest_node(position)
         matrix = checks.frozen(add_nodal_mass(self.mass, node, mass))
         distance = float(np.linalg.norm(self.nodes[node] - np.asarray(position, dtype=float)))
@@ -325,6 +336,7 @@ class SolidRotor:
         stress: bool = False,
         keep_shapes: bool = True,
         rank_tolerance: float = 1e-7,
+        prestress: Prestress | bool | None = None,
     ) -> ReducedRotor:
         """Reduce the rotor to component modes and its rigid motions.
 
@@ -340,6 +352,9 @@ class SolidRotor:
             Keep the mode shapes at all nodes: needed for sensors at mesh nodes and for drawing.
         rank_tolerance : float, optional
             A column of which less than this share is new is dropped, and named in the result.
+        prestress : Prestress or bool, optional
+            Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
+            None for that which the rotor carries, if any.
 
         Raises
         ------
@@ -349,7 +364,12 @@ class SolidRotor:
         from exudyn_rotor.reduction import reduce_rotor
 
         return reduce_rotor(
-            self, modes, stress=stress, keep_shapes=keep_shapes, rank_tolerance=rank_tolerance
+            self,
+            modes,
+            stress=stress,
+            keep_shapes=keep_shapes,
+            rank_tolerance=rank_tolerance,
+            prestress=prestress,
         )
 
     def summary(self) -> str:

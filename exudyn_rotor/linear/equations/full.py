@@ -24,42 +24,40 @@ from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
 from exudyn_rotor.modes.eigen import lanczos_modes
 from exudyn_rotor.modes.factor import SparseCholesky
-from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.reduced import ReducedInterface, ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
-from exudyn_rotor.stiffening import LEVELS, tilt_factors
+from exudyn_rotor.solid.stressed import relief_rotations
+from exudyn_rotor.stiffening import LEVELS, NO_PRESTRESS, relief_factors, tilt_factors
 
 _MOST_ROUNDS = 40
 _MOST_COLUMNS = 600
 
 
-def as_reduced(rotor: SolidRotor) -> ReducedRotor:
-    """Return a small solid rotor as a reduced one whose basis is the identity."""
-    size = 3 * rotor.node_count
-    return ReducedRotor(
-        axis=rotor.axis,
-        center_of_mass=rotor.center_of_mass,
-        invariants=_invariants(rotor, rotor.center_of_mass, np.eye(size)),
-        rigid=(),
-        interfaces={
-            name: ReducedInterface(
-                entry.reference,
-                entry.center,
-                entry.radius,
-                entry.mean_motion(rotor.node_count).toarray(),
-            )
-            for name, entry in rotor.interfaces.items()
-        },
-        mode_mass=rotor.mass.toarray(),
-        grounded=rotor.grounded,
-        shapes=ModeShapes(rotor.nodes, np.eye(size), rotor.triangles),
-    )
-
-
-def _invariants(rotor: SolidRotor, origin: np.ndarray, basis: np.ndarray) -> Invariants:
-    matrices = [rotor.mass, rotor.stiffness, rotor.damping]
-    if isinstance(basis, np.ndarray):
-        matrices = [None if X is None else X.toarray() for X in matrices]
+def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
+    basis = sp.eye_array(3 * rotor.node_count, format="csr")
+    matrices = (rotor.mass, rotor.stiffness, rotor.damping)
     return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+
+
+def _second_order(
+    rotor: SolidRotor, invariants: Invariants, level: str
+) -> tuple[Invariants, tuple[np.ndarray, np.ndarray]]:
+    """Return the invariants, with K_G at the level 'full', and the factors V and W of the rest.
+
+    Raises
+    ------
+    ValueError
+        For an unknown level, or 'full' with a rotor that carries no prestress.
+    """
+    if level not in LEVELS:
+        raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
+    if level == "full":
+        if rotor.carried_prestress is None:
+            raise ValueError(NO_PRESTRESS)
+        factors = relief_factors(invariants, relief_rotations(rotor)[0])
+        return replace(invariants, K2=rotor.carried_prestress.matrix), factors
+    V, W = tilt_factors(invariants)
+    return invariants, (V, W if level == "tilt" else 0.0 * W)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +73,9 @@ class FullRotor:
     motions : tuple of scipy.sparse.csr_array, each (6, 3n)
         Interface motion of every support along (n1, n2, e).
     invariants : Invariants
-        Sparse, about the foot of the centre of mass on the axis.
+        Sparse, about the foot of the centre of mass on the axis; K2 only at the level 'full'.
     tilt : tuple of ndarray, (6, 3n) and (6, 6)
-        V and W of the centrifugal stiffening ``VᵀWV`` per Ω².
+        V and W of the centrifugal stiffening ``K2 + VᵀWV`` per Ω².
     rotor : SolidRotor
     spin : FullSpin, optional
         The spin as a coordinate that unbalance does not couple; see :meth:`with_spin`.
@@ -109,20 +107,13 @@ class FullRotor:
                 raise ValueError(
                     f"support at {support.interface!r}: no such interface; the rotor has: {known}"
                 )
-        if stiffening not in LEVELS:
-            raise ValueError(
-                f"stiffening {stiffening!r} is unknown; use one of {', '.join(LEVELS)}"
-            )
         origin = rotor.axis.project(rotor.center_of_mass)
-        identity = sp.eye_array(3 * rotor.node_count, format="csr")
-        invariants = _invariants(rotor, origin, identity)
-        V, W = tilt_factors(invariants)
+        invariants, tilt = _second_order(rotor, _invariants(rotor, origin), stiffening)
         turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
         motions = tuple(
             sp.csr_array(turn @ rotor.interfaces[s.interface].mean_motion(rotor.node_count))
             for s in supports
         )
-        tilt = (V, W if stiffening == "tilt" else 0.0 * W)
         return cls(rotor.axis, rotor.nodes, tuple(supports), motions, invariants, tilt, rotor)
 
     @property
@@ -205,7 +196,8 @@ class FullRotor:
         V, W = self.tilt
 
         def apply(Y: np.ndarray) -> np.ndarray:
-            return V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
+            rigid = V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
+            return rigid if self.invariants.K2 is None else rigid + self.invariants.K2 @ Y
 
         return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
 
@@ -255,7 +247,8 @@ class Subspace:
         self._factor = SparseCholesky(self._shifted)
         self.V = np.zeros((full.size, 0))
         self._small: LinearRotor | None = None
-        self._projected = {name: np.zeros((0, 0)) for name in ("M", "K", "D", "G", "C")}
+        names = ("M", "K", "D", "G", "C") + (() if inv.K2 is None else ("K2",))
+        self._projected = {name: np.zeros((0, 0)) for name in names}
         # one by one, so that each stays a column of its own: a free one is told by its stiffness
         for column in np.hstack(seeds(full.rotor)).T:
             self.grow(column[:, None])
@@ -320,7 +313,8 @@ class Subspace:
             full.axis, rotor.center_of_mass, invariants, spin, interfaces, blocks["M"]
         )
         tilt = V @ self.V
-        return LinearRotor(reduced, full.supports, invariants, tilt.T @ W @ tilt)
+        K2 = tilt.T @ W @ tilt + blocks.get("K2", 0.0)
+        return LinearRotor(reduced, full.supports, invariants, K2)
 
     def content(self) -> WhirlContent:
         """Return the circumferential content of the basis V."""

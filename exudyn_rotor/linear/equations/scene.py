@@ -21,6 +21,7 @@ import scipy.linalg
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.shell import around
 from exudyn_rotor.linear.equations.hill import hill_matrices
 from exudyn_rotor.linear.equations.probe import Probe, linearised, probing
 from exudyn_rotor.linear.equations.supports import axes_of
@@ -286,7 +287,7 @@ def _without_spin(body: RotorBody) -> np.ndarray:
 
 def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return an interface's three virtual nodes (3, 3) and their motion (3, 3, m), shell axes."""
-    nodes = list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"])
+    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
     shell = body.mbs.GetObject(body.objects["shell"])
     columns = np.asarray(shell["modeBasis"])
     return (

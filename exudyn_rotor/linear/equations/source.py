@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import exudyn
 
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.linear.equations.full import FullRotor, as_reduced
+from exudyn_rotor.linear.equations.dense import as_reduced
+from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.reduced import ReducedRotor
@@ -39,8 +40,8 @@ def linear_source(
         The rotor of a scene; only with a MainSystem.
     supports : sequence of Support, optional
         Only with a rotor; a scene has its own connectors.
-    stiffening : {'tilt', 'none'}
-        Centrifugal stiffening; a scene has that of its body.
+    stiffening : {'tilt', 'none', 'full'}
+        Centrifugal stiffening; a scene has that of its body. 'full' needs a rotor with prestress.
 
     Raises
     ------

@@ -174,8 +174,9 @@ def campbell(
     modes : int, optional
         How many of the lowest modes in the rotor frame to keep; all by default, 10 for a large
         SolidRotor.
-    stiffening : {'tilt', 'none'}
-        Centrifugal stiffening; 'none' gives the paper's equations.
+    stiffening : {'tilt', 'none', 'full'}
+        Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
+        prestress (:meth:`SolidRotor.prestress`).
     allow_negative : bool, optional
         Accept speeds below zero.
     tolerance : float, optional

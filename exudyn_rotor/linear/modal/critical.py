@@ -96,7 +96,7 @@ def critical_speeds(
         and two of one mode that are closer than a 200th of it may be missed.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
-    stiffening : {'tilt', 'none'}
+    stiffening : {'tilt', 'none', 'full'}
     tolerance : float, optional
         Relative residual of a large SolidRotor.
 

@@ -79,7 +79,7 @@ def unbalance_response(
     frame : {'inertial', 'rotor'}
         Axes of the resulting motion.
     stiffening : {'tilt', 'none', 'full'}
-        Centrifugal stiffening.
+        Centrifugal stiffening; 'full' needs a rotor with prestress.
     tolerance : float, optional
         Largest relative change of the motion by further harmonics; smaller harmonics are left out.
     residual : float, optional

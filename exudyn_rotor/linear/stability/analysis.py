@@ -123,8 +123,8 @@ def stability(
         For a rotor. Without a support that holds it, the rotor's spin is held.
     body : RotorBody, optional
         The rotor in a ``MainSystem``.
-    stiffening : {'tilt', 'none'}
-        For a rotor.
+    stiffening : {'tilt', 'none', 'full'}
+        For a rotor; 'full' needs one with prestress.
     method : {'auto', 'floquet', 'hill', 'eigen'}
         ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
         where that does not converge. A large SolidRotor takes 'auto' only, without Floquet's.
@@ -254,7 +254,9 @@ def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) 
 def stability_threshold(target: object, low: float, high: float, **options) -> float:
     """Return the speed between `low` and `high` [rad/s] where the stability changes.
 
-    By root finding on the growth, to 1e-8 of `high`. `options` are those of :func:`stability`.
+    By root finding on the growth, to 1e-8 of `high`. The growth counts from `tolerance` times the
+    speed on, so a threshold that is crossed slowly is found late by that over the slope.
+    `options` are those of :func:`stability`.
 
     Raises
     ------

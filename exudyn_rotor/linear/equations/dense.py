@@ -1,0 +1,48 @@
+"""A small full model as a reduced rotor whose basis is the identity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid.stressed import relief_rotations
+from exudyn_rotor.stiffening import with_prestress
+
+
+def as_reduced(rotor: SolidRotor) -> ReducedRotor:
+    """Return a small solid rotor as a reduced one whose basis is the identity."""
+    size = 3 * rotor.node_count
+    return ReducedRotor(
+        axis=rotor.axis,
+        center_of_mass=rotor.center_of_mass,
+        invariants=_invariants(rotor),
+        rigid=(),
+        interfaces={
+            name: ReducedInterface(
+                entry.reference,
+                entry.center,
+                entry.radius,
+                entry.mean_motion(rotor.node_count).toarray(),
+            )
+            for name, entry in rotor.interfaces.items()
+        },
+        mode_mass=rotor.mass.toarray(),
+        grounded=rotor.grounded,
+        shapes=ModeShapes(rotor.nodes, np.eye(size), rotor.triangles),
+    )
+
+
+def _invariants(rotor: SolidRotor) -> Invariants:
+    """Return the dense invariants about the centre of mass, with a carried prestress."""
+    matrices = [
+        None if X is None else X.toarray() for X in (rotor.mass, rotor.stiffness, rotor.damping)
+    ]
+    arms, identity = rotor.nodes - rotor.center_of_mass, np.eye(3 * rotor.node_count)
+    invariants = Invariants.of(arms, *matrices, identity, rotor.axis.direction)
+    carried = rotor.carried_prestress
+    if carried is None:
+        return invariants
+    euler = None if carried.euler is None else carried.euler.toarray()
+    return with_prestress(invariants, carried.matrix.toarray(), euler, relief_rotations(rotor))

@@ -1,0 +1,90 @@
+"""Component modes of a rotor at several spin speeds, for rotors that stiffen much by spinning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.modes import eigen
+from exudyn_rotor.modes.component import ModeBasis, check_count, free_modes
+from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+
+def spinning_modes(
+    rotor: SolidRotor, count: int, speeds: Sequence[float], *, tolerance: float = 1e-10
+) -> ModeBasis:
+    """Return the lowest eigenmodes at rest and those at spin speeds, as one basis.
+
+    At a speed Ω these are the modes of ``K + Ω²(K_G − ẽᵀMẽ)``, without the Coriolis term. A blade
+    whose tension has changed its mode shapes needs fewer columns of this basis than of modes at
+    rest. Modes of different speeds are much alike; :meth:`SolidRotor.reduce` makes them
+    orthonormal and drops what is not new.
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+        Carrying a prestress, see :meth:`SolidRotor.with_prestress`.
+    count : int
+        Number of flexible modes at rest and at each speed.
+    speeds : sequence of float
+        Spin speeds Ω > 0 [rad/s].
+    tolerance : float, optional
+        As in :func:`free_modes`.
+
+    Returns
+    -------
+    ModeBasis
+        Modes at rest first. A column at a speed has no frequency at rest, hence NaN.
+
+    Raises
+    ------
+    ValueError
+        If the rotor carries no prestress, a speed is not positive, there are not that many
+        modes, or the prestress makes the rotor unstable at a speed.
+    """
+    if rotor.carried_prestress is None:
+        raise ValueError(
+            "spinning_modes: the rotor carries no prestress; use "
+            "rotor.with_prestress(rotor.prestress())"
+        )
+    speeds = np.asarray(speeds, dtype=float)
+    if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or np.any(speeds <= 0.0):
+        raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
+    rest = free_modes(rotor, count, tolerance=tolerance)
+    found, labels = [rest.matrix], list(rest.labels)
+    for speed in speeds:
+        modes = _modes_at(rotor, count, speed, tolerance)
+        found.append(modes)
+        labels += [f"mode {i + 1} at {speed:.6g} rad/s" for i in range(modes.shape[1])]
+    frequencies = np.full(len(labels), np.nan)
+    frequencies[:count] = rest.frequencies
+    return ModeBasis(np.hstack(found), tuple(labels), rotor.nodes, frequencies)
+
+
+def _modes_at(rotor: SolidRotor, count: int, speed: float, tolerance: float) -> np.ndarray:
+    """Return the lowest modes at a speed; as many more as rigid motions are free, among them."""
+    wanted = count + rotor.rigid_motions
+    check_count(wanted, 3 * rotor.node_count, smallest=1)
+    e = rotor.axis.direction
+    softening = sp.kron(rotor.mass[::3, ::3], np.eye(3) - np.outer(e, e), format="csr")
+    stiffness = rotor.stiffness + speed**2 * (rotor.carried_prestress.matrix - softening)
+    # softening takes at most Ω² from any eigenvalue, so that this is definite unless K_G buckles
+    shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
+    if eigen.is_small(shifted.shape[0], wanted):
+        _, modes = eigen.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
+        return eigen.with_fixed_sign(modes)
+    try:
+        inverse = SparseCholesky(shifted).solve
+    except NotPositiveDefiniteError as error:
+        raise ValueError(
+            f"at {speed:.6g} rad/s the compression by the static stress makes the rotor buckle "
+            f"({error}); leave this speed out"
+        ) from error
+    _, modes = eigen.lanczos_modes(shifted, rotor.mass, inverse, wanted, tolerance)
+    return eigen.with_fixed_sign(modes)

@@ -1,0 +1,185 @@
+"""Stress over a run: peaks at all nodes, and time histories where it is highest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+from tqdm import tqdm
+
+from exudyn_rotor import plots
+from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.solid.tensor import principal, von_mises
+from exudyn_rotor.strength.field import StressField
+
+_CHUNK = 2_000_000  # values of a stress history held at a time
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class StressHistory(Result):
+    """Stress of a rotor over a run; made by :func:`stress_history`.
+
+    Attributes
+    ----------
+    time : ndarray, shape (s,)
+        [s]
+    speed : ndarray, shape (s,)
+        Spin speed [rad/s].
+    nodes : ndarray of int, shape (c,)
+        Mesh nodes with a time history, the highest peak first.
+    stress : ndarray, shape (s, c, 6)
+        Components xx, yy, zz, yz, xz, xy in mesh axes, which turn with the rotor [Pa]. This is the
+        input of a fatigue analysis.
+    peak : ndarray, shape (n,)
+        Largest von Mises stress of every mesh node over the run [Pa].
+    peak_time : ndarray, shape (n,)
+        When it occurred [s].
+    positions, triangles : ndarray
+        Mesh nodes (n, 3) [m] and surface.
+    """
+
+    time: np.ndarray
+    speed: np.ndarray
+    nodes: np.ndarray
+    stress: np.ndarray
+    peak: np.ndarray
+    peak_time: np.ndarray
+    positions: np.ndarray
+    triangles: np.ndarray
+
+    @property
+    def von_mises(self) -> np.ndarray:
+        """Von Mises stress of the nodes with a history, shape (s, c) [Pa]."""
+        return von_mises(self.stress)
+
+    @property
+    def principal(self) -> np.ndarray:
+        """Principal stresses of these nodes, largest first, shape (s, c, 3) [Pa]."""
+        return principal(self.stress)
+
+    @property
+    def hottest(self) -> int:
+        """Mesh node with the highest von Mises stress of the run."""
+        return int(np.argmax(self.peak))
+
+    def table(self) -> str:
+        """Return the nodes with a history, their places, peaks and ranges as text."""
+        ranges = 1e-6 * np.ptp(self.principal[:, :, 0], axis=0)
+        lines = ["   node   place [m]                      peak [MPa]  at [s]     range σ1 [MPa]"]
+        for node, span in zip(self.nodes, ranges, strict=True):
+            place = " ".join(f"{x:9.4f}" for x in self.positions[node])
+            lines.append(
+                f"{node:7d}   {place}  {1e-6 * self.peak[node]:11.4g}  "
+                f"{self.peak_time[node]:<9.4g}  {span:.4g}"
+            )
+        return "\n".join(lines)
+
+    def plot(self, axes: Axes | None = None, count: int = 3) -> Figure:
+        """Draw the von Mises stress of the first `count` nodes over time [MPa]."""
+        made = None
+        if axes is None:
+            made, axes = plots.figure()
+        values = 1e-6 * self.von_mises
+        for index, color in zip(range(min(count, len(self.nodes))), plots.COLORS, strict=False):
+            label = f"node {self.nodes[index]}"
+            axes.plot(self.time, values[:, index], color=color, lw=1.0, label=label)
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel("von Mises stress [MPa]")
+        axes.grid(alpha=0.3)
+        plots.legend_above(axes, columns=3)
+        return made or axes.figure
+
+    def plot_peak(self) -> Figure:
+        """Draw the peak of the run on the surface [MPa]."""
+        label = "largest von Mises stress [MPa]"
+        return plots.draw_surface(self.positions, self.triangles, 1e-6 * self.peak, label)
+
+
+def stress_history(
+    field: StressField,
+    time: ArrayLike,
+    zeta: ArrayLike,
+    speed: ArrayLike | float,
+    *,
+    nodes: Sequence[int] | None = None,
+    count: int = 10,
+) -> StressHistory:
+    """Return peaks at all nodes and histories at chosen ones.
+
+    Parameters
+    ----------
+    field : StressField
+    time : array_like, shape (s,)
+        [s]
+    zeta : array_like, shape (s, m)
+        Modal coordinates over time; a native sensor of ``body.nodes["modes"]`` records them.
+    speed : array_like, shape (s,), or float
+        Spin speed [rad/s].
+    nodes : sequence of int, optional
+        Mesh nodes that get a history, for instance ``rotor.interfaces[name].nodes``; the hottest
+        `count` by default.
+    count : int
+        Number of nodes with a history.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, values are not finite, or a node does not exist.
+    """
+    time, zeta, speed = _checked(field, time, zeta, speed)
+    peak, when = _envelope(field, zeta, speed)
+    if nodes is None:
+        chosen = np.argsort(peak)[::-1][: max(1, int(count))]
+    else:
+        chosen = np.asarray(nodes)
+        valid = chosen.dtype.kind in "iu" and chosen.ndim == 1 and chosen.size > 0
+        if not valid or chosen.min() < 0 or chosen.max() >= len(peak):
+            raise ValueError(f"nodes: needs node numbers from 0 to {len(peak) - 1}, got {nodes!r}")
+        chosen = chosen[np.argsort(peak[chosen])[::-1]]
+    return StressHistory(
+        time=time,
+        speed=speed,
+        nodes=chosen,
+        stress=field.history(zeta, speed, chosen),
+        peak=peak,
+        peak_time=time[when],
+        positions=field.positions,
+        triangles=field.triangles,
+    )
+
+
+def _checked(
+    field: StressField, time: ArrayLike, zeta: ArrayLike, speed: ArrayLike | float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    time, zeta = np.asarray(time, dtype=float), np.asarray(zeta, dtype=float)
+    wanted = (time.size, field.modes.shape[2])
+    if time.ndim != 1 or zeta.shape != wanted or time.size == 0:
+        raise ValueError(
+            f"zeta: needs one row of {wanted[1]} modal coordinates for each of the "
+            f"{time.size} times, got the shape {zeta.shape}"
+        )
+    speed = np.broadcast_to(np.asarray(speed, dtype=float), time.shape)
+    for name, values in (("time", time), ("zeta", zeta), ("speed", speed)):
+        if not np.all(np.isfinite(values)):
+            raise ValueError(f"{name}: has values that are not finite; the run may have failed")
+    return time, zeta, speed
+
+
+def _envelope(
+    field: StressField, zeta: np.ndarray, speed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest von Mises stress of every node and its time index; chunks of nodes."""
+    total = len(field.positions)
+    width = max(1, _CHUNK // (6 * len(zeta)))
+    peak, when = np.zeros(total), np.zeros(total, dtype=np.int64)
+    for start in tqdm(range(0, total, width), desc="stress", disable=total < 20 * width):
+        part = slice(start, start + width)
+        values = von_mises(field.history(zeta, speed, part))
+        when[part] = np.argmax(values, axis=0)
+        peak[part] = values.max(axis=0)
+    return peak, when
