@@ -2,9 +2,9 @@
 
 The classical spin-up manoeuvre: ω(t) grows smoothly from rest, the Euler force bends the blade
 back, and without centrifugal stiffening the deflection runs away: at the level 'none', which is
-what Exudyn's 3D body has with its frame in the hub (``overhung.py``), and at 'tilt'. The referee integrates the
-geometrically nonlinear solid in the rotating frame; all models take the trapezoidal rule with the
-same steps.
+what Exudyn's 3D body has with its frame in the hub (``overhung.py``), and at 'tilt'. The referee
+integrates the geometrically nonlinear solid in the rotating frame; all models take the trapezoidal
+rule with the same steps.
 
 python validation/spun_up_blade.py [--json FILE] [--quick] [--picture FILE]
 """
