@@ -3,6 +3,9 @@
 Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exudyn.
 """
 
+from exudyn_rotor.advice.checks import RunCheck, check_run
+from exudyn_rotor.advice.proposal import Proposal, propose
+from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.adding import add_rotor
 from exudyn_rotor.body.rotor_body import RotorBody
@@ -41,6 +44,7 @@ from exudyn_rotor.strength.history import StressHistory, stress_history
 from exudyn_rotor.truncation import keep_modes
 
 __all__ = [
+    "AssumptionWarning",
     "BaseAcceleration",
     "Campbell",
     "ConstantSpeed",
@@ -57,8 +61,10 @@ __all__ = [
     "PointMass",
     "PrescribedMotion",
     "Prestress",
+    "Proposal",
     "ReducedRotor",
     "RotorBody",
+    "RunCheck",
     "SolidRotor",
     "SpinAxis",
     "Stability",
@@ -71,6 +77,7 @@ __all__ = [
     "UnbalanceResponse",
     "add_rotor",
     "campbell",
+    "check_run",
     "craig_bampton_modes",
     "critical_speed_map",
     "critical_speeds",
@@ -79,6 +86,7 @@ __all__ = [
     "keep_modes",
     "load_result",
     "permissible_unbalance",
+    "propose",
     "recommended_settings",
     "select_modes",
     "spinning_modes",

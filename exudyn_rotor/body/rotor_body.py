@@ -12,6 +12,7 @@ from exudyn_rotor.body import sensors
 from exudyn_rotor.body.frame import ShellFrame
 from exudyn_rotor.body.locking import Locks
 from exudyn_rotor.body.physics import Layout
+from exudyn_rotor.body.watch import Record, add_watch, read_record
 from exudyn_rotor.formulation import Formulation
 from exudyn_rotor.modes.selection import Selection
 from exudyn_rotor.motion import Motion
@@ -51,6 +52,8 @@ class RotorBody:
         the native shell, and for a free spin without translation.
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
+    watched : dict
+        Sensors of :meth:`watch`.
     """
 
     mbs: exudyn.MainSystem
@@ -69,6 +72,7 @@ class RotorBody:
     constraints: dict = field(default_factory=dict)
     gravity_load: exudyn.LoadIndex | None = None
     mesh_node_count: int = 0
+    watched: dict = field(default_factory=dict)
 
     def marker(self, interface: str) -> exudyn.MarkerIndex:
         """Return the marker of an interface.
@@ -140,3 +144,15 @@ class RotorBody:
     def add_drive_torque_sensor(self, **options):
         """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
         return sensors.add_drive_torque_sensor(self, **options)
+
+    def watch(self) -> None:
+        """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
+
+        Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
+        ``solution.sensors.writePeriod`` says, and a step calls no Python for them.
+        """
+        add_watch(self)
+
+    def record(self) -> Record:
+        """Return what :meth:`watch` recorded; without it the current state alone."""
+        return read_record(self)

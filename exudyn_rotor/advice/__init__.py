@@ -1,0 +1,1 @@
+"""Advice: what a scene requires before a run, and whether it held after it."""

@@ -1,0 +1,238 @@
+"""The rotor that a proposal starts from, alone or in a scene, as linear equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
+from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.supports import Support, axes_of
+from exudyn_rotor.linear.equations.system import PeriodicSystem
+from exudyn_rotor.linear.response.places import Source
+from exudyn_rotor.modes.basis import RIGID
+from exudyn_rotor.reduced import ReducedRotor
+
+_BALANCED = 1e-5  # share of the rotor's size by which a mesh may be off the axis
+_ORDER = 2  # harmonics of the speed by which turning coefficients couple: bearings, foundations
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """All modes that can be chosen from, and what holds the rotor.
+
+    Attributes
+    ----------
+    source : LinearRotor or LinearScene
+    invariants : Invariants
+        In the basis of the rotor's modal coordinates.
+    own : ndarray of int
+        Where the modal coordinates stand among those of `source`.
+    flexible : ndarray of int
+        Which modal coordinates are flexible modes.
+    frequencies : ndarray
+        Of the flexible modes [rad/s].
+    stiffening : str
+        Level that `source` has.
+    rigid : tuple of str
+    grounded : bool
+    supported : bool
+        Whether it is known what holds the rotor.
+    axial : bool
+        Whether something acts along the axis; True where nothing is known.
+    interfaces : tuple of str
+    translations : ndarray, shape (3, k)
+        Load of a unit acceleration along (n1, n2, e).
+    """
+
+    source: Source
+    invariants: Invariants
+    own: np.ndarray
+    flexible: np.ndarray
+    frequencies: np.ndarray
+    stiffening: str
+    rigid: tuple[str, ...]
+    grounded: bool
+    supported: bool
+    axial: bool
+    interfaces: tuple[str, ...]
+    translations: np.ndarray
+    _systems: dict[float, PeriodicSystem] = field(default_factory=dict, repr=False)
+
+    @property
+    def places(self) -> np.ndarray:
+        """Where the flexible modes stand among the coordinates of `source`."""
+        return self.own[self.flexible]
+
+    def conservative(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        """Return Hermitian M, G, K of ``(−ν²M + νG + K) X = 0`` and the number of harmonics.
+
+        Damping and circulatory forces are left out.
+        """
+        M, D, K, count = self.hill(speed)
+        G = 1j * D
+        return M, 0.5 * (G + G.conj().T), 0.5 * (K + K.conj().T), count
+
+    def hill(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        """Return M, D, K in the rotor frame, harmonics of the speed included."""
+        if speed not in self._systems:  # a scene is probed at many angles
+            self._systems[speed] = self.source.at(speed)
+        system = self._systems[speed]
+        orders = harmonics(system, _ORDER)
+        return *hill_matrices(system, orders), len(orders)
+
+    def motion(self) -> np.ndarray:
+        """Return the displacements that count, across the axis and along it if need be, (p, k)."""
+        rows = 3 if self.axial else 2
+        parts = [self.source.interface_motion(name)[:rows] for name in self.interfaces]
+        return np.vstack(parts)
+
+    def inertia_loads(self) -> np.ndarray:
+        """Return loads of acceleration, and of the rotor's own unbalance if it has one, (l, k)."""
+        rows = self.translations[: 3 if self.axial else 2]
+        inv = self.invariants
+        across = np.eye(3) - np.outer(inv.direction, inv.direction)
+        second = np.trace(inv.J)
+        couple = np.linalg.norm(across @ inv.J @ inv.direction) / second
+        unbalance = np.asarray(self.source.unit_unbalance, dtype=float)
+        # flexible modes of a balanced rotor stretch under the rotation; that is no unbalance
+        static = np.linalg.norm(self.translations @ unbalance) / np.sqrt(inv.mass**3 * second)
+        if max(couple, static) < _BALANCED:
+            return rows
+        return np.vstack([rows, unbalance])
+
+
+def candidate(
+    target: ReducedRotor | exudyn.MainSystem,
+    body: RotorBody | None,
+    supports: Sequence[Support] | Support | None,
+    interfaces: Sequence[str] | None,
+    axial: bool | None,
+) -> Candidate:
+    """Take a reduced rotor with its supports, or a scene with its body.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a target of another kind, unknown interfaces, or supports given with a scene.
+    """
+    if isinstance(target, ReducedRotor):
+        return _of_rotor(target, body, supports, interfaces, axial)
+    if isinstance(target, exudyn.MainSystem):
+        return _of_scene(target, body, supports, interfaces, axial)
+    raise TypeError(
+        "propose: needs a ReducedRotor, or an exudyn.MainSystem with body=…, "
+        f"got {type(target).__name__}"
+    )
+
+
+def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
+    known = supports is not None
+    source = linear_source(reduced, body=body, supports=supports if known else ())
+    if axial is None:
+        axial = not known or any(_acts_along(support) for support in source.supports)
+    first = len(reduced.rigid)
+    return Candidate(
+        source=source,
+        invariants=source.invariants,
+        own=np.arange(reduced.size),
+        flexible=np.arange(first, reduced.size),
+        frequencies=reduced.frequencies[first:],
+        stiffening="tilt",
+        rigid=reduced.rigid,
+        grounded=reduced.grounded,
+        supported=known or reduced.grounded,
+        axial=bool(axial),
+        interfaces=_named(interfaces, tuple(reduced.interfaces)),
+        translations=axes_of(reduced.axis).T @ source.invariants.S,
+    )
+
+
+def _acts_along(support: Support) -> bool:
+    """True if a support acts along the axis, at rest or spinning."""
+    parts = [matrix for speed in (0.0, 1.0, 1e3) for matrix in support.matrices(speed)]
+    return any(np.any(part[2]) or np.any(part[:, 2]) for part in parts)
+
+
+def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
+    from exudyn_rotor.linear.equations.scene import LinearScene
+
+    if not isinstance(body, RotorBody):
+        raise TypeError(f"propose: a scene needs body=…, its RotorBody, got {type(body).__name__}")
+    if supports is not None:
+        raise ValueError("supports=: are for a rotor; a scene has its own connectors")
+    source = LinearScene.of(mbs, body, about="given")
+    inv, labels = body.motion.invariants, body.selection.labels
+    first = body.motion.formulation.translation_count
+    # constraints may mix coordinates; those of the rotor's modes stay apart
+    own = np.argmax(np.abs(source.N[first : first + inv.size]), axis=1)
+    rigid = tuple(name for name in labels if name in RIGID)
+    named = [name not in RIGID for name in labels]
+    flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & named)
+    return Candidate(
+        source=source,
+        invariants=inv,
+        own=own,
+        flexible=flexible,
+        frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
+        stiffening=body.stiffening,
+        rigid=(*rigid, "spin") if body.formulation.has_spin else rigid,
+        grounded=not rigid,
+        supported=True,
+        axial=_scene_acts_along(source, body) if axial is None else bool(axial),
+        interfaces=_named(interfaces, tuple(body.markers)),
+        translations=_scene_translations(source, body),
+    )
+
+
+def _scene_translations(source, body: RotorBody) -> np.ndarray:
+    inv = body.motion.invariants
+    count = body.motion.formulation.translation_count
+    loads = np.zeros((3, len(source.free)))
+    loads[:count, :count] = inv.mass * np.eye(3)[:count, :count]
+    loads[:, count : count + inv.size] = axes_of(body.axis).T @ inv.S
+    return loads @ source.N
+
+
+def _scene_acts_along(source, body: RotorBody) -> bool:
+    """True if gravity or a connector acts along the axis."""
+    axis = body.frame.orientation @ body.motion.invariants.direction
+    gravity = body.motion.gravity
+    if body.gravity_load is not None:
+        gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
+    if abs(axis @ gravity) > 1e-9 * np.linalg.norm(gravity):
+        return True
+    count = body.motion.formulation.translation_count
+    names = body.selection.labels
+    if count == 3:
+        row = 2
+    elif "translation along axis" in names:
+        row = count + names.index("translation along axis")
+    else:
+        return True
+    row = int(np.argmax(np.abs(source.N[row])))
+    system = source.at(0.0)
+    scale = max(np.abs(term).max() for term in system.K.values())
+    return any(np.abs(term[row]).max() > 1e-9 * scale for term in system.K.values())
+
+
+def _named(interfaces: Sequence[str] | None, known: tuple[str, ...]) -> tuple[str, ...]:
+    if interfaces is None:
+        if not known:
+            raise ValueError(
+                "propose: the rotor has no interfaces (in a scene: no markers), so nothing says "
+                "where it is loaded; add some with rotor.with_interface"
+            )
+        return known
+    names = (interfaces,) if isinstance(interfaces, str) else tuple(interfaces)
+    unknown = [name for name in names if name not in known]
+    if unknown or not names:
+        raise ValueError(
+            f"interfaces {list(names)!r}: needs some of those of the rotor: {', '.join(known)}"
+        )
+    return names

@@ -1,0 +1,324 @@
+"""After a run: whether the assumptions of the model held, each with a number."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor.advice.lost import lost_load
+from exudyn_rotor.advice.measures import Measures
+from exudyn_rotor.advice.proposal import Proposal
+from exudyn_rotor.advice.request import PERIOD_ERROR, share
+from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.solid.prestress import von_mises
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """One assumption.
+
+    Attributes
+    ----------
+    name : str
+        Key of its limit.
+    meaning : str
+        What the number is, with its unit.
+    value, limit : float
+    advice : str
+        What to do where the limit is exceeded.
+    """
+
+    name: str
+    meaning: str
+    value: float
+    limit: float
+    advice: str
+
+    @property
+    def ok(self) -> bool:
+        """True if the value is finite and not above the limit."""
+        return bool(np.isfinite(self.value) and self.value <= self.limit)
+
+    def __str__(self) -> str:
+        verdict = "ok" if self.ok else "FAILS"
+        return f"{self.name:12s} {self.value:9.2e}  {self.limit:9.2e}  {verdict:5s}  {self.meaning}"
+
+
+@dataclass(frozen=True)
+class RunCheck:
+    """What held in a run; made by :func:`check_run`.
+
+    Attributes
+    ----------
+    rows : tuple of CheckRow
+    complete : bool
+        False if ``body.watch()`` was not called before the run: then only the end state is known.
+    """
+
+    rows: tuple[CheckRow, ...]
+    complete: bool
+
+    @property
+    def ok(self) -> bool:
+        """True if no row fails."""
+        return all(row.ok for row in self.rows)
+
+    @property
+    def failed(self) -> tuple[CheckRow, ...]:
+        """Rows that fail."""
+        return tuple(row for row in self.rows if not row.ok)
+
+    def __getitem__(self, name: str) -> CheckRow:
+        """Return a row by its name."""
+        for row in self.rows:
+            if row.name == name:
+                return row
+        raise KeyError(f"no check {name!r} here; there are: {', '.join(r.name for r in self.rows)}")
+
+    def __str__(self) -> str:
+        lines = ["check            value      limit  verdict"]
+        lines += [str(row) for row in self.rows]
+        lines += [f"  {row.name}: {row.advice}" for row in self.failed]
+        if not self.complete:
+            lines.append("  only the end state is known: call body.watch() before mbs.Assemble()")
+        return "\n".join(lines)
+
+
+def default_limits(accuracy: float) -> dict[str, float]:
+    """Return the limits of all checks for an accuracy; see :func:`check_run`."""
+    root = float(np.sqrt(accuracy))
+    return {
+        "finite": 0.0,
+        "tilt": root,
+        "deflection": root,
+        "travel": 0.1,
+        "locked": 1e-6,
+        "lost load": 0.01,
+        "top modes": 0.01,
+        "strain": accuracy,
+        "stiffening": accuracy,
+        "divergence": 0.5,
+        "step": accuracy,
+        "spin step": float(np.sqrt(accuracy / PERIOD_ERROR)),
+        "explicit": 1.0,
+        "yield": 1.0,
+        "speed": 1.0,
+    }
+
+
+def check_run(
+    body: RotorBody,
+    *,
+    reduced: ReducedRotor | None = None,
+    proposal: Proposal | None = None,
+    accuracy: float | None = None,
+    limits: Mapping[str, float] | None = None,
+    warn: bool = True,
+) -> RunCheck:
+    """Check after a run whether the model's assumptions held.
+
+    Parameters
+    ----------
+    body : RotorBody
+        After the solution; ``body.watch()`` before it records the whole run.
+    reduced : ReducedRotor, optional
+        The rotor; adds the check of yielding where it was reduced with a yield stress.
+    proposal : Proposal, optional
+        Adds the check of the speed range, and gives the accuracy.
+    accuracy : float, optional
+        Relative error of the motion; the proposal's, or 1e-3.
+    limits : mapping of str to float, optional
+        Limits by name of a check in place of the defaults.
+    warn : bool
+        Whether every row that fails gives an :class:`AssumptionWarning`.
+
+    Returns
+    -------
+    RunCheck
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, or a system that is not assembled.
+
+    Notes
+    -----
+    Checks, with a for the accuracy; "size" is the rotor's radius of gyration.
+
+    ==============  =======  ====================================================================
+    name            limit    meaning
+    ==============  =======  ====================================================================
+    ``tilt``        √a       largest rigid tilt [rad]; terms of its second order are left out
+    ``deflection``  √a       root mean square flexible displacement over the size, likewise
+    ``travel``      0.1      the centre of mass off a frame that does not follow, over the size;
+                             exact, but the mass matrix then changes much in every step
+    ``locked``      1e-6     locked coordinates off their place [rad], [size]
+    ``lost load``   0.01     load on the frame's node, or second-order lever, that no equation
+                             feels, over the largest load
+    ``top modes``   0.01     elastic energy in the highest fifth of the flexible modes over the
+                             energy of the motion: how much the modes beyond may hold
+    ``strain``      a        mean centrifugal strain as the modes show it; the relative error of
+                             linear elasticity
+    ``stiffening``  a        stiffening that the level leaves out, as relative change of frequency
+                             of the recorded motion; estimated without a prestress
+    ``divergence``  0.5      Ω²/Ω_d²; Ω_d is the speed at which flexible modes begin to grow
+    ``step``        a        relative period error 0.0844 (ωh)² of the recorded motion
+    ``spin step``   √(a/…)   spin angle per step [rad]: the same error at the spin speed
+    ``explicit``    1        explicit solvers: step over the stable one
+    ``yield``       1        static centrifugal von Mises stress over the yield stress
+    ``speed``       1        highest speed over that of the proposal
+    ==============  =======  ====================================================================
+    """
+    if not isinstance(body, RotorBody):
+        raise TypeError(f"check_run: needs a RotorBody, got {type(body).__name__}")
+    if not body.mbs.systemIsConsistent:
+        raise ValueError("check_run: the system is not assembled; run it first")
+    _check_kinds(reduced, proposal)
+    if accuracy is None:
+        accuracy = proposal.accuracy if proposal is not None else 1e-3
+    known = _limits(share(accuracy, "accuracy"), limits)
+    record = body.record()
+    measures = Measures(body, record)
+    if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
+        made = _rows(measures, reduced, proposal)
+    else:
+        made = [("finite", "coordinates that are not finite", np.inf, "the solution failed")]
+    rows = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
+    result = RunCheck(rows, record.complete)
+    if warn:
+        for row in result.failed:
+            warnings.warn(
+                f"rotor {body.name!r}: {row.name} {row.value:.3g} exceeds {row.limit:.3g} "
+                f"({row.meaning}): {row.advice}",
+                AssumptionWarning,
+                stacklevel=2,
+            )
+    return result
+
+
+def _check_kinds(reduced: object, proposal: object) -> None:
+    for name, value, kind in (
+        ("reduced", reduced, ReducedRotor),
+        ("proposal", proposal, Proposal),
+    ):
+        if value is not None and not isinstance(value, kind):
+            raise TypeError(f"{name}=: needs a {kind.__name__}, got {type(value).__name__}")
+
+
+def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
+    known = default_limits(accuracy)
+    for name, value in (limits or {}).items():
+        if name not in known:
+            raise ValueError(f"limits: no check {name!r}; there are: {', '.join(known)}")
+        if not (np.isfinite(value) and value >= 0.0):
+            raise ValueError(f"limits: {name!r} needs a number ≥ 0, got {value!r}")
+        known[name] = float(value)
+    return known
+
+
+_Row = tuple[str, str, float, str]
+# name, measure of Measures, meaning, what to do
+_ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
+    (
+        "tilt",
+        Measures.tilt,
+        "largest tilt [rad]",
+        "the error grows with its square; use Exudyn's 3D body for wide tilts",
+    ),
+    (
+        "deflection",
+        Measures.deflection,
+        "flexible displacement over the size",
+        "small deformations are assumed; check loads and supports",
+    ),
+    (
+        "travel",
+        Measures.travel,
+        "centre of mass off the frame, over the size",
+        "let the frame follow: translation='free'",
+    ),
+    (
+        "locked",
+        Measures.locked,
+        "locked coordinates off their place [rad], [size]",
+        "use locking='constraints', a smaller step, or load an interface instead of the frame",
+    ),
+    (
+        "lost load",
+        lambda m: lost_load(m.body, m.record, m.size),
+        "load that no equation feels, over the largest",
+        "put loads on interface markers; the frame's node carries spin and translation only, and "
+        "loads get no lever by deflection",
+    ),
+    (
+        "top modes",
+        Measures.top_share,
+        "energy in the highest fifth of the modes",
+        "keep more modes, or use craig_bampton_modes",
+    ),
+    (
+        "strain",
+        Measures.strain,
+        "mean centrifugal strain shown by the modes",
+        "linear elasticity errs by about this; a nonlinear model is needed at this speed",
+    ),
+    (
+        "stiffening",
+        Measures.missing_stiffness,
+        "stiffening left out, relative change of frequency",
+        "reduce with prestress=True and use stiffening='full', or 'tilt' in place of 'none'",
+    ),
+    (
+        "divergence",
+        Measures.divergence,
+        "Ω²/Ω_d², Ω_d where flexible modes grow",
+        "stay below that speed, or use stiffening='full'; without it the growth may be false",
+    ),
+    (
+        "step",
+        Measures.step_error,
+        "relative period error of the motion",
+        "take smaller steps; the error falls with their square",
+    ),
+    (
+        "spin step",
+        Measures.spin_step,
+        "spin angle per step [rad]",
+        "take smaller steps; the error falls with their square",
+    ),
+)
+
+
+def _rows(
+    measures: Measures, reduced: ReducedRotor | None, proposal: Proposal | None
+) -> Iterator[_Row]:
+    for name, measure, meaning, advice in _ALWAYS:
+        yield name, meaning, float(measure(measures)), advice
+    explicit = measures.explicit_step()
+    if explicit:
+        yield (
+            "explicit",
+            "step over the stable one",
+            explicit,
+            "take smaller steps, keep fewer modes, or use an implicit solver",
+        )
+    static = None if reduced is None else reduced.centrifugal
+    if static is not None and static.stress is not None and static.yield_stress:
+        peak = float(von_mises(static.stress).max()) * measures.fastest**2
+        advice = "the elastic prestress holds below the yield stress only"
+        yield "yield", "centrifugal stress over yield stress", peak / static.yield_stress, advice
+    if proposal is not None:
+        ratio = measures.fastest / proposal.speeds[1] if proposal.speeds[1] else np.inf
+        ratio = ratio if measures.fastest else 0.0
+        yield (
+            "speed",
+            "highest speed over that of the proposal",
+            # a free spin wobbles about its speed
+            ratio if ratio > 1.0 + 1e-6 else min(ratio, 1.0),
+            "propose again with the speeds that were reached",
+        )

@@ -1,0 +1,118 @@
+"""Which level of centrifugal stiffening a scene needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor.advice.candidate import Candidate
+from exudyn_rotor.advice.modes import resonances
+from exudyn_rotor.advice.request import Request
+from exudyn_rotor.stiffening import stiffening
+
+SOUTHWELL = 1.0  # stiffness by rotation per Ω² and modal mass, where it is not known
+_DEFECTIVE = 1e-3  # a motion that nothing holds has no frequency to change
+_SAFETY = 0.1  # leaving 'tilt' out saves nothing, so its share must be well below the accuracy
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level of stiffening.
+
+    Attributes
+    ----------
+    name : {'none', 'tilt', 'full'}
+    tilt, full : float
+        Largest relative change of a frequency in the band by ``'tilt'``, and by ``'full'`` beyond
+        it. Without a prestress the latter is an estimate.
+    known : bool
+        Whether `full` comes from a prestress.
+    missing : bool
+        True where ``'full'`` would be needed and the rotor has no prestress.
+    """
+
+    name: str
+    tilt: float
+    full: float
+    known: bool
+    missing: bool
+
+
+def choose_level(given: Candidate, request: Request, kept: np.ndarray) -> Level:
+    """Compare what a level changes with the accuracy.
+
+    With known supports the frequencies are those of the rotor on them, and a level δK changes
+    them by ``δν = xᴴδK x / xᴴ(2νM − G)x``, to first order. Without supports it is the modes' own
+    ``½ Ω² δK_kk / ω_k²``. A mode that is seen near zero in the rotor frame is judged by the spin
+    speed. Without a prestress the missing stiffness is estimated by Ω² for every mode of unit
+    mass: the order of a blade or a disc that flaps. Bending of a slender shaft misses far less.
+    """
+    inv = given.invariants
+    tilt = _K2(given, "tilt")
+    known = inv.K2 is not None
+    flexible = given.flexible[kept]
+    if known:
+        beyond = _K2(given, "full") - tilt
+    else:
+        beyond = np.zeros_like(tilt)
+        places = np.ix_(flexible, flexible)
+        beyond[places] = SOUTHWELL * np.eye(flexible.size) - tilt[places]
+    by_tilt = by_full = 0.0
+    for speed in request.speeds[request.speeds > 0.0]:
+        by_tilt = max(by_tilt, _shift(given, request, speed, tilt, flexible))
+        by_full = max(by_full, _shift(given, request, speed, beyond, flexible))
+    if not given.supported:
+        by_tilt = max(by_tilt, _free_tilt(given, request))
+    needed = by_full > request.accuracy
+    if needed and known:
+        name = "full"
+    else:
+        name = "tilt" if by_tilt > _SAFETY * request.accuracy else "none"
+    return Level(name, by_tilt, by_full, known, needed and not known)
+
+
+def _K2(given: Candidate, level: str) -> np.ndarray:
+    return np.asarray(stiffening(given.invariants, level).K2)
+
+
+def _shift(
+    given: Candidate, request: Request, speed: float, change: np.ndarray, flexible: np.ndarray
+) -> float:
+    """Return the largest relative change of a frequency by ``Ω² change``."""
+    if not given.supported:
+        own = np.diag(given.invariants.K)[flexible]
+        return float(np.max(0.5 * speed**2 * np.abs(np.diag(change)[flexible]) / own, initial=0.0))
+    found, vectors, (M, G) = resonances(given, speed, request.loads + speed)
+    if found.size == 0:
+        return _static_shift(given, speed, change)
+    size = given.source.size
+    work = np.zeros(found.size)
+    for start in range(0, len(M), size):  # every harmonic of the speed
+        part = vectors[start + given.own]
+        work = work + np.einsum("ir,ij,jr->r", part.conj(), change, part).real
+    norm = np.einsum("ir,ij,jr->r", vectors.conj(), M, vectors).real * 2.0 * found
+    norm -= np.einsum("ir,ij,jr->r", vectors.conj(), G, vectors).real
+    mass = np.einsum("ir,ij,jr->r", vectors.conj(), M, vectors).real
+    middle = slice(size * (len(M) // size // 2), size * (len(M) // size // 2 + 1))
+    own = np.einsum("ir,ij,jr->r", vectors[middle].conj(), M[middle, middle], vectors[middle]).real
+    held = (np.abs(norm) > _DEFECTIVE * (found + speed) * mass) & (own > 0.3 * mass)
+    shift = speed**2 * np.abs(work[held] / norm[held]) / np.maximum(found, speed)[held]
+    return float(np.max(shift, initial=0.0))
+
+
+def _static_shift(given: Candidate, speed: float, change: np.ndarray) -> float:
+    """Return the relative change of the lowest stiffnesses where no frequency is in the band."""
+    *_, K, count = given.conservative(speed)
+    size = given.source.size
+    places = size * (count // 2) + given.own
+    H = np.linalg.pinv(K[np.ix_(places, places)], rcond=1e-10, hermitian=True)
+    return float(0.5 * speed**2 * np.abs(np.linalg.eigvals(H @ change)).max())
+
+
+def _free_tilt(given: Candidate, request: Request) -> float:
+    """Return the share of I_p in what holds a free rotor upright, ``½ I_p / I_t``."""
+    if request.high == 0.0:
+        return 0.0
+    inertia = np.trace(given.invariants.J) - given.invariants.Theta
+    return float(given.invariants.Theta / max(2.0 * inertia, 1e-300))

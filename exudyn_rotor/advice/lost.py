@@ -1,0 +1,87 @@
+"""Loads that the model does not feel: on frame coordinates that the formulation does not have.
+
+A load at an interface acts on the modes, and on locked coordinates of the frame's node as a
+reaction; the two are in proportion: the rigid motion ``a`` is the combination ``Lᵀa`` or ``Sᵀa`` of
+the modes, with ``L = Σ M x × ψ`` and ``S = Σ M ψ``. What a locked coordinate holds beyond that
+moves nothing: a load on the frame's node, or the lever that a load gets by the deflection.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.body.locking import SPIN, TILTS
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.watch import Record
+from exudyn_rotor.nodal import skew
+
+_MOST = 400  # instants that are looked at
+_SINGULAR = 1e-3  # of the node's axes, where its second angle is near a right one
+
+
+def lost_load(body: RotorBody, record: Record, size: float) -> float:
+    """Return the largest load that the equations do not feel, over the largest load of the run.
+
+    `size` [m] makes forces and moments comparable. Needs accelerations, so the first instant of a
+    run does not count.
+    """
+    if "shell" not in body.objects or len(record.time) < 2:
+        return 0.0
+    steps = np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
+    lost, whole = 0.0, 0.0
+    for index in steps:
+        force, torque, missing = _balance(body, record, index)
+        whole = max(whole, size * np.linalg.norm(force), np.linalg.norm(torque))
+        lost = max(lost, size * np.linalg.norm(missing[:3]), np.linalg.norm(missing[3:]))
+    return float(lost / whole) if whole else 0.0
+
+
+def _balance(
+    body: RotorBody, record: Record, index: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return force and moment on the rotor, and the part of both (6,) that is lost."""
+    motion, place = body.motion, body.layout
+    t = float(record.time[index])
+    q, q_t, q_tt = (part[index] for part in (record.q, record.q_t, record.q_tt))
+    own, rate = q[place.unknowns], q_t[place.unknowns]
+    external = motion.mass_matrix(t, own) @ q_tt[place.unknowns] - motion.forces(t, own, rate)
+    held = place.lock_mass * q_tt + place.lock_damping * q_t + place.lock_stiffness * q
+    held += record.held[index]
+    for number, guide in body.locks.prescribed.items():
+        held[number] -= (
+            place.lock_mass[number] * guide.acceleration(t)
+            + place.lock_damping[number] * guide.rate(t)
+            + place.lock_stiffness[number] * guide.value(t)
+        )
+    held[place.unknowns] = external
+    turn = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
+    felt = external[motion.modes]
+    missing = np.zeros(6)
+    push = turn @ motion.invariants.S @ felt
+    for number in body.locks.fixed:
+        if number < 3:
+            missing[number] = held[number] - push[number]
+    force = motion.free_directions @ external[motion.translations] + push
+    torque, lost = _moment(body, held, turn @ _levers(body) @ felt)
+    missing[3:] = lost
+    return force, torque, missing
+
+
+def _levers(body: RotorBody) -> np.ndarray:
+    """Return ``L = Σ M x × ψ`` of every mode, (3, m), mesh axes."""
+    epsilon = np.array([skew(unit) for unit in np.eye(3)])
+    return np.einsum("aib,abk->ik", epsilon, body.motion.invariants.P)
+
+
+def _moment(body: RotorBody, held: np.ndarray, felt: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the moment on the node in inertial axes, and what of it tilts and is not felt."""
+    first = body.frame.angles[0]
+    e = body.motion.orientation @ body.motion.invariants.direction
+    turned = np.array([0.0, np.cos(first), np.sin(first)])
+    axes = np.array([[1.0, 0.0, 0.0], turned, e])
+    if abs(np.linalg.det(axes)) < _SINGULAR:
+        return felt, np.zeros(3)
+    moment = np.linalg.solve(axes, held[[*TILTS, SPIN]])
+    missing = moment - felt
+    return moment, missing - e * (e @ missing)

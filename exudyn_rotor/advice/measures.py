@@ -1,0 +1,236 @@
+"""Numbers that say how well the assumptions of a run held, from its record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+
+from exudyn_rotor.advice.request import PERIOD_ERROR
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.watch import Record, last_solver
+from exudyn_rotor.modes.basis import RIGID
+from exudyn_rotor.stiffening import stiffening, tilt_factors
+
+_TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
+_RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
+_SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
+_EXPLICIT_LIMIT = np.sqrt(8.0)  # ωh that RK44 bears without damping; RK33 bears √3
+
+
+@dataclass(frozen=True, eq=False)
+class Measures:
+    """Numbers of one run.
+
+    Attributes
+    ----------
+    body : RotorBody
+    record : Record
+    """
+
+    body: RotorBody
+    record: Record
+
+    @cached_property
+    def invariants(self):
+        """Invariants in the basis of the run."""
+        return self.body.motion.invariants
+
+    @cached_property
+    def flexible(self) -> np.ndarray:
+        """Which modal coordinates are flexible modes, ascending in frequency."""
+        stiff = np.diag(self.invariants.K) > 0.0
+        named = [name not in RIGID for name in self.body.selection.labels]
+        return np.flatnonzero(stiff & named)
+
+    @cached_property
+    def size(self) -> float:
+        """Radius of gyration of the whole rotor [m]."""
+        inv = self.invariants.moved(self.invariants.center)
+        return float(np.sqrt(np.trace(inv.J) / inv.mass))
+
+    @cached_property
+    def _q(self) -> np.ndarray:
+        return self.record.q[:, self.body.layout.unknowns]
+
+    @cached_property
+    def _q_t(self) -> np.ndarray:
+        return self.record.q_t[:, self.body.layout.unknowns]
+
+    @cached_property
+    def zeta(self) -> np.ndarray:
+        """Modal coordinates (s, m)."""
+        return self._q[:, self.body.motion.modes]
+
+    @cached_property
+    def zeta_t(self) -> np.ndarray:
+        """Modal velocities (s, m)."""
+        return self._q_t[:, self.body.motion.modes]
+
+    @cached_property
+    def fastest(self) -> float:
+        """Highest spin speed, either way round [rad/s]."""
+        return float(np.abs(self.record.speed).max())
+
+    def tilt(self) -> float:
+        """Return the largest rigid tilt out of the axis [rad]."""
+        e = self.invariants.direction
+        rotation = self.zeta @ tilt_factors(self.invariants)[0][:3].T
+        across = rotation - np.outer(rotation @ e, e)
+        return float(np.linalg.norm(across, axis=1).max())
+
+    def deflection(self) -> float:
+        """Return the largest root mean square flexible displacement over the rotor's size."""
+        moved = np.linalg.norm(self.zeta[:, self.flexible], axis=1) / np.sqrt(self.invariants.mass)
+        return float(moved.max() / self.size)
+
+    def travel(self) -> float:
+        """Return how far the centre of mass leaves a frame that does not follow, over the size."""
+        moved = np.linalg.norm(self.zeta @ self.invariants.S.T, axis=1) / self.invariants.mass
+        return float(moved.max() / self.size)
+
+    def locked(self) -> float:
+        """Return how far locked coordinates are off: angles [rad], lengths over the size."""
+        if "shell" not in self.body.objects:
+            return 0.0
+        unit = np.array([self.size] * 3 + [1.0] * 3)
+        worst = 0.0
+        for index in self.body.locks.fixed:
+            worst = max(worst, np.abs(self.record.q[:, index]).max() / unit[index])
+        for index, motion in self.body.locks.prescribed.items():
+            wanted = np.array([float(motion.value(t)) for t in self.record.time])
+            worst = max(worst, np.abs(self.record.q[:, index] - wanted).max() / unit[index])
+        return float(worst)
+
+    @cached_property
+    def _energies(self) -> tuple[np.ndarray, float]:
+        """Elastic energies (s, flexible modes), and the energy of the whole vibration [J]."""
+        modes = self.flexible
+        stiffness = np.diag(self.invariants.K)[modes]
+        elastic = 0.5 * stiffness * self.zeta[:, modes] ** 2
+        inv, omega = self.invariants, self.record.speed
+        # inertial velocity of the deviation from rigid rotation: ζ̇ + ω ẽ ζ
+        kinetic = 0.5 * np.einsum("si,ij,sj->s", self.zeta_t, inv.M, self.zeta_t)
+        kinetic += omega * np.einsum("si,ij,sj->s", self.zeta_t, inv.G, self.zeta)
+        kinetic += 0.5 * omega**2 * np.einsum("si,ij,sj->s", self.zeta, inv.C, self.zeta)
+        count = self.body.motion.formulation.translation_count
+        drift = self._q_t[:, :count] - self._q_t[:, :count].mean(axis=0)
+        kinetic += 0.5 * inv.mass * (drift**2).sum(axis=1)
+        return elastic, float(elastic.sum(axis=1).max(initial=0.0) + kinetic.max(initial=0.0))
+
+    def top_share(self) -> float:
+        """Return the elastic energy in the highest fifth of the modes over that of all motion.
+
+        The static centrifugal stretch is left out, and as much again as a start at full speed
+        without it makes ring: few modes breathe, wherever they stand, and more modes change
+        nothing about it.
+        """
+        modes, whole = self.flexible, self._energies[1]
+        if modes.size == 0 or whole == 0.0:
+            return 0.0
+        half = 0.5 * np.diag(self.invariants.K)[modes]
+        elastic = half * (self.zeta - self._stretch)[:, modes] ** 2
+        ringing = _RINGING * half * (self._stretch[:, modes] ** 2).max(axis=0)
+        top = slice(-max(1, round(_TOP * modes.size)), None)
+        return float(np.maximum(elastic - ringing, 0.0)[:, top].sum(axis=1).max() / whole)
+
+    def strain(self) -> float:
+        """Return the mean centrifugal strain ``ω² hᵀK⁻¹h / Θ`` that the modes show.
+
+        The moment of inertia grows by ``2 hᵀζ₀`` under the static deformation ``ζ₀ = ω² K⁻¹h``,
+        and with the square of radii.
+        """
+        inv, modes = self.invariants, self.flexible
+        if modes.size == 0 or inv.Theta == 0.0:
+            return 0.0
+        growth = np.sum(inv.h[modes] ** 2 / np.diag(inv.K)[modes])
+        return float(self.fastest**2 * growth / inv.Theta)
+
+    def missing_stiffness(self) -> float:
+        """Return the share of the stiffening that is left out, as a relative change of frequency.
+
+        Half of its energy over that of the motion. Without a prestress the stiffening of flexible
+        modes is taken as ω² per unit of modal mass.
+        """
+        inv, level = self.invariants, self.body.stiffening
+        if level == "full":
+            return 0.0
+        own = np.asarray(stiffening(inv, level).K2)
+        if inv.K2 is not None:
+            whole = np.asarray(inv.K2)
+        else:
+            whole = np.array(stiffening(inv, "tilt").K2)
+            whole[self.flexible, self.flexible] += 1.0
+        zeta = self.zeta - self._stretch
+        work = np.einsum("si,ij,sj->s", zeta, whole - own, zeta) * self.record.speed**2
+        energy = self._energies[1]
+        return float(0.25 * np.abs(work).max() / energy) if energy else 0.0
+
+    @cached_property
+    def _stretch(self) -> np.ndarray:
+        """Static centrifugal deformation (s, m), about which the rotor vibrates."""
+        inv, modes = self.invariants, self.flexible
+        shape = np.zeros(inv.size)
+        shape[modes] = inv.h[modes] / np.diag(inv.K)[modes]
+        return self.record.speed[:, None] ** 2 * shape
+
+    def divergence(self) -> float:
+        """Return ``Ω²/Ω_d²`` of the flexible modes, Ω_d the speed at which they would diverge.
+
+        They diverge where ``K − Ω²(C − K2)`` has a growing motion in spite of gyroscopic forces;
+        a stiffness that is not definite alone does not count. Zero where nothing grows.
+        """
+        modes = np.ix_(self.flexible, self.flexible)
+        K, G = self.invariants.K[modes], self.invariants.G[modes]
+        C = np.asarray(self.body.motion.C)[modes]
+        if self.flexible.size == 0 or self.fastest == 0.0:
+            return 0.0
+        lowest = np.sqrt(np.diag(K).min())
+        for factor in _SPEEDS:
+            speed = factor * self.fastest
+            if _grows(K - speed**2 * C, 2.0 * speed * G, 1e-6 * lowest):
+                return float(1.0 / factor**2)
+        return 0.0
+
+    def step_error(self) -> float:
+        """Return the relative period error ``0.0844 (ωh)²`` of the motion that was recorded.
+
+        ω is the mean frequency of the coordinates, weighted with their amplitudes squared.
+        """
+        solver = last_solver(self.body)
+        if solver is None or solver.explicit or len(self.record.time) < 3:
+            return 0.0
+        kept = np.ones(self.body.motion.size, dtype=bool)
+        if self.body.formulation.has_spin:
+            kept[self.body.motion.formulation.translation_count] = False
+        q, q_t = self._q[:, kept], self._q_t[:, kept]
+        weight = np.ones(kept.sum())
+        weight[: self.body.motion.formulation.translation_count] = self.invariants.mass
+        moved = float(q.var(axis=0) @ weight)
+        if moved == 0.0:
+            return 0.0
+        return float(PERIOD_ERROR * solver.step**2 * (q_t.var(axis=0) @ weight) / moved)
+
+    def spin_step(self) -> float:
+        """Return the largest spin angle per step [rad]."""
+        solver = last_solver(self.body)
+        return 0.0 if solver is None else solver.step * self.fastest
+
+    def explicit_step(self) -> float:
+        """Return ``ω_max h`` over what an explicit solver bears; 0 for an implicit one."""
+        solver = last_solver(self.body)
+        if solver is None or not solver.explicit or self.flexible.size == 0:
+            return 0.0
+        highest = np.sqrt(np.diag(self.invariants.K)[self.flexible].max()) + self.fastest
+        return float(solver.step * highest / _EXPLICIT_LIMIT)
+
+
+def _grows(K: np.ndarray, D: np.ndarray, smallest: float) -> bool:
+    """Return True if ``ẍ + Dẋ + Kx = 0`` has a growing solution."""
+    size = len(K)
+    if np.linalg.eigvalsh(0.5 * (K + K.T)).min() > 0.0:
+        return False
+    companion = np.block([[np.zeros((size, size)), np.eye(size)], [-K, -D]])
+    return bool(scipy.linalg.eigvals(companion).real.max() > smallest)

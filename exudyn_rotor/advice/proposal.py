@@ -1,0 +1,288 @@
+"""Before a run: the smallest model that a scene requires, with reasons."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.advice.candidate import Candidate, candidate
+from exudyn_rotor.advice.levels import Level, choose_level
+from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
+from exudyn_rotor.advice.request import Request, share
+from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.formulation import ConstantSpeed, PrescribedMotion
+from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.truncation import keep_modes
+
+_HERTZ = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """The smallest model for a scene; made by :func:`propose`.
+
+    Attributes
+    ----------
+    translation : {'free', 'in-plane', 'none'}
+    spin : 'free', float or PrescribedMotion
+        A number is a constant speed [rad/s].
+    stiffening : {'none', 'tilt', 'full'}
+    modes : tuple of int
+        Flexible modes to keep, counted from 0; see :func:`exudyn_rotor.keep_modes`.
+    labels : tuple of str
+        Their names and frequencies.
+    total : int
+        Number of flexible modes that there were to choose from.
+    error : float
+        Largest relative change of the response by the modes left out.
+    step : float
+        Step size [s].
+    speeds : tuple of float
+        Range of the spin speed that this holds for [rad/s].
+    accuracy : float
+    reasons : tuple of str
+    """
+
+    translation: str
+    spin: str | float | PrescribedMotion
+    stiffening: str
+    modes: tuple[int, ...]
+    labels: tuple[str, ...]
+    total: int
+    error: float
+    step: float
+    speeds: tuple[float, float]
+    accuracy: float
+    reasons: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of flexible modes to keep."""
+        return len(self.modes)
+
+    def options(self) -> dict:
+        """Return the formulation as arguments of :func:`exudyn_rotor.add_rotor`."""
+        return {
+            "translation": self.translation,
+            "spin": self.spin,
+            "stiffening": self.stiffening,
+        }
+
+    def truncated(self, reduced: ReducedRotor) -> ReducedRotor:
+        """Return the rotor with the proposed modes.
+
+        Raises
+        ------
+        ValueError
+            If `reduced` has another number of flexible modes than the rotor this was made for.
+        """
+        count = reduced.size - len(reduced.rigid)
+        if count != self.total:
+            raise ValueError(
+                f"this proposal chose from {self.total} flexible modes, and the rotor has {count}"
+            )
+        return keep_modes(reduced, self.modes)
+
+    def __str__(self) -> str:
+        spin = f"{self.spin:.6g} rad/s" if isinstance(self.spin, float) else self.spin
+        spin = "prescribed θ(t)" if isinstance(spin, PrescribedMotion) else spin
+        shown = ", ".join(self.labels) or "none, the rotor is rigid"
+        lines = [
+            f"proposal for {self.speeds[0]:.6g} … {self.speeds[1]:.6g} rad/s, "
+            f"accuracy {self.accuracy:g}",
+            f"  translation   {self.translation}",
+            f"  spin          {spin}",
+            f"  stiffening    {self.stiffening}",
+            f"  modes         {self.count} of {self.total}: {shown}",
+            f"  step          {self.step:.3g} s",
+            *(f"  - {reason}" for reason in self.reasons),
+        ]
+        return "\n".join(lines)
+
+
+def propose(
+    target: ReducedRotor | exudyn.MainSystem,
+    *,
+    speeds: ArrayLike,
+    load_frequencies: ArrayLike | None = None,
+    supports: Sequence[Support] | Support | None = None,
+    interfaces: Sequence[str] | None = None,
+    accuracy: float = 1e-3,
+    tilt: float | None = None,
+    spin: PrescribedMotion | None = None,
+    axial: bool | None = None,
+    body: RotorBody | None = None,
+) -> Proposal:
+    """Propose the smallest model whose error stays below an accuracy.
+
+    Parameters
+    ----------
+    target : ReducedRotor or exudyn.MainSystem
+        A rotor with more modes than will be needed, or an assembled scene with its `body`.
+    speeds : float or (low, high)
+        Range of the spin speed, ≥ 0 [rad/s].
+    load_frequencies : array_like, optional
+        Frequencies in the inertial frame of what acts on the rotor, ≥ 0 [rad/s]: everything up to
+        the highest is taken to occur. None: weight, unbalance and bearings only, so everything up
+        to the spin speed.
+    supports : sequence of Support, optional
+        What holds the rotor; an empty list for a rotor that nothing holds. None: not known.
+    interfaces : sequence of str, optional
+        Where the rotor is loaded and looked at; all interfaces by default.
+    accuracy : float
+        Relative error of steady motion; half of it for the modes, half for the step.
+    tilt : float, optional
+        Largest tilt that is expected [rad].
+    spin : PrescribedMotion, optional
+        θ(t), where it is known; only for a range of speeds.
+    axial : bool, optional
+        Whether anything acts along the axis. None: as the supports say, yes where they are not
+        known.
+    body : RotorBody, optional
+        The rotor in a scene.
+
+    Returns
+    -------
+    Proposal
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, or a rotor whose spin cannot be free.
+
+    Warns
+    -----
+    AssumptionWarning
+        Where no proposal meets the accuracy: the tilt is too large, or flexible modes stiffen
+        with the speed and the rotor was reduced without a prestress.
+
+    Notes
+    -----
+    Formulation: a constant speed leaves the modes alone (Sect. 2.5); else the frame carries the
+    lateral translations (2.3), and the axial one, too, where something acts along the axis (2.2).
+    The axial motion is never left out: what the frame does not carry is a rigid mode.
+
+    Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so
+    the band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
+    response of the interfaces by less than half the accuracy leave, see
+    :mod:`exudyn_rotor.advice.modes`. Without known supports the flexibility of the flexible modes
+    alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
+    relative to the modes given; the reasons say how much the highest of them still add.
+
+    Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
+    itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9), and a forced motion far above its
+    resonance is wrong by twice that. So ``h = √(½ accuracy/0.0844)/ω`` with ω at the end of the
+    band; the spin angle per step is smaller than ωh. After N periods the phase is behind by πN
+    times the accuracy. Faster motions than the band are not resolved.
+    """
+    request = Request.of(speeds, load_frequencies, accuracy)
+    if tilt is not None:
+        tilt = share(tilt, "tilt")
+    given = candidate(target, body, supports, interfaces, axial)
+    spin = _spin(given, request, spin)
+    chosen = choose_modes(given, request)
+    level = choose_level(given, request, chosen.kept)
+    translation, why = _translation(given, spin)
+    for message in _failing(request, level, tilt):
+        warnings.warn(message, AssumptionWarning, stacklevel=2)
+    hertz = given.frequencies / _HERTZ
+    return Proposal(
+        translation=translation,
+        spin=spin,
+        stiffening=level.name,
+        modes=tuple(int(i) for i in chosen.kept),
+        labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
+        total=hertz.size,
+        error=chosen.error,
+        step=request.step,
+        speeds=(request.low, request.high),
+        accuracy=request.accuracy,
+        reasons=(
+            why,
+            *_mode_reasons(given, request, chosen),
+            *_level_reasons(request, level),
+            _step_reason(request),
+        ),
+    )
+
+
+def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
+    """Return what add_rotor takes as `spin`."""
+    if isinstance(spin, ConstantSpeed) or (spin is not None and request.low == request.high):
+        raise ValueError("spin=: one speed is a constant spin already; leave spin out")
+    if spin is not None and not isinstance(spin, PrescribedMotion):
+        raise TypeError(f"spin=: needs a PrescribedMotion θ(t), got {type(spin).__name__}")
+    if spin is not None:
+        return spin
+    if request.low == request.high:
+        return request.high
+    if given.grounded or ("spin" not in given.rigid and given.source.size == given.own.size):
+        raise ValueError(
+            "propose: this rotor's spin cannot be free (its stiffness holds it, or it has no "
+            "moment of inertia); give spin=PrescribedMotion.run_up(…), or one speed"
+        )
+    return "free"
+
+
+def _translation(given: Candidate, spin) -> tuple[str, str]:
+    if given.grounded:
+        return "none", "translation: the rotor's own stiffness matrix holds it"
+    if isinstance(spin, float):
+        return "none", "one speed: all motion is in the modes, and the matrices are constant"
+    if given.axial:
+        return "free", "the speed varies, and something may act along the axis: the frame follows"
+    return "in-plane", "the speed varies, and nothing acts along the axis"
+
+
+def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
+    held = "on its supports" if given.supported else "by its own flexibility, supports not known"
+    lines = [
+        f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
+        f"{request.highest / _HERTZ:.4g} Hz of the rotor frame",
+        f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
+        f"{held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
+    ]
+    if chosen.top > request.allowed:
+        lines.append(
+            f"modes: the highest fifth of those given adds {chosen.top:.2g}; with free modes, what "
+            "lies beyond them is of that order: give more, or craig_bampton_modes"
+        )
+    return lines
+
+
+def _level_reasons(request: Request, level: Level) -> list[str]:
+    estimate = "by" if level.known else "by about"
+    return [
+        f"stiffening: 'tilt' changes frequencies by {level.tilt:.2g}, that of flexible modes "
+        f"{estimate} {level.full:.2g}, of {request.accuracy:g}"
+    ]
+
+
+def _step_reason(request: Request) -> str:
+    return (
+        f"step: ωh = {request.highest * request.step:.3g} at the end of the band, so periods are "
+        f"too long by {request.allowed:g} of themselves there"
+    )
+
+
+def _failing(request: Request, level: Level, tilt: float | None) -> list[str]:
+    messages = []
+    if tilt is not None and tilt**2 > request.accuracy:
+        messages.append(
+            f"a tilt of {tilt:.3g} rad makes an error of its square, {tilt**2:.2g}, above the "
+            f"accuracy {request.accuracy:g}: one fixed axis does not suffice, use Exudyn's 3D body"
+        )
+    if level.missing:
+        messages.append(
+            f"flexible modes soften falsely: frequencies change by about {level.full:.2g}, above "
+            f"the accuracy {request.accuracy:g}; reduce the rotor with prestress=True and ask "
+            "again, which allows stiffening='full'"
+        )
+    return messages

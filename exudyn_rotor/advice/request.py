@@ -1,0 +1,93 @@
+"""What a proposal is asked for, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+# relative period error per (ωh)² of generalised alpha with Exudyn's spectral radius 0.9; 1/12 at 1
+PERIOD_ERROR = 0.0844
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """Speeds, loads and accuracy.
+
+    Attributes
+    ----------
+    low, high : float
+        Range of the spin speed [rad/s].
+    loads : float
+        Highest frequency in the inertial frame [rad/s].
+    accuracy : float
+    """
+
+    low: float
+    high: float
+    loads: float
+    accuracy: float
+
+    @classmethod
+    def of(cls, speeds: ArrayLike, load_frequencies: ArrayLike | None, accuracy: float) -> Request:
+        """Check the values; without load frequencies everything happens at the spin speed.
+
+        Raises
+        ------
+        ValueError
+        """
+        values = _numbers(speeds, "speeds", "rad/s")
+        if len(values) > 2 or np.any(np.diff(values) < 0.0):
+            raise ValueError(f"speeds: needs one speed or (low, high) [rad/s], got {speeds!r}")
+        high = float(values[-1])
+        loads = high
+        if load_frequencies is not None:
+            loads = float(_numbers(load_frequencies, "load_frequencies", "rad/s").max())
+        if high + loads == 0.0:
+            raise ValueError(
+                "speeds, load_frequencies: all are zero, so nothing moves; give the highest "
+                "frequency of the loads [rad/s]"
+            )
+        share(accuracy, "accuracy")
+        return cls(float(values[0]), high, loads, float(accuracy))
+
+    @property
+    def highest(self) -> float:
+        """Highest frequency in the rotor frame [rad/s]: f fixed in space appears at f ± Ω."""
+        return self.loads + self.high
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """Speeds to look at: both ends and the middle [rad/s]."""
+        return np.unique([self.low, 0.5 * (self.low + self.high), self.high])
+
+    @property
+    def allowed(self) -> float:
+        """Error that modes and step may each make: half the accuracy."""
+        return 0.5 * self.accuracy
+
+    @property
+    def step(self) -> float:
+        """Step size [s] with the allowed period error at :attr:`highest`."""
+        return float(np.sqrt(self.allowed / PERIOD_ERROR) / self.highest)
+
+
+def share(value: float, name: str) -> float:
+    """Return a number between 0 and 1, or raise a ValueError."""
+    number = _numbers(value, name, "1")
+    if number.size != 1 or not 0.0 < number[0] < 1.0:
+        raise ValueError(f"{name}: needs a number between 0 and 1, got {value!r}")
+    return float(number[0])
+
+
+def _numbers(values: ArrayLike | Sequence[float], name: str, unit: str) -> np.ndarray:
+    try:
+        array = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: needs finite numbers ≥ 0 [{unit}], got {values!r}") from error
+    bad = array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array))
+    if bad or array.min() < 0.0:
+        raise ValueError(f"{name}: needs finite numbers ≥ 0 [{unit}], got {values!r}")
+    return array

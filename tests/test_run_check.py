@@ -1,0 +1,371 @@
+"""Checks after a run: every number against one known otherwise, every limit exceeded once."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadForceVector, LoadTorqueVector, MarkerNodeRigid
+from models import STEEL, disc_on_shaft
+from point_rotors import ring_rotor
+from run_scenes import scene, solve
+
+from exudyn_rotor import (
+    AssumptionWarning,
+    PrescribedMotion,
+    SolidRotor,
+    Support,
+    add_rotor,
+    campbell,
+    check_run,
+    keep_modes,
+    propose,
+)
+from exudyn_rotor.nodal import rotations, translations
+
+
+@pytest.fixture(scope="module")
+def solid():
+    rotor = SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z").center_interfaces()
+    return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    return solid.reduce(6).without_shapes()
+
+
+@pytest.fixture(scope="module")
+def run(reduced):
+    """A quiet run: unbalance and weight at constant speed."""
+    return _finished(reduced, "none", spin=200.0, gravity=[0, -9.81, 0])
+
+
+def _finished(reduced, translation, load=None, steps=400, end_time=0.04, watch=True, **options):
+    mbs, body = scene(reduced, translation, **options)
+    if load is not None:
+        load(mbs, body)
+    if watch:
+        body.watch()
+    mbs.Assemble()
+    solve(mbs, steps, end_time)
+    return body
+
+
+def _at_rest(reduced, **options):
+    """Return a body with initial values and no run: checks look at the state."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, **options)
+    mbs.Assemble()
+    return body
+
+
+def _modal(body_or_labels, **values):
+    return [values.get(name.split(" (")[0].replace(" ", "_"), 0.0) for name in body_or_labels]
+
+
+def _labels(reduced, **options):
+    return _at_rest(reduced, **options).selection.labels
+
+
+# ------------------------------------------------------------------ the quiet run
+
+
+def test_quiet_run_passes_and_says_so(run, recwarn):
+    check = check_run(run)
+    assert check.ok
+    assert check.complete
+    assert check.failed == ()
+    assert "FAILS" not in str(check)
+    assert not recwarn.list
+    assert check["lost load"].value < 1e-5
+    assert check["locked"].value < 1e-9
+
+
+def test_without_watch_only_the_end_is_known(reduced):
+    body = _finished(reduced, "none", watch=False, spin=200.0)
+    check = check_run(body, warn=False)
+    assert not check.complete
+    assert "only the end state is known" in str(check)
+
+
+@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+@pytest.mark.parametrize("locking", ["mass", "constraints"])
+def test_every_formulation_keeps_all_loads(reduced, translation, locking):
+    """Weight, unbalance and bearings reach the equations; the axis lies askew to gravity."""
+    turn = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    mbs = exu.SystemContainer().AddSystem()
+    options = {"rotation": turn, "gravity": [1, -9, 4], "initial_speed": 150.0}
+    body = add_rotor(mbs, reduced, translation=translation, locking=locking, **options)
+    ground = mbs.CreateGround()
+    for name, place in (("left", [0, 0, 0]), ("right", [0.5, 0, 0])):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)], localPosition0=place, stiffness=[1e6] * 3
+        )
+    body.watch()
+    mbs.Assemble()
+    solve(mbs, 200, 0.02)
+    check = check_run(body, warn=False)
+    assert check["lost load"].value < 1e-5
+    assert check["locked"].value < 1e-9
+
+
+def test_watch_is_native_and_asked_for_once(reduced):
+    mbs, body = scene(reduced, "none", spin=100.0)
+    before = mbs.systemData.NumberOfSensors()
+    body.watch()
+    body.watch()
+    assert mbs.systemData.NumberOfSensors() == before + 6
+    assert not body.uses_python
+
+
+# ------------------------------------------------------------------ every number
+
+
+def test_tilt_is_the_angle_of_the_axis(reduced):
+    """A unit tilt mode turns by 1/√I."""
+    labels = _labels(reduced, spin=0.0)
+    inertia = reduced.invariants.J[1, 1] + reduced.invariants.J[2, 2]
+    body = _at_rest(reduced, spin=0.0, modal_coordinates=_modal(labels, tilt_1=0.05))
+    with pytest.warns(AssumptionWarning, match=r"tilt .* exceeds 0\.0316"):
+        check = check_run(body)
+    assert check["tilt"].value == pytest.approx(0.05 / np.sqrt(inertia), rel=1e-3)
+    assert [row.name for row in check.failed] == ["tilt"]
+    assert check_run(body, limits={"tilt": 0.2}).ok
+
+
+def test_travel_is_that_of_the_centre_of_mass(reduced):
+    labels = _labels(reduced, spin=0.0, translation="none")
+    mass = reduced.invariants.mass
+    size = np.sqrt(np.trace(reduced.invariants.J) / mass)
+    values = _modal(labels, translation_1=0.2 * size * np.sqrt(mass))
+    body = _at_rest(reduced, spin=0.0, translation="none", modal_coordinates=values)
+    check = check_run(body, warn=False)
+    assert check["travel"].value == pytest.approx(0.2, rel=1e-6)
+    assert [row.name for row in check.failed] == ["travel"]
+
+
+def test_deflection_and_top_modes(reduced):
+    mass = reduced.invariants.mass
+    size = np.sqrt(np.trace(reduced.invariants.J) / mass)
+    labels = _labels(reduced, spin=0.0)
+    values = _modal(labels, mode_1=0.1 * size * np.sqrt(mass), mode_6=0.05)
+    check = check_run(_at_rest(reduced, spin=0.0, modal_coordinates=values), warn=False)
+    moved = np.linalg.norm(values[-6:]) / np.sqrt(mass)
+    assert check["deflection"].value == pytest.approx(moved / size, rel=1e-2)
+    energy = (reduced.frequencies[-6:] * np.array(values[-6:])) ** 2
+    assert check["top modes"].value == pytest.approx(energy[-1] / energy.sum(), rel=1e-6)
+    assert {row.name for row in check.failed} == {"deflection", "top modes"}
+
+
+def test_truncated_bending_shows_in_the_highest_modes(reduced):
+    """With the lowest pair alone half of its energy is in the highest fifth."""
+    few = _finished(keep_modes(reduced, [0, 1]), "none", spin=200.0, gravity=[0, -9.81, 0])
+    many = _finished(reduced, "none", spin=200.0, gravity=[0, -9.81, 0])
+    few, many = (check_run(body, warn=False)["top modes"] for body in (few, many))
+    assert many.ok
+    assert few.value > 3 * many.value
+
+
+def test_strain_is_that_of_the_static_stretch(solid):
+    """With the static deformation u as a mode the strain is ``uᵀ M x_⊥ / Θ``, x_⊥ the radius."""
+    prestress = solid.prestress()
+    radial = solid.axis.radial(solid.nodes).ravel()
+    load = solid.mass @ radial
+    stretched = solid.reduce(prestress.displacement[:, None])
+    body = _at_rest(stretched, spin=2000.0)
+    expected = 2000.0**2 * (prestress.displacement @ load) / (radial @ load)
+    check = check_run(body, warn=False, limits={"strain": 1e-6})
+    assert check["strain"].value == pytest.approx(expected, rel=1e-3)
+    assert not check["strain"].ok
+
+
+@pytest.mark.parametrize("speed", [20.0, 40.0])
+def test_left_out_stiffening_is_the_change_of_a_frequency(speed):
+    """Two rings on springs, tilting: the change of their frequencies from the Campbell diagram."""
+    ends = {"left": list(range(5)), "right": list(range(5, 10))}
+    rings = ring_rotor(0.2, 0.1, 4.0)
+    for name, nodes in ends.items():
+        rings = rings.with_interface(name, nodes)
+    rotor = rings.reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    options = {"translation": "none", "spin": speed, "stiffening": "none"}
+    values = _modal(_labels(rotor, **options), tilt_1=1e-4)
+    body = add_rotor(mbs, rotor, modal_velocities=values, **options)
+    ground = mbs.CreateGround()
+    for name, z in (("left", -0.1), ("right", 0.1)):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)], localPosition0=[0, 0, z], stiffness=[1e4] * 3
+        )
+    body.watch()
+    mbs.Assemble()
+    solve(mbs, 1000, 0.5)
+    supports = [Support(name, 1e4) for name in ends]
+    exact, wrong = (
+        np.sort(
+            np.abs(
+                campbell(rotor, [speed], supports=supports, stiffening=s).frequencies_rotating[0]
+            )
+        )
+        for s in ("tilt", "none")
+    )
+    conical = np.abs(wrong - exact)
+    conical = (conical / np.maximum(exact, 1.0))[conical > 1e-6 * speed]
+    found = check_run(body, warn=False)["stiffening"].value
+    assert 0.5 * conical.min() < found < 2.0 * conical.max()
+    assert conical.max() < 5.0 * conical.min()
+
+
+def _stretching(frequency):
+    """Return two masses of 1 kg on a spring along x, and four more on the axis z."""
+    nodes = np.array([[0.1, 0, 0], [-0.1, 0, 0], [0, 0, 0.2], [0, 0, -0.2]])
+    mass = np.eye(12)
+    stretch = np.zeros((12, 1))
+    stretch[[0, 3], 0] = np.sqrt(0.5) * np.array([1.0, -1.0])
+    soft = np.hstack([translations(4), rotations(nodes, np.zeros(3)), stretch])
+    rest = np.eye(12) - soft @ np.linalg.pinv(soft)
+    stiffness = frequency**2 * stretch @ stretch.T + 1e10 * rest
+    return SolidRotor.from_matrices(mass, stiffness, nodes, "z").reduce(1)
+
+
+@pytest.mark.parametrize(("share", "ok"), [(0.65, True), (0.95, False), (1.05, False)])
+def test_divergence_of_masses_on_a_spring(share, ok):
+    """They fly apart where Ω reaches the frequency of the spring."""
+    rotor = _stretching(100.0)
+    check = check_run(_at_rest(rotor, spin=100.0 * share), warn=False)
+    assert check["divergence"].ok == ok
+    assert check["divergence"].value == pytest.approx(share**2, rel=0.25)
+
+
+def test_steps_too_long_are_found(reduced):
+    body = _finished(reduced, "none", spin=200.0, steps=40, end_time=0.08, gravity=[0, -9.81, 0])
+    with pytest.warns(AssumptionWarning) as caught:
+        check = check_run(body)
+    assert len(caught) == len(check.failed)
+    assert check["spin step"].value == pytest.approx(0.4, rel=1e-9)
+    assert not check["step"].ok
+
+
+def test_unstable_step_of_an_explicit_solver_is_found(reduced):
+    mbs, body = scene(reduced, "none", spin=200.0)
+    mbs.Assemble()
+    highest = reduced.frequencies.max() + 200.0
+    for factor, ok in ((0.5, True), (1.05, False)):
+        step = factor * np.sqrt(8.0) / highest
+        solve(mbs, 3, 3 * step, solverType=exu.DynamicSolverType.RK44)
+        check = check_run(body, warn=False)
+        assert check["explicit"].value == pytest.approx(factor, rel=1e-6)
+        assert check["explicit"].ok == ok
+
+
+def test_failed_solution_is_said_to_have_failed(reduced):
+    mbs, body = scene(reduced, "none", spin=200.0)
+    mbs.Assemble()
+    state = np.array(mbs.systemData.GetODE2Coordinates())
+    state[-1] = np.nan
+    mbs.systemData.SetODE2Coordinates(state)
+    with pytest.warns(AssumptionWarning, match="the solution failed"):
+        check = check_run(body)
+    assert not check.ok
+
+
+# ------------------------------------------------------------------ loads
+
+
+def _on_frame(force=None, torque=None):
+    def load(mbs, body):
+        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
+        for kind, vector in ((LoadForceVector, force), (LoadTorqueVector, torque)):
+            if vector is not None:
+                mbs.AddLoad(kind(markerNumber=marker, loadVector=vector))
+
+    return load
+
+
+@pytest.mark.parametrize("locking", ["mass", "constraints"])
+@pytest.mark.parametrize(
+    ("translation", "force", "torque", "lost"),
+    [
+        ("in-plane", [0, 0, 100], None, True),
+        ("in-plane", [100, 0, 0], None, False),
+        ("none", [100, 0, 0], None, True),
+        ("free", [0, 0, 100], None, False),
+        ("free", None, [20, 0, 0], True),
+        ("free", None, [0, 0, 2], False),
+    ],
+)
+def test_loads_that_the_frame_does_not_take_are_found(
+    reduced, locking, translation, force, torque, lost
+):
+    """A load on the frame's node reaches the coordinates that the formulation has, no others."""
+    load = _on_frame(force, torque)
+    options = {"initial_speed": 50.0, "locking": locking}
+    body = _finished(reduced, translation, load, steps=100, end_time=0.01, **options)
+    check = check_run(body, warn=False)
+    assert check["lost load"].ok != lost
+    assert (check["lost load"].value > 0.3) == lost
+
+
+def test_loads_on_interfaces_are_felt(reduced):
+    def load(mbs, body):
+        mbs.CreateForce(itemNumber=body.marker("right"), loadVector=[0.0, 50.0, 100.0])
+        mbs.CreateTorque(itemNumber=body.marker("left"), loadVector=[20.0, 0.0, 0.0])
+
+    body = _finished(reduced, "in-plane", load, steps=100, end_time=0.01, initial_speed=50.0)
+    assert check_run(body, warn=False)["lost load"].value < 1e-3
+
+
+# ------------------------------------------------------------------ with a proposal, and bad input
+
+
+def test_speed_beyond_the_proposal_is_found(reduced, run):
+    fast, slow = (propose(reduced, speeds=s, accuracy=0.2) for s in (200.0, 150.0))
+    assert check_run(run, proposal=fast, warn=False)["speed"].ok
+    row = check_run(run, proposal=slow, warn=False)["speed"]
+    assert row.value == pytest.approx(200.0 / 150.0)
+    assert not row.ok
+
+
+def test_yielding_is_found(solid):
+    carried = solid.prestress(yield_stress=1e6)
+    reduced = solid.reduce(2, prestress=carried)
+    check = check_run(_at_rest(reduced, spin=500.0), reduced=reduced, warn=False)
+    peak = np.abs(reduced.static_stress(500.0)).max()
+    assert 0.5 * peak < check["yield"].value * 1e6 < 2.0 * peak
+    assert not check["yield"].ok
+
+
+def test_rotors_of_every_kind_are_checked():
+    """Without a shell, driven along θ(t), held by its own stiffness, and rigid."""
+    rings = ring_rotor(0.1, 0.1, 2.0)
+    run_up = PrescribedMotion.run_up(0.0, 10.0, 0.1)
+    assert check_run(_at_rest(rings.reduce(0), native_shell=False)).ok
+    assert check_run(_at_rest(rings.reduce(3), translation="none", spin=run_up)).ok
+    assert check_run(_at_rest(rings.reduce(0), spin=0.0)).ok
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"limits": {"wobble": 1.0}}, "no check 'wobble'"),
+        ({"limits": {"tilt": np.nan}}, "'tilt' needs a number"),
+        ({"limits": {"tilt": -1.0}}, "'tilt' needs a number"),
+        ({"accuracy": 0.0}, "accuracy: "),
+    ],
+)
+def test_bad_limits_are_refused(run, options, message):
+    with pytest.raises(ValueError, match=message):
+        check_run(run, **options)
+
+
+def test_other_objects_are_refused(run, reduced):
+    with pytest.raises(TypeError, match="needs a RotorBody"):
+        check_run(reduced)
+    with pytest.raises(TypeError, match="reduced="):
+        check_run(run, reduced=run)
+    with pytest.raises(TypeError, match="proposal="):
+        check_run(run, proposal=reduced)
+    with pytest.raises(KeyError, match="there are: tilt"):
+        check_run(run)["wobble"]
+    mbs, body = scene(reduced, "none", spin=1.0)
+    with pytest.raises(ValueError, match="not assembled"):
+        check_run(body)
+    assert mbs is body.mbs

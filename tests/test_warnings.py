@@ -1,0 +1,136 @@
+"""Every warning of the package fires: one test per place, and none without a test."""
+
+import ast
+import warnings
+from pathlib import Path
+
+import exudyn as exu
+import numpy as np
+import pytest
+from models import STEEL, block_beam
+from point_rotors import ring_rotor
+
+import exudyn_rotor
+from exudyn_rotor import (
+    AssumptionWarning,
+    SolidRotor,
+    Support,
+    add_rotor,
+    campbell,
+    check_run,
+    propose,
+)
+
+PACKAGE = Path(exudyn_rotor.__file__).parent
+
+
+@pytest.fixture(scope="module")
+def beam():
+    return SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
+
+
+def stress_out_of_balance(beam):
+    stress = np.zeros((beam.node_count, 6))
+    stress[:, 0] = 1e8 * np.cos(20.0 * beam.nodes[:, 0])
+    beam.prestress(stress=stress)
+
+
+def stress_beyond_yield(beam):
+    beam.prestress(yield_stress=1.0, speed=100.0)
+
+
+def eccentric_rotor_in_a_linear_analysis(beam):
+    rotor = ring_rotor(0.1, 0.1, 2.0).add_point_mass([0.1, 0, 0], 1.0)
+    rotor = rotor.with_interface("all", list(range(10)))
+    campbell(rotor.reduce(0), [0.0, 10.0], supports=[Support("all", 1e6, tilt_stiffness=1e4)])
+
+
+def proposal_beyond_the_formulation(beam):
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
+    propose(rotor.reduce(0), speeds=100.0, tilt=0.3)
+
+
+def run_beyond_its_assumptions(beam):
+    mbs = exu.SystemContainer().AddSystem()
+    reduced = ring_rotor(0.1, 0.1, 2.0).reduce(0)
+    body = add_rotor(mbs, reduced, spin=10.0, modal_coordinates=[0.1, 0.0])
+    mbs.Assemble()
+    check_run(body)
+
+
+# place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
+PLACES = {
+    "solid/prestress.py:_in_equilibrium": (
+        stress_out_of_balance, UserWarning, "not in equilibrium",
+    ),
+    "solid/prestress.py:_warn_of_yield": (
+        stress_beyond_yield, UserWarning, "above yield_stress",
+    ),
+    "linear/equations/system.py:_warn_of_eccentricity": (
+        eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
+    ),
+    "advice/proposal.py:propose": (
+        proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
+    ),
+    "advice/checks.py:check_run": (
+        run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",
+    ),
+}  # fmt: skip
+
+
+def calls_of_warn(source: str, file: str) -> list[str]:
+    """Return file:function of every call of ``warn`` in a module."""
+    found = []
+
+    def visit(node: ast.AST, function: str) -> None:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            function = node.name
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            if name in ("warn", "warn_explicit"):
+                found.append(f"{file}:{function}")
+        for child in ast.iter_child_nodes(node):
+            visit(child, function)
+
+    visit(ast.parse(source), "module")
+    return found
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_warning_fires(place, beam):
+    trigger, kind, text = PLACES[place]
+    with pytest.warns(kind, match=text) as caught:
+        trigger(beam)
+    assert len([w for w in caught if issubclass(w.category, kind)]) == 1
+
+
+# reached through a varying number of calls
+DEEP = {"linear/equations/system.py:_warn_of_eccentricity"}
+
+
+@pytest.mark.parametrize("place", sorted(set(PLACES) - DEEP))
+def test_warning_points_at_the_caller(place, beam):
+    """The line that a user sees is that of the call, not of the package."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        PLACES[place][0](beam)
+    assert [Path(w.filename).name for w in caught] == [Path(__file__).name]
+
+
+def test_every_warning_has_a_test():
+    found = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        file = path.relative_to(PACKAGE).as_posix()
+        found += calls_of_warn(path.read_text(encoding="utf-8"), file)
+    assert sorted(found) == sorted(PLACES)
+
+
+def test_calls_are_found_in_every_form():
+    source = (
+        "import warnings\ndef f():\n    warnings.warn('x')\nfrom warnings import warn\nwarn('y')"
+    )
+    assert calls_of_warn(source, "a.py") == ["a.py:f", "a.py:module"]
+
+
+def test_assumption_warning_is_a_user_warning():
+    assert issubclass(AssumptionWarning, UserWarning)
