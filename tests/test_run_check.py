@@ -66,9 +66,6 @@ def _labels(reduced, **options):
     return _at_rest(reduced, **options).selection.labels
 
 
-# ------------------------------------------------------------------ the quiet run
-
-
 def test_quiet_run_passes_and_says_so(run, recwarn):
     check = check_run(run)
     assert check.ok
@@ -117,9 +114,6 @@ def test_watch_is_native_and_asked_for_once(reduced):
     assert not body.uses_python
 
 
-# ------------------------------------------------------------------ every number
-
-
 def test_tilt_is_the_angle_of_the_axis(reduced):
     """A unit tilt mode turns by 1/√I."""
     labels = _labels(reduced, spin=0.0)
@@ -163,6 +157,26 @@ def test_truncated_bending_shows_in_the_highest_modes(reduced):
     few, many = (check_run(body, warn=False)["top modes"] for body in (few, many))
     assert many.ok
     assert few.value > 3 * many.value
+
+
+@pytest.mark.parametrize("start", ["sudden", "settled"])
+def test_breathing_of_a_disc_is_no_lack_of_modes(solid, start):
+    """A mode that the centrifugal field stretches may ring about the stretch, no further."""
+    few = keep_modes(solid.reduce(40), [0, 1, 2, 3, 4, 5, 10, 11, 28, 29])  # 28 breathes
+    stretch = np.append(np.zeros(5), 300.0**2 * few.invariants.h[6:] / few.frequencies[6:] ** 2)
+    settled = {"modal_coordinates": stretch} if start == "settled" else {}
+    body = _finished(few, "none", spin=300.0, steps=200, end_time=0.02, **settled)
+    assert check_run(body, warn=False)["top modes"].ok
+    hit = {"modal_velocities": np.append(np.zeros(14), 0.5)}
+    body = _finished(few, "none", spin=300.0, steps=2000, end_time=0.02, **hit)
+    assert not check_run(body, warn=False)["top modes"].ok
+
+
+@pytest.mark.parametrize(("locking", "ok"), [("mass", False), ("constraints", True)])
+def test_servo_that_lags_leaves_its_place(reduced, locking, ok):
+    options = {"spin": PrescribedMotion.run_up(0.0, 300.0, 0.02), "locking": locking}
+    body = _finished(reduced, "none", steps=100, end_time=0.02, **options)
+    assert check_run(body, warn=False)["locked"].ok == ok
 
 
 def test_strain_is_that_of_the_static_stretch(solid):
@@ -267,9 +281,6 @@ def test_failed_solution_is_said_to_have_failed(reduced):
     assert not check.ok
 
 
-# ------------------------------------------------------------------ loads
-
-
 def _on_frame(force=None, torque=None):
     def load(mbs, body):
         marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
@@ -311,9 +322,6 @@ def test_loads_on_interfaces_are_felt(reduced):
 
     body = _finished(reduced, "in-plane", load, steps=100, end_time=0.01, initial_speed=50.0)
     assert check_run(body, warn=False)["lost load"].value < 1e-3
-
-
-# ------------------------------------------------------------------ with a proposal, and bad input
 
 
 def test_speed_beyond_the_proposal_is_found(reduced, run):

@@ -56,7 +56,7 @@ class Bench:
 
 
 def measure(
-    bench: Bench, configs: Sequence[Config], reference: Motion, repeats: int = 2, **options
+    bench: Bench, configs: Sequence[Config], reference: Motion, repeats: int, **options
 ) -> list[Row]:
     """Return one row per simulation: what it was, its errors, and its shortest time.
 
@@ -67,7 +67,7 @@ def measure(
     bench : Bench
     configs : sequence of Config
     reference : Motion
-    repeats : int, optional
+    repeats : int
     **options
         Of :meth:`trade_scene.Scene.run`.
     """

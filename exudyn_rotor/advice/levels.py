@@ -13,7 +13,6 @@ from exudyn_rotor.stiffening import stiffening
 
 SOUTHWELL = 1.0  # stiffness by rotation per Ω² and modal mass, where it is not known
 _DEFECTIVE = 1e-3  # a motion that nothing holds has no frequency to change
-_SAFETY = 0.1  # leaving 'tilt' out saves nothing, so its share must be well below the accuracy
 
 
 @dataclass(frozen=True)
@@ -22,10 +21,10 @@ class Level:
 
     Attributes
     ----------
-    name : {'none', 'tilt', 'full'}
-    tilt, full : float
-        Largest relative change of a frequency in the band by ``'tilt'``, and by ``'full'`` beyond
-        it. Without a prestress the latter is an estimate.
+    name : {'tilt', 'full'}
+    full : float
+        Largest relative change of a frequency in the band by ``'full'`` beyond ``'tilt'``; an
+        estimate without a prestress.
     known : bool
         Whether `full` comes from a prestress.
     missing : bool
@@ -33,14 +32,13 @@ class Level:
     """
 
     name: str
-    tilt: float
     full: float
     known: bool
     missing: bool
 
 
 def choose_level(given: Candidate, request: Request, kept: np.ndarray) -> Level:
-    """Compare what a level changes with the accuracy.
+    """Take the best level there is, for none costs time in a step; say whether one is missing.
 
     With known supports the frequencies are those of the rotor on them, and a level δK changes
     them by ``δν = xᴴδK x / xᴴ(2νM − G)x``, to first order. Without supports it is the modes' own
@@ -58,18 +56,11 @@ def choose_level(given: Candidate, request: Request, kept: np.ndarray) -> Level:
         beyond = np.zeros_like(tilt)
         places = np.ix_(flexible, flexible)
         beyond[places] = SOUTHWELL * np.eye(flexible.size) - tilt[places]
-    by_tilt = by_full = 0.0
+    by_full = 0.0
     for speed in request.speeds[request.speeds > 0.0]:
-        by_tilt = max(by_tilt, _shift(given, request, speed, tilt, flexible))
         by_full = max(by_full, _shift(given, request, speed, beyond, flexible))
-    if not given.supported:
-        by_tilt = max(by_tilt, _free_tilt(given, request))
-    needed = by_full > request.accuracy
-    if needed and known:
-        name = "full"
-    else:
-        name = "tilt" if by_tilt > _SAFETY * request.accuracy else "none"
-    return Level(name, by_tilt, by_full, known, needed and not known)
+    missing = by_full > request.accuracy and not known
+    return Level("full" if known else "tilt", by_full, known, missing)
 
 
 def _K2(given: Candidate, level: str) -> np.ndarray:
@@ -108,11 +99,3 @@ def _static_shift(given: Candidate, speed: float, change: np.ndarray) -> float:
     places = size * (count // 2) + given.own
     H = np.linalg.pinv(K[np.ix_(places, places)], rcond=1e-10, hermitian=True)
     return float(0.5 * speed**2 * np.abs(np.linalg.eigvals(H @ change)).max())
-
-
-def _free_tilt(given: Candidate, request: Request) -> float:
-    """Return the share of I_p in what holds a free rotor upright, ``½ I_p / I_t``."""
-    if request.high == 0.0:
-        return 0.0
-    inertia = np.trace(given.invariants.J) - given.invariants.Theta
-    return float(given.invariants.Theta / max(2.0 * inertia, 1e-300))

@@ -33,7 +33,7 @@ class Proposal:
     translation : {'free', 'in-plane', 'none'}
     spin : 'free', float or PrescribedMotion
         A number is a constant speed [rad/s].
-    stiffening : {'none', 'tilt', 'full'}
+    stiffening : {'tilt', 'full'}
     modes : tuple of int
         Flexible modes to keep, counted from 0; see :func:`exudyn_rotor.keep_modes`.
     labels : tuple of str
@@ -260,8 +260,8 @@ def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> lis
 def _level_reasons(request: Request, level: Level) -> list[str]:
     estimate = "by" if level.known else "by about"
     return [
-        f"stiffening: 'tilt' changes frequencies by {level.tilt:.2g}, that of flexible modes "
-        f"{estimate} {level.full:.2g}, of {request.accuracy:g}"
+        f"stiffening: beyond 'tilt' frequencies change {estimate} {level.full:.2g}, of "
+        f"{request.accuracy:g}; no level costs time in a step"
     ]
 
 

@@ -1,9 +1,9 @@
 """Reference numbers of Timoshenko-beam rotors, computed by the open package ROSS.
 
 Run it in an environment with ``ross-rotordynamics`` (not needed by anything else here); it writes
-``reference/timoshenko_ross.json``, which validation and tests read:
+``timoshenko_ross.json``, which validation and tests read:
 
-    python validation/ross_reference.py
+    python validation/reference/timoshenko_ross.py
 
 Steel shafts on two isotropic bearings at their ends: a uniform one, and one with two discs. A real
 disc is bonded to the shaft over its width and stiffens it there; beam models bracket that: with
@@ -105,15 +105,14 @@ def reference(shaft: dict, rigid_hubs: bool = False) -> dict:
 def main() -> None:
     """Write the reference file."""
     data = {
-        "source": f"ross-rotordynamics {ross.__version__}, validation/ross_reference.py",
+        "source": f"ross-rotordynamics {ross.__version__}, validation/reference/timoshenko_ross.py",
         "material": {"youngsModulus": YOUNG, "poissonsRatio": POISSON, "density": DENSITY},
         "speeds": SPEEDS,
         "uniform": reference(UNIFORM),
         "two discs, points": reference(TWO_DISCS),
         "two discs, rigid hubs": reference(TWO_DISCS, rigid_hubs=True),
     }
-    target = Path(__file__).parent / "reference" / "timoshenko_ross.json"
-    target.parent.mkdir(exist_ok=True)
+    target = Path(__file__).with_suffix(".json")
     target.write_text(json.dumps(data, indent=1) + "\n")
     print(target.read_text())
 
