@@ -88,6 +88,7 @@ def test_few_modes_come_close_to_the_full_model_of_a_mesh():
     assert np.all(deviations[1] < deviations[0])
 
 
+@pytest.mark.filterwarnings("ignore:the centre of mass is")
 @pytest.mark.parametrize("stiffening", ["none", "tilt"])
 def test_no_mode_is_ever_lost(stiffening):
     """Rigid motions and unstable modes, whose eigenvalues are real, are counted as well."""

@@ -126,6 +126,7 @@ def test_conical_modes_of_a_stiff_rotor_and_the_papers_terms(shape):
 # ------------------------------------------------------------------ zero and repeated modes
 
 
+@pytest.mark.filterwarnings("ignore:the centre of mass is")
 def test_free_rotor_keeps_all_rigid_modes_and_names_them():
     rotor = random_rotor(31)
     result = campbell(rotor.reduce(3), [0.0, 5.0])

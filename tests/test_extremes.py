@@ -35,6 +35,7 @@ CASES = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore:the centre of mass is")
 @pytest.mark.parametrize("make", CASES)
 def test_row_holds(make):
     row = make(quick=True)
