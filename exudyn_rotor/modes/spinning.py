@@ -15,15 +15,19 @@ from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
 
+_ACROSS = 1e-2  # share of a mode's energy across the axis, below which Coriolis forces do not matter
+
 
 def spinning_modes(
     rotor: SolidRotor, count: int, speeds: Sequence[float], *, tolerance: float = 1e-10
 ) -> ModeBasis:
     """Return the lowest eigenmodes at rest and those at spin speeds, as one basis.
 
-    At a speed Ω these are the modes of ``K + Ω²(K_G − ẽᵀMẽ)``, without the Coriolis term. A blade
-    whose tension has changed its mode shapes needs fewer columns of this basis than of modes at
-    rest. Modes of different speeds are much alike; :meth:`SolidRotor.reduce` makes them
+    At a speed Ω these are the modes φ of ``A = K + Ω²(K_G − ẽᵀMẽ)``, and the static responses
+    ``A⁻¹Mẽφ`` to the Coriolis forces of those that move across the axis: a blade that swings in
+    the plane of rotation is stretched by them, and the stretch is far above all bending modes. A
+    blade whose tension has changed its mode shapes needs fewer columns of this basis than of modes
+    at rest. Modes of different speeds are much alike; :meth:`SolidRotor.reduce` makes them
     orthonormal and drops what is not new.
 
     Parameters
@@ -59,16 +63,23 @@ def spinning_modes(
     rest = free_modes(rotor, count, tolerance=tolerance)
     found, labels = [rest.matrix], list(rest.labels)
     for speed in speeds:
-        modes = _modes_at(rotor, count, speed, tolerance)
-        found.append(modes)
-        labels += [f"mode {i + 1} at {speed:.6g} rad/s" for i in range(modes.shape[1])]
+        for name, part in zip(
+            ("mode", "Coriolis response"), _modes_at(rotor, count, speed, tolerance), strict=True
+        ):
+            found.append(part)
+            labels += [f"{name} {i + 1} at {speed:.6g} rad/s" for i in range(part.shape[1])]
     frequencies = np.full(len(labels), np.nan)
     frequencies[:count] = rest.frequencies
     return ModeBasis(np.hstack(found), tuple(labels), rotor.nodes, frequencies)
 
 
-def _modes_at(rotor: SolidRotor, count: int, speed: float, tolerance: float) -> np.ndarray:
-    """Return the lowest modes at a speed; as many more as rigid motions are free, among them."""
+def _modes_at(
+    rotor: SolidRotor, count: int, speed: float, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest modes at a speed, and the static responses to their Coriolis forces.
+
+    There are as many more modes as rigid motions are free, which are among them.
+    """
     wanted = count + rotor.rigid_motions
     check_count(wanted, 3 * rotor.node_count, smallest=1)
     e = rotor.axis.direction
@@ -76,15 +87,19 @@ def _modes_at(rotor: SolidRotor, count: int, speed: float, tolerance: float) -> 
     stiffness = rotor.stiffness + speed**2 * (rotor.carried_prestress.matrix - softening)
     # softening takes at most Ω² from any eigenvalue, so that this is definite unless K_G buckles
     shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
-    if eigen.is_small(shifted.shape[0], wanted):
-        _, modes = eigen.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
-        return eigen.with_fixed_sign(modes)
     try:
-        inverse = SparseCholesky(shifted).solve
+        solve = SparseCholesky(shifted).solve
     except NotPositiveDefiniteError as error:
         raise ValueError(
             f"at {speed:.6g} rad/s the compression by the static stress makes the rotor buckle "
             f"({error}); leave this speed out"
         ) from error
-    _, modes = eigen.lanczos_modes(shifted, rotor.mass, inverse, wanted, tolerance)
-    return eigen.with_fixed_sign(modes)
+    if eigen.is_small(shifted.shape[0], wanted):
+        _, modes = eigen.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
+    else:
+        _, modes = eigen.lanczos_modes(shifted, rotor.mass, solve, wanted, tolerance)
+    modes = eigen.with_fixed_sign(modes)
+    turned = np.cross(e, modes.reshape(-1, 3, wanted), axisb=1, axisc=1).reshape(modes.shape)
+    forces = rotor.mass @ turned
+    share = np.einsum("ik,ik->k", turned, forces)  # of a mode's energy that moves across e
+    return modes, solve(forces[:, share > _ACROSS])
