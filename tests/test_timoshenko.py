@@ -40,7 +40,7 @@ def test_bonded_discs_lie_between_points_and_rigid_hubs(results):
 
 
 def test_discs_on_a_bending_shaft_need_the_full_level(results):
-    """The two lowest pairs keep their deviation at rest up to 600 rad/s; with 'tilt' they soften."""
+    """The two lowest pairs keep their deviation up to 600 rad/s; with 'tilt' they soften."""
     full = array(results["two discs against points, 'full'"])
     tilt = array(results["two discs against points, 'tilt'"])
     assert np.abs(full[-1, :4] - full[0, :4]).max() < 1.5e-3

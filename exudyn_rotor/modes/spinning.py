@@ -15,7 +15,7 @@ from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
 
-_ACROSS = 1e-2  # share of a mode's energy across the axis, below which Coriolis forces do not matter
+_ACROSS = 1e-2  # share of its energy across the axis from which a mode feels Coriolis forces
 
 
 def spinning_modes(
