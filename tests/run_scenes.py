@@ -5,7 +5,7 @@ import exudyn as exu
 from exudyn_rotor import add_rotor
 
 
-def scene(reduced, translation, **options):
+def scene(reduced, translation, stiffness=(2e6, 2e6, 2e6), **options):
     """Return an mbs with the rotor of ``models.disc_on_shaft`` on two bearings, not assembled."""
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, reduced, translation=translation, **options)
@@ -14,7 +14,7 @@ def scene(reduced, translation, **options):
         mbs.CreateCartesianSpringDamper(
             itemNumbers=[ground, body.marker(name)],
             localPosition0=[0, 0, z],
-            stiffness=[2e6] * 3,
+            stiffness=list(stiffness),
             damping=[500.0] * 3,
         )
     return mbs, body

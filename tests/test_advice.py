@@ -24,6 +24,7 @@ from exudyn_rotor import (
     harmonic_response,
     keep_modes,
     propose,
+    recommended_settings,
     unbalance_response,
 )
 
@@ -216,7 +217,7 @@ def _on_foundation(rotor):
 def test_proposed_step_has_the_allowed_period_error(plain):
     """A free mode at the end of the band: its phase after 20 periods, against cos ωt."""
     omega = plain.frequencies[6]
-    proposal = propose(plain, speeds=0.0, load_frequencies=omega, supports=SUPPORTS, accuracy=2e-3)
+    proposal = propose(plain, speeds=0.0, load_frequencies=omega, accuracy=2e-3)
     mbs = exu.SystemContainer().AddSystem()
     start = np.zeros(plain.size - 1)  # without the spin, which is prescribed
     start[5] = 1e-3
@@ -236,10 +237,54 @@ def test_proposed_step_has_the_allowed_period_error(plain):
 
 def test_step_follows_the_highest_frequency_in_the_rotor_frame(plain):
     one, two = (
-        propose(plain, speeds=s, load_frequencies=f, supports=SUPPORTS).step
+        propose(plain, speeds=s, load_frequencies=f).step
         for s, f in ((100.0, 500.0), (400.0, 800.0))
     )
     assert one / two == pytest.approx(2.0)
+
+
+def _steady_orbit(rotor, proposal, stiffness, finer=1, translation=None):
+    """Return the last revolutions of the right journal (s, 3) [m], with weight and unbalance."""
+    options = proposal.options() | ({"translation": translation} if translation else {})
+    mbs, body = scene(
+        rotor, stiffness=stiffness, markers="position", gravity=[0, -9.81, 0], **options
+    )
+    sensor = body.add_interface_sensor("right", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    turn = 2 * np.pi / proposal.speeds[1]
+    steps = int(np.ceil(turn / proposal.step))
+    turns = int(np.ceil(1.0 / turn))
+    settings = recommended_settings(turns * turn, turn / (steps * finer), accuracy=1e-9)
+    settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
+    settings.solution.sensors.writePeriod = turn / steps
+    mbs.SolveDynamic(settings)
+    return mbs.GetSensorStoredData(sensor)[-2 * steps :, 1:]
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
+@pytest.mark.parametrize(("speed", "translation"), [(150.0, "none"), (400.0, "free")])
+def test_steady_orbit_at_the_proposed_step_meets_the_accuracy(plain, speed, translation, accuracy):
+    """Against steps an eighth as long; 400 rad/s is near a critical speed."""
+    stiffness = [2e6, 4e6, 2e6]
+    supports = [Support(n, np.diag(stiffness), 500.0 * np.eye(3)) for n in ("left", "right")]
+    proposal = propose(plain, speeds=speed, supports=supports, accuracy=accuracy)
+    assert proposal.translation == translation
+    exact = _steady_orbit(plain, proposal, stiffness, finer=8)
+    size = np.linalg.norm(exact, axis=1).max()
+    error = np.linalg.norm(_steady_orbit(plain, proposal, stiffness) - exact, axis=1).max() / size
+    assert 0.02 * accuracy < error < 0.75 * accuracy
+    if translation == "free":
+        worse = _steady_orbit(plain, proposal, stiffness, translation="none") - exact
+        assert np.linalg.norm(worse, axis=1).max() > 1.3 * error * size
+
+
+def test_reasons_name_what_asks_for_a_small_step(plain):
+    supports = [Support(n, 2e4 * np.eye(3), 500.0 * np.eye(3)) for n in ("left", "right")]
+    options = {"supports": supports, "accuracy": 1e-2}
+    slow = propose(plain, speeds=1000.0, load_frequencies=30.0, **options)
+    assert slow.translation == "free"
+    assert "slow motion in space is fast in the rotor frame" in str(slow)
+    assert "step: ωh" in str(propose(plain, speeds=150.0, **options))
 
 
 # ------------------------------------------------------------------ formulation

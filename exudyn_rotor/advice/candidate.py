@@ -80,11 +80,18 @@ class Candidate:
 
     def hill(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Return M, D, K in the rotor frame, harmonics of the speed included."""
-        if speed not in self._systems:  # a scene is probed at many angles
-            self._systems[speed] = self.source.at(speed)
-        system = self._systems[speed]
-        orders = harmonics(system, _ORDER)
+        system, orders = self.system(speed), self.orders(speed)
         return *hill_matrices(system, orders), len(orders)
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a speed [rad/s]; a scene is probed at many angles once."""
+        if speed not in self._systems:
+            self._systems[speed] = self.source.at(speed)
+        return self._systems[speed]
+
+    def orders(self, speed: float) -> np.ndarray:
+        """Return the harmonics of the speed that :meth:`hill` holds."""
+        return harmonics(self.system(speed), _ORDER)
 
     def motion(self) -> np.ndarray:
         """Return the displacements that count, across the axis and along it if need be, (p, k)."""

@@ -133,14 +133,14 @@ def _alike(frequencies: np.ndarray) -> list[np.ndarray]:
 
 
 def _responses(given: Candidate, request: Request) -> Responses:
-    plan = [(speed, list(_band(given, request, speed))) for speed in request.speeds]
+    plan = [(speed, list(band(given, request, speed))) for speed in request.speeds]
     plan += [(speed, [0.0]) for speed in critical(given, request)]
     points, places = [], np.zeros((given.frequencies.size, 0), dtype=int)
     for speed, frequencies in plan:
         M, D, K, count = given.hill(speed)
         size = len(M) // count
         used, places = _coordinates(given, size, count)
-        rows, loads = _ends(given, size, count)
+        rows, loads = ends(given, size, count)
         for nu in frequencies:
             s = 1j * nu + GROWTH * max(nu, speed, 0.1 * request.highest)
             Z = s**2 * M + s * D + K
@@ -159,7 +159,7 @@ def _coordinates(given: Candidate, size: int, count: int) -> tuple[np.ndarray, n
     return used, np.searchsorted(used, places)
 
 
-def _ends(given: Candidate, size: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+def ends(given: Candidate, size: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return displacements that count (p, n) and load columns (n, l) over all harmonics."""
     motion = given.motion()
     # flexible modes alone do not feel the acceleration of the whole
@@ -170,7 +170,7 @@ def _ends(given: Candidate, size: int, count: int) -> tuple[np.ndarray, np.ndarr
     return np.kron(np.eye(count), motion), loads
 
 
-def _band(given: Candidate, request: Request, speed: float) -> Iterator[float]:
+def band(given: Candidate, request: Request, speed: float) -> Iterator[float]:
     """Yield the frequencies to look at: evenly over the band, and the resonances in it."""
     yield from np.linspace(0.0, request.loads + speed, _FREQUENCIES)
     if given.supported:

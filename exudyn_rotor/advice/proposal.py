@@ -14,6 +14,7 @@ from exudyn_rotor.advice.candidate import Candidate, candidate
 from exudyn_rotor.advice.levels import Level, choose_level
 from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request, share
+from exudyn_rotor.advice.steps import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.formulation import ConstantSpeed, PrescribedMotion
@@ -22,6 +23,7 @@ from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.truncation import keep_modes
 
 _HERTZ = 2.0 * np.pi
+_GAIN = 1.3  # in step size from which a frame that follows pays: its steps cost a tenth more
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,9 @@ class Proposal:
     def __str__(self) -> str:
         spin = f"{self.spin:.6g} rad/s" if isinstance(self.spin, float) else self.spin
         spin = "prescribed θ(t)" if isinstance(spin, PrescribedMotion) else spin
-        shown = ", ".join(self.labels) or "none, the rotor is rigid"
+        shown = _ranges(self.modes)
+        if self.labels:
+            shown += f" ({self.labels[0].split('(')[1][:-1]} … {self.labels[-1].split('(')[1]}"
         lines = [
             f"proposal for {self.speeds[0]:.6g} … {self.speeds[1]:.6g} rad/s, "
             f"accuracy {self.accuracy:g}",
@@ -137,7 +141,8 @@ def propose(
     interfaces : sequence of str, optional
         Where the rotor is loaded and looked at; all interfaces by default.
     accuracy : float
-        Relative error of steady motion; half of it for the modes, half for the step.
+        Relative error of steady motion, between 0 and 1; half of it for the modes, half for the
+        step.
     tilt : float, optional
         Largest tilt that is expected [rad].
     spin : PrescribedMotion, optional
@@ -165,9 +170,10 @@ def propose(
 
     Notes
     -----
-    Formulation: a constant speed leaves the modes alone (Sect. 2.5); else the frame carries the
-    lateral translations (2.3), and the axial one, too, where something acts along the axis (2.2).
-    The axial motion is never left out: what the frame does not carry is a rigid mode.
+    Formulation: a constant speed leaves the modes alone (Sect. 2.5), unless a frame that follows
+    allows much longer steps; else the frame carries the lateral translations (2.3), and the axial
+    one, too, where something acts along the axis (2.2). The axial motion is never left out: what
+    the frame does not carry is a rigid mode.
 
     Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so
     the band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
@@ -177,10 +183,12 @@ def propose(
     relative to the modes given; the reasons say how much the highest of them still add.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
-    itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9), and a forced motion far above its
-    resonance is wrong by twice that. So ``h = √(½ accuracy/0.0844)/ω`` with ω at the end of the
-    band; the spin angle per step is smaller than ωh. After N periods the phase is behind by πN
-    times the accuracy. Faster motions than the band are not resolved.
+    itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
+    the end of the band, and for the change of the steady response: next to a resonance that is
+    larger by the amplification, and where a slow motion in space is integrated in the rotor frame
+    by the ratio of frequencies; see :mod:`exudyn_rotor.advice.steps`. After N periods the phase is
+    behind by πN times the accuracy. Faster motions than the band, such as the ringing after a
+    sudden start, are not resolved.
     """
     request = Request.of(speeds, load_frequencies, accuracy)
     if tilt is not None:
@@ -189,7 +197,7 @@ def propose(
     spin = _spin(given, request, spin)
     chosen = choose_modes(given, request)
     level = choose_level(given, request, chosen.kept)
-    translation, why = _translation(given, spin)
+    translation, why, step = _translation(given, request, spin)
     for message in _failing(request, level, tilt):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
     hertz = given.frequencies / _HERTZ
@@ -201,16 +209,24 @@ def propose(
         labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
         total=hertz.size,
         error=chosen.error,
-        step=request.step,
+        step=step.size,
         speeds=(request.low, request.high),
         accuracy=request.accuracy,
         reasons=(
             why,
             *_mode_reasons(given, request, chosen),
             *_level_reasons(request, level),
-            _step_reason(request),
+            _step_reason(request, step),
         ),
     )
+
+
+def _ranges(modes: Sequence[int]) -> str:
+    """Return mode numbers counted from 1 as '1–4, 7'."""
+    numbers = np.array(modes, dtype=int) + 1
+    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    shown = [f"{r[0]}–{r[-1]}" if len(r) > 1 else str(r[0]) for r in runs if len(r)]
+    return ", ".join(shown) or "none, the rotor is rigid"
 
 
 def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
@@ -231,14 +247,25 @@ def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
     return "free"
 
 
-def _translation(given: Candidate, spin) -> tuple[str, str]:
+def _translation(given: Candidate, request: Request, spin) -> tuple[str, str, Step]:
+    """Return the translation, the reason for it, and the step that it takes."""
     if given.grounded:
-        return "none", "translation: the rotor's own stiffness matrix holds it"
-    if isinstance(spin, float):
-        return "none", "one speed: all motion is in the modes, and the matrices are constant"
-    if given.axial:
-        return "free", "the speed varies, and something may act along the axis: the frame follows"
-    return "in-plane", "the speed varies, and nothing acts along the axis"
+        step = choose_step(given, request, follows=False)
+        return "none", "translation: the rotor's own stiffness matrix holds it", step
+    follows = choose_step(given, request, follows=True)
+    if not isinstance(spin, float):
+        if given.axial:
+            why = "the speed varies, and something may act along the axis: the frame follows"
+            return "free", why, follows
+        return "in-plane", "the speed varies, and nothing acts along the axis", follows
+    step = choose_step(given, request, follows=False)
+    if follows.size > _GAIN * step.size:
+        why = (
+            "slow motion in space is fast in the rotor frame: a frame that follows allows steps "
+            f"{follows.size / step.size:.2g} times as long"
+        )
+        return "free", why, follows
+    return "none", "one speed: all motion is in the modes, and the matrices are constant", step
 
 
 def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
@@ -265,10 +292,16 @@ def _level_reasons(request: Request, level: Level) -> list[str]:
     ]
 
 
-def _step_reason(request: Request) -> str:
+def _step_reason(request: Request, step: Step) -> str:
+    if np.isnan(step.speed):
+        return (
+            f"step: ωh = {request.highest * step.size:.3g} at the end of the band, so periods are "
+            f"too long by {request.allowed:g} of themselves there"
+        )
     return (
-        f"step: ωh = {request.highest * request.step:.3g} at the end of the band, so periods are "
-        f"too long by {request.allowed:g} of themselves there"
+        f"step: changes the response at {step.speed:.4g} rad/s, to a load at {step.frequency:.4g} "
+        f"rad/s in the rotor frame, by {request.allowed:g}; a resonance is near, or a motion that "
+        "is slow in space"
     )
 
 

@@ -23,12 +23,15 @@ class Request:
     loads : float
         Highest frequency in the inertial frame [rad/s].
     accuracy : float
+    banded : bool
+        Whether any frequency up to `loads` may occur, not those of weight and unbalance alone.
     """
 
     low: float
     high: float
     loads: float
     accuracy: float
+    banded: bool
 
     @classmethod
     def of(cls, speeds: ArrayLike, load_frequencies: ArrayLike | None, accuracy: float) -> Request:
@@ -51,7 +54,8 @@ class Request:
                 "frequency of the loads [rad/s]"
             )
         share(accuracy, "accuracy")
-        return cls(float(values[0]), high, loads, float(accuracy))
+        banded = load_frequencies is not None
+        return cls(float(values[0]), high, loads, float(accuracy), banded)
 
     @property
     def highest(self) -> float:
@@ -70,7 +74,7 @@ class Request:
 
     @property
     def step(self) -> float:
-        """Step size [s] with the allowed period error at :attr:`highest`."""
+        """Step size [s] with the allowed period error at :attr:`highest`; an upper bound."""
         return float(np.sqrt(self.allowed / PERIOD_ERROR) / self.highest)
 
 

@@ -1,0 +1,133 @@
+"""Which step size a scene requires: how much the response changes by what a step does to it.
+
+Generalised alpha replaces the rate s of a motion ``exp(st)`` by ``ŝ = s(1 − κ(sh)²)``, κ = 0.0844.
+The response with ŝ in place of s is that of the simulation. The rates are those of the coordinates
+that are integrated: a motion that is slow in space is fast in a rotor frame, and ``κ(sh)²`` of its
+fast rate is a large share of its slow one. A frame that carries the translations avoids that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor.advice.candidate import Candidate
+from exudyn_rotor.advice.modes import GROWTH, band, critical, ends
+from exudyn_rotor.advice.request import PERIOD_ERROR, Request
+
+_TRIAL = 1e-2  # ωh of the trial step at the end of the band; the error grows with its square
+_STEADY = 1e-3  # growth per radian at one speed, where motion is steady: undamped resonances
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step size and where it comes from.
+
+    Attributes
+    ----------
+    size : float
+        [s]
+    speed, frequency : float
+        Spin speed, and frequency in the rotor frame, that ask for the smallest step [rad/s]; NaN
+        where the end of the band does.
+    """
+
+    size: float
+    speed: float = np.nan
+    frequency: float = np.nan
+
+
+def choose_step(given: Candidate, request: Request, follows: bool) -> Step:
+    """Return the step with half the accuracy, for the response and for periods in the band.
+
+    Parameters
+    ----------
+    given : Candidate
+    request : Request
+    follows : bool
+        Whether the frame carries the translations across the axis.
+    """
+    chosen = Step(request.step)
+    if not given.supported:
+        return chosen
+    trial = _TRIAL / request.highest
+    # acceleration and unbalance stand behind loads at interfaces
+    first = 0 if request.banded else len(given.motion())
+    for speed, frequency, growth in _points(given, request):
+        change = _change(given, speed, 1j * frequency + growth, trial, follows, first)
+        size = trial * np.sqrt(request.allowed / max(change, 1e-300))
+        if size < chosen.size:
+            chosen = Step(float(size), float(speed), float(frequency))
+    return chosen
+
+
+def _points(given: Candidate, request: Request) -> Iterator[tuple[float, float, float]]:
+    """Yield speeds, frequencies in the rotor frame, and growth rates [rad/s] to look at."""
+    one = request.low == request.high
+    for speed in request.speeds:
+        steady = [0.0, speed] if speed else []  # unbalance, and weight
+        for nu in band(given, request, speed) if request.banded else steady:
+            damped = GROWTH if request.banded or not one else _STEADY
+            yield speed, nu, damped * max(nu, speed, 0.1 * request.highest)
+    for speed in critical(given, request):
+        yield speed, 0.0, GROWTH * speed
+
+
+def _change(
+    given: Candidate, speed: float, s: complex, step: float, follows: bool, first: int
+) -> float:
+    """Return the largest relative change of the response to any load from `first` by a step."""
+    M, D, K, count = given.hill(speed)
+    size = len(M) // count
+    rows, loads = ends(given, size, count)
+    loads = loads[:, first:]
+    exact = s**2 * M + s * D + K
+    seen = exact + _of_step(given, speed, s, step)
+    if follows:
+        seen = seen + _of_frame(given, speed, s, step)
+    whole = rows @ np.linalg.solve(exact, loads)
+    changed = rows @ np.linalg.solve(seen, loads) - whole
+    sizes = np.linalg.norm(whole, axis=0)
+    moved = sizes > 1e-9 * sizes.max(initial=0.0)
+    return float((np.linalg.norm(changed, axis=0)[moved] / sizes[moved]).max(initial=0.0))
+
+
+def _of_step(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
+    """Return what a step adds to the dynamic stiffness, harmonic by harmonic."""
+    M, D, _, count = given.hill(speed)
+    size = len(M) // count
+    rate = np.repeat(1j * speed * given.orders(speed), size)
+    own = D - 2.0 * M * rate  # D of the equations, which Hill's method has shifted
+    first, second = _rates(s + rate, step)
+    return M * second + own * first
+
+
+def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
+    """Return the difference where translations across the axis are integrated in space.
+
+    Their forward part ``x + iy`` has the rate ``s + iΩ`` in space, the backward one ``s − iΩ``.
+    """
+    M, _, _, count = given.hill(speed)
+    size = len(M) // count
+    orders = given.orders(speed)
+    moved = given.translations[:2] / given.invariants.mass  # of the centre of mass, (n1, n2)
+    change = np.zeros_like(M)
+    for index, order in enumerate(orders):
+        rate = s + 1j * order * speed
+        forward, backward = (_rates(rate + 1j * sign * speed, step)[1] for sign in (1, -1))
+        mean, half = 0.5 * (forward + backward), 0.5j * (forward - backward)
+        in_space = given.invariants.mass * np.array([[mean, half], [-half, mean]])
+        first, second = _rates(rate, step)
+        turning = 2.0 * speed * first * np.array([[0.0, -1.0], [1.0, 0.0]])
+        in_rotor = given.invariants.mass * (second * np.eye(2) + turning)
+        place = slice(index * size, (index + 1) * size)
+        change[place, place] = moved.T @ (in_space - in_rotor) @ moved
+    return change
+
+
+def _rates(s: np.ndarray | complex, step: float):
+    """Return ``ŝ − s`` and ``ŝ² − s²``."""
+    seen = s * (1.0 - PERIOD_ERROR * (s * step) ** 2)
+    return seen - s, seen**2 - s**2
