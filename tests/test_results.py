@@ -84,6 +84,17 @@ def test_responses_come_back(name, request, tmp_path):
     assert not back.motion.flags.writeable
 
 
+def test_repr_names_fields_and_shapes_in_one_line(ellipses):
+    text = repr(everything(names=("long name",) * 50))
+    assert text.startswith("Everything(reals=array(2,), counts=array(3,), name='Läufer', names=(")
+    assert text.endswith("…, number=0.1, flag=True, absent=None)")
+    assert len(text) < 200
+    text = repr(ellipses)
+    assert text.startswith("UnbalanceResponse(places=('mid', 'node 2'), orders=array(1,), motion=")
+    assert "motion=array(101, 2, 1, 6)" in text
+    assert len(text) < 200
+
+
 def test_wrong_class_is_refused(ellipses, tmp_path):
     ellipses.save(tmp_path / "response.npz")
     with pytest.raises(ValueError, match="holds a UnbalanceResponse, not a HarmonicResponse"):

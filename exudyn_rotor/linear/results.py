@@ -16,6 +16,7 @@ import numpy as np
 from exudyn_rotor.archive import read_arrays, write_arrays
 from exudyn_rotor.axis import read_only
 
+_LONGEST = 60  # characters of one value in a repr
 _FORMAT = "exudyn_rotor result 1"
 _REGISTERED: dict[str, type] = {}
 
@@ -45,11 +46,22 @@ def storable(cls: Class) -> Class:
 class Result:
     """Base of result classes: read-only arrays, and saving and loading as methods."""
 
+    def __init_subclass__(cls, **options) -> None:
+        """Keep the dataclass decorator from making a repr that prints whole arrays."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = Result.__repr__
+
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 object.__setattr__(self, field.name, read_only(value, value.dtype))
+
+    def __repr__(self) -> str:
+        """Return the fields in one line: arrays by their shape, long words and tuples cut."""
+        parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in fields(self)]
+        return f"{type(self).__name__}({', '.join(parts)})"
 
     def save(self, path: str | PathLike) -> None:
         """Write the result to an ``.npz`` file; see :func:`save_result`."""
@@ -68,6 +80,14 @@ class Result:
         if not isinstance(result, cls):
             raise ValueError(f"{path}: holds a {type(result).__name__}, not a {cls.__name__}")
         return result
+
+
+def _short(value: object) -> str:
+    """Return an array's shape, or what `repr` says of a small value."""
+    if isinstance(value, np.ndarray):
+        return f"array{value.shape}"
+    text = repr(value)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
 def save_result(result: object, path: str | PathLike) -> None:

@@ -16,15 +16,16 @@ _HELD = 1e-10
 _ALONE = 1.0 - 1e-6
 
 
-def free_motions(target: object, supports: Sequence[Support]) -> tuple[str, ...]:
+def free_motions(target: object, supports: Sequence[Support], apart: bool) -> tuple[str, ...]:
     """Name the rigid motions of a rotor that no spring holds at rest; empty for a scene.
 
-    A motion that is free only together with others is named 'combination of …'.
+    A motion that is free only together with others is named 'combination of …'. Where the spin is
+    `apart`, it displaces no support, see :class:`Spin`.
     """
     if isinstance(target, ReducedRotor):
-        names, K = _of_reduced(target, supports)
+        names, K = _of_reduced(target, supports, apart)
     elif isinstance(target, SolidRotor):
-        names, K = _of_solid(target, supports)
+        names, K = _of_solid(target, supports, apart)
     else:
         return ()
     values, vectors = np.linalg.eigh(0.5 * (K + K.T))
@@ -37,16 +38,18 @@ def free_motions(target: object, supports: Sequence[Support]) -> tuple[str, ...]
 
 
 def _of_reduced(
-    rotor: ReducedRotor, supports: Sequence[Support]
+    rotor: ReducedRotor, supports: Sequence[Support], apart: bool
 ) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the free rigid columns and the supports' stiffness on them; they have unit mass."""
     count = len(rotor.rigid)
     turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
     motions = [turn @ rotor.interfaces[s.interface].motion[:, :count] for s in supports]
-    return rotor.rigid, _stiffness(supports, motions, count)
+    return rotor.rigid, _stiffness(supports, motions, rotor.rigid, apart)
 
 
-def _of_solid(rotor: SolidRotor, supports: Sequence[Support]) -> tuple[tuple[str, ...], np.ndarray]:
+def _of_solid(
+    rotor: SolidRotor, supports: Sequence[Support], apart: bool
+) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the rigid motions and the stiffness against them, per unit mass."""
     columns = rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
     mass = np.einsum("ck,ck->k", columns, rotor.mass @ columns)
@@ -58,16 +61,20 @@ def _of_solid(rotor: SolidRotor, supports: Sequence[Support]) -> tuple[tuple[str
         turn @ (rotor.interfaces[s.interface].mean_motion(rotor.node_count) @ columns)
         for s in supports
     ]
-    K = _stiffness(supports, motions, columns.shape[1])
+    names = tuple(name for name, moves in zip(RIGID, moving, strict=True) if moves)
+    K = _stiffness(supports, motions, names, apart)
     if rotor.grounded:
         K = K + columns.T @ (rotor.stiffness @ columns)
-    return tuple(name for name, moves in zip(RIGID, moving, strict=True) if moves), K
+    return names, K
 
 
 def _stiffness(
-    supports: Sequence[Support], motions: Sequence[np.ndarray], count: int
+    supports: Sequence[Support], motions: Sequence[np.ndarray], names: tuple[str, ...], apart: bool
 ) -> np.ndarray:
+    if apart:
+        for U in motions:
+            U[:3, names.index("spin")] = 0.0
     parts = (
         U.T @ support.matrices(0.0)[0] @ U for support, U in zip(supports, motions, strict=True)
     )
-    return sum(parts, np.zeros((count, count)))
+    return sum(parts, np.zeros((len(names), len(names))))

@@ -17,9 +17,9 @@ import scipy.sparse as sp
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.linear.equations.spin import FullSpin, seeds
+from exudyn_rotor.linear.equations.spin import Spin, seeds, spin_of
 from exudyn_rotor.linear.equations.supports import Support, axes_of
-from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.linear.equations.system import LinearRotor, warn_of_eccentricity
 from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
 from exudyn_rotor.modes.eigen import lanczos_modes
@@ -77,7 +77,7 @@ class FullRotor:
     tilt : tuple of ndarray, (6, 3n) and (6, 6)
         V and W of the centrifugal stiffening ``K2 + VᵀWV`` per Ω².
     rotor : SolidRotor
-    spin : FullSpin, optional
+    spin : Spin, optional
         The spin as a coordinate that unbalance does not couple; see :meth:`with_spin`.
     """
 
@@ -88,7 +88,7 @@ class FullRotor:
     invariants: Invariants
     tilt: tuple[np.ndarray, np.ndarray]
     rotor: SolidRotor
-    spin: FullSpin | None = None
+    spin: Spin | None = None
 
     @classmethod
     def of(
@@ -127,9 +127,13 @@ class FullRotor:
         return self.invariants.h
 
     def with_spin(self) -> FullRotor:
-        """Return the same with the spin as a coordinate, as responses and stability need it."""
-        center = self.invariants.center
-        return replace(self, spin=FullSpin.of(self.rotor, self.motions, center, self.axis))
+        """Return the same with the spin as a coordinate, as all analyses need it."""
+        own = spin_of(self.rotor)
+        if self.spin is not None or own is None:
+            return self
+        spin = Spin.of(*own, self.supports, self.motions, self.invariants, self.axis)
+        warn_of_eccentricity(self.invariants, spin)
+        return replace(self, spin=spin)
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, 3n): displacement and rotation along (n1, n2, e)."""
@@ -168,7 +172,7 @@ class FullRotor:
             rate = values + 1j * n * speed
             left[n] = (
                 inv.M @ (X * rate**2)
-                + (inv.D @ X + 2.0 * speed * (inv.G @ X)) * rate
+                + (inv.D @ X + 2.0 * speed * self._coriolis(X)) * rate
                 + inv.K @ strained[n]
                 + speed**2 * self._centrifugal(X)
             )
@@ -199,6 +203,11 @@ class FullRotor:
             rigid = V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
             return rigid if self.invariants.K2 is None else rigid + self.invariants.K2 @ Y
 
+        return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
+
+    def _coriolis(self, X: np.ndarray) -> np.ndarray:
+        """Return ``G X``, shape (3n, k)."""
+        apply = self.invariants.G.__matmul__
         return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
 
     def _moved(self, index: int, X: np.ndarray) -> np.ndarray:
@@ -308,13 +317,14 @@ class Subspace:
             )
             for s, U in zip(full.supports, full.motions, strict=True)
         }
-        spin = () if full.spin is None else ("spin",)
         reduced = ReducedRotor(
-            full.axis, rotor.center_of_mass, invariants, spin, interfaces, blocks["M"]
+            full.axis, rotor.center_of_mass, invariants, (), interfaces, blocks["M"]
         )
+        unit = np.eye(1, self.V.shape[1])[0]
+        spin = full.spin and replace(full.spin, motion=unit, momentum=unit)
         tilt = V @ self.V
         K2 = tilt.T @ W @ tilt + blocks.get("K2", 0.0)
-        return LinearRotor(reduced, full.supports, invariants, K2)
+        return LinearRotor(reduced, full.supports, invariants, K2, spin)
 
     def content(self) -> WhirlContent:
         """Return the circumferential content of the basis V."""

@@ -10,6 +10,7 @@ import exudyn
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.linear.equations.dense import as_reduced
 from exudyn_rotor.linear.equations.full import FullRotor
+from exudyn_rotor.linear.equations.spin import spin_of
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.reduced import ReducedRotor
@@ -28,20 +29,22 @@ def linear_source(
     body: RotorBody | None = None,
     supports: Sequence[Support] = (),
     stiffening: str = "tilt",
+    dense: bool = True,
 ) -> LinearRotor | FullRotor | LinearScene:
     """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
 
     Parameters
     ----------
     target : ReducedRotor, SolidRotor, LinearRotor or exudyn.MainSystem
-        A small SolidRotor (up to 600 degrees of freedom) gives dense equations, too. A LinearRotor
-        is taken as it is.
+        A LinearRotor is taken as it is.
     body : RotorBody, optional
         The rotor of a scene; only with a MainSystem.
     supports : sequence of Support, optional
         Only with a rotor; a scene has its own connectors.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; a scene has that of its body. 'full' needs a rotor with prestress.
+    dense : bool, optional
+        Whether a small SolidRotor (up to 600 degrees of freedom) gives dense equations.
 
     Raises
     ------
@@ -50,7 +53,7 @@ def linear_source(
     ValueError
         For an unknown interface or level of stiffening, or supports given with a scene.
     """
-    supports = _checked(supports)
+    supports = checked_supports(supports)
     if isinstance(target, LinearRotor):
         if supports or body is not None:
             raise ValueError("a LinearRotor has its supports already; leave supports and body out")
@@ -62,16 +65,17 @@ def linear_source(
     if isinstance(target, ReducedRotor):
         return LinearRotor.of(target, supports, stiffening)
     if isinstance(target, SolidRotor):
-        if 3 * target.node_count <= DENSE_SIZE:
-            return LinearRotor.of(as_reduced(target), supports, stiffening)
-        return FullRotor.of(target, supports, stiffening)
+        if dense and 3 * target.node_count <= DENSE_SIZE:
+            return LinearRotor.of(as_reduced(target), supports, stiffening, spin_of(target))
+        return FullRotor.of(target, supports, stiffening).with_spin()
     raise TypeError(
         "a linear analysis needs a ReducedRotor, a SolidRotor, or an exudyn.MainSystem with "
         f"body=…, got {type(target).__name__}"
     )
 
 
-def _checked(supports: Sequence[Support]) -> tuple[Support, ...]:
+def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ...]:
+    """Return supports as a tuple; TypeError for anything else."""
     if isinstance(supports, Support):
         return (supports,)
     found = tuple(supports)

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.linear.equations.spin import Spin
 from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.stiffening import stiffening as second_order
@@ -79,18 +80,25 @@ class LinearRotor:
         In the reduced basis, about the foot of the centre of mass on the axis.
     K2 : ndarray, shape (k, k)
         Centrifugal stiffening per Ω².
+    spin : Spin, optional
+        The spin as a coordinate that unbalance does not couple.
     """
 
     rotor: ReducedRotor
     supports: tuple[Support, ...]
     invariants: Invariants
     K2: np.ndarray
+    spin: Spin | None = None
 
     @classmethod
     def of(
-        cls, rotor: ReducedRotor, supports: Sequence[Support] = (), stiffening: str = "tilt"
+        cls,
+        rotor: ReducedRotor,
+        supports: Sequence[Support] = (),
+        stiffening: str = "tilt",
+        spin: tuple[np.ndarray, np.ndarray] | None = None,
     ) -> LinearRotor:
-        """Put a rotor on supports.
+        """Put a rotor on supports; `spin` is its s and Ms where it is no column of the basis.
 
         Raises
         ------
@@ -105,9 +113,16 @@ class LinearRotor:
                 )
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+        K2 = second_order(invariants, stiffening).K2
+        linear = cls(rotor, tuple(supports), invariants, K2)
         if "spin" in rotor.rigid:
-            _warn_of_eccentricity(invariants)
-        return cls(rotor, tuple(supports), invariants, second_order(invariants, stiffening).K2)
+            spin = (np.eye(rotor.size)[rotor.rigid.index("spin")],) * 2
+        if spin is None:
+            return linear
+        motions = [linear.interface_motion(support.interface) for support in supports]
+        found = Spin.of(*spin, supports, motions, invariants, rotor.axis)
+        warn_of_eccentricity(invariants, found)
+        return replace(linear, spin=found)
 
     @property
     def size(self) -> int:
@@ -125,56 +140,67 @@ class LinearRotor:
         return turn @ self.rotor.interfaces[name].motion
 
     @cached_property
+    def _coriolis(self) -> np.ndarray:
+        return self._without_spin(self.invariants.G)
+
+    @cached_property
     def _centrifugal(self) -> np.ndarray:
-        """``K2 − C`` without what dynamic unbalance couples with the rigid spin."""
-        matrix = self.K2 - self.invariants.C
-        if "spin" in self.rotor.rigid:
-            column = self.rotor.rigid.index("spin")
-            own = matrix[column, column]
-            matrix[column, :] = matrix[:, column] = 0.0
-            matrix[column, column] = own
-        return matrix
+        return self._without_spin(self.K2 - self.invariants.C)
 
-    def _supported_motion(self, name: str) -> np.ndarray:
-        """Return the interface's motion with the spin about the axis, not the centre of mass.
+    def _without_spin(self, matrix: np.ndarray) -> np.ndarray:
+        if self.spin is None:
+            return matrix
+        return self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
 
-        Unbalance is a load here. What it couples between spin and lateral motion is cancelled by
-        the deflection of the steady state, which these equations do not have; kept alone, it makes
-        false growth of the order of the eccentricity.
-        """
-        motion = self.interface_motion(name)
-        if "spin" in self.rotor.rigid:
-            column = self.rotor.rigid.index("spin")
-            offset = axes_of(self.rotor.axis).T @ self.invariants.center
-            motion[:3, column] += np.cross(motion[3:, column], offset)
-        return motion
+    def _supported_motion(self, index: int) -> np.ndarray:
+        """Return the motion (6, k) at a support, which the spin does not displace."""
+        motion = self.interface_motion(self.supports[index].interface)
+        if self.spin is None:
+            return motion
+        return motion + np.outer(self.spin.shifts[index], self.spin.momentum)
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
         inv = self.invariants
         M = {0: inv.M}
-        D = {0: inv.D + 2.0 * speed * inv.G}
+        D = {0: inv.D + 2.0 * speed * self._coriolis}
         K = {0: inv.K + speed**2 * self._centrifugal}
-        for support in self.supports:
-            U = self._supported_motion(support.interface)
+        for index, support in enumerate(self.supports):
+            U = self._supported_motion(index)
             damping, stiffness = support.terms(speed)
             _add(D, damping, U)
             _add(K, stiffness, U)
         return PeriodicSystem(float(speed), M, D, K)
 
 
-def _warn_of_eccentricity(invariants: Invariants) -> None:
+def warn_of_eccentricity(invariants: Invariants, spin: Spin | None) -> None:
     """Tell that spin and lateral motion are coupled where they are taken apart."""
     distance = float(np.linalg.norm(invariants.center))
-    error = 0.5 * invariants.mass * distance**2 / invariants.Theta
-    if error > _ECCENTRIC:
-        warnings.warn(
-            f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this "
-            f"as a load and leave out that it couples spin with lateral motion, which changes "
-            f"frequencies by about {error:.1%}; balance the rotor, or analyse its SolidRotor",
-            UserWarning,
-            stacklevel=4,
-        )
+    error, band = without_drive(invariants)
+    if spin is None or error <= _ECCENTRIC:
+        return
+    warnings.warn(
+        f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this as "
+        "a load and keep spin and lateral motion apart, as for a rotor driven at constant speed. "
+        f"Without a drive, frequencies differ by about {error:.1%} at rest, near a critical speed "
+        "by m r²/Θ with the whirl radius r of the centre of mass, and the rotor is unstable up to "
+        f"about {band:.0%} above it; balance the rotor",
+        UserWarning,
+        stacklevel=4,
+    )
+
+
+def without_drive(invariants: Invariants) -> tuple[float, float]:
+    """Return how far an eccentric rotor that nothing drives is from one at constant speed.
+
+    The change of frequencies at rest, and the width of the unstable speeds above a critical speed,
+    both relative: ``ε/2`` and ``(ε/2)^⅓`` with ``ε = m e²/Θ``, those of a Jeffcott rotor for small
+    ε. Towards the critical speed the first grows as ``m r²/Θ``, r the whirl radius of the centre of
+    mass.
+    """
+    inertia = invariants.mass * float(invariants.center @ invariants.center)
+    error = 0.5 * inertia / invariants.Theta if inertia > 0.0 else 0.0
+    return error, error ** (1.0 / 3.0)
 
 
 def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:

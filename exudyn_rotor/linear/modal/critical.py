@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import plots
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.source import linear_source
+from exudyn_rotor.linear.equations.source import checked_supports, linear_source
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.resonance import Resonance, full_resonances, resonances
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
@@ -112,8 +112,7 @@ def critical_speeds(
         raise ValueError(f"order: needs a finite number ≥ 0, got {order!r}")
     if max_speed is not None and not (np.isfinite(max_speed) and max_speed > 0.0):
         raise ValueError(f"max_speed: needs a finite number > 0 [rad/s], got {max_speed!r}")
-    _ = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    held = tuple(map(_undamped, [supports] if isinstance(supports, Support) else supports))
+    held = tuple(map(_undamped, checked_supports(supports)))
     source = linear_source(target, body=body, supports=held, stiffening=stiffening)
     waves = _waves(nodal_diameters, order)
     content = WhirlContent.of(source)

@@ -95,17 +95,20 @@ def quadratic_modes(
 def _refined(
     values: np.ndarray, vectors: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
 ) -> np.ndarray:
-    """Return unit vectors after one inverse iteration.
+    """Return unit vectors after two inverse iterations.
 
     Next to stiff static modes, a free motion (a Jordan block at zero) mixes into the vectors of all
-    slow modes by rounding; the eigenvalues do not suffer.
+    slow modes by rounding; the eigenvalues do not suffer. It can leave so little of a mode that one
+    iteration is not enough.
     """
     refined = np.array(vectors, dtype=complex)
     for column, value in enumerate(values):
         if value != 0.0:
             shifted = value * (1.0 + _OFF_ROOT)
-            matrix = shifted**2 * M + shifted * D + K
-            refined[:, column] = np.linalg.solve(matrix, M @ refined[:, column])
+            factors = la.lu_factor(shifted**2 * M + shifted * D + K)
+            for _ in range(2):
+                vector = la.lu_solve(factors, M @ refined[:, column])
+                refined[:, column] = vector / np.maximum(np.linalg.norm(vector), 1e-300)
     return refined / np.maximum(np.linalg.norm(refined, axis=0), 1e-300)
 
 

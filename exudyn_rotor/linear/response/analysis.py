@@ -257,24 +257,19 @@ def _collected(
 def _source(
     target: Target, body: RotorBody | None, supports: Sequence[Support], stiffening: str
 ) -> Source:
-    source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    if not isinstance(target, SolidRotor):
-        return source
-    if not isinstance(source, FullRotor):  # dense equations do not know the spin
-        source = FullRotor.of(target, source.supports, stiffening)
-    return source.with_spin()
+    # a response is looked at in places of the full model
+    return linear_source(target, body=body, supports=supports, stiffening=stiffening, dense=False)
 
 
 def _driven(source: Source) -> tuple[int, ...]:
     """Return the coordinate of the rigid spin where no support resists it: the drive does.
 
-    At an eccentric rotor the damping of the bearings brakes the spin by a torque of second order.
-    If the spin were free it would turn until that torque were gone, however small.
+    If the spin were free, a constant torque however small would turn it on and on.
     """
-    if not isinstance(source, LinearRotor) or "spin" not in source.rotor.rigid:
+    if not isinstance(source, LinearRotor) or source.spin is None:
         return ()
     held = any(support.matrices(0.0)[0][5, 5] for support in source.supports)
-    return () if held else (source.rotor.rigid.index("spin"),)
+    return () if held else (int(np.argmax(source.spin.momentum)),)
 
 
 def _length(source: Source) -> float:

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability import floquet
-from exudyn_rotor.linear.stability.full import FullExponents, without
+from exudyn_rotor.linear.stability.full import FullExponents, projected
 from exudyn_rotor.linear.sweep import ascending_from_zero, sweep
 
 METHODS = ("auto", "floquet", "hill", "eigen")
@@ -120,7 +120,8 @@ def stability(
     speeds : array_like, shape (s,)
         Spin speeds [rad/s], not negative, ascending.
     supports : sequence of Support
-        For a rotor. Without a support that holds it, the rotor's spin is held.
+        For a rotor. A spin that no support holds follows θ = Ωt and gives no exponent, see the
+        notes of :func:`campbell`.
     body : RotorBody, optional
         The rotor in a ``MainSystem``.
     stiffening : {'tilt', 'none', 'full'}
@@ -311,20 +312,20 @@ def _excess_function(target: object, options: dict, highest: float) -> Callable[
 
 @dataclass(frozen=True, eq=False)
 class _HeldSpin:
-    """A rotor whose spin follows θ = Ωt: its coordinate `spin` is left out.
+    """A rotor whose spin follows θ = Ωt: its coordinate is left out.
 
-    A spin that nothing holds is neutral, which round-off and unbalance would feign to be unstable.
+    A spin that nothing holds is neutral, which round-off would feign to be unstable.
     """
 
     rotor: LinearRotor
-    spin: int
+    rest: np.ndarray
 
     @property
     def size(self) -> int:
         return self.rotor.size - 1
 
     def at(self, speed: float) -> PeriodicSystem:
-        return without(self.rotor.at(speed), self.spin)
+        return projected(self.rotor.at(speed), self.rest)
 
 
 def source_of(target: object, supports: Sequence[Support], body: object, stiffening: str) -> object:
@@ -333,11 +334,11 @@ def source_of(target: object, supports: Sequence[Support], body: object, stiffen
         source = target
     else:
         source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    if not isinstance(source, LinearRotor) or "spin" not in source.rotor.rigid:
+    if not isinstance(source, LinearRotor) or source.spin is None:
         return source
     if any(support.matrices(0.0)[0][5].any() for support in source.supports):
         return source
-    return _HeldSpin(source, source.rotor.rigid.index("spin"))
+    return _HeldSpin(source, source.spin.rest())
 
 
 def check_method(method: str, tolerance: float) -> None:

@@ -18,15 +18,13 @@ def held(full: FullRotor) -> bool:
     return not any(support.matrices(0.0)[0][5].any() for support in full.supports)
 
 
-def without(system: PeriodicSystem, column: int) -> PeriodicSystem:
-    """Return the equations without one coordinate."""
+def projected(system: PeriodicSystem, basis: np.ndarray) -> PeriodicSystem:
+    """Return the equations of motions in a basis (k, r)."""
 
-    def cut(terms: Terms) -> Terms:
-        return {
-            n: np.delete(np.delete(X, column, axis=0), column, axis=1) for n, X in terms.items()
-        }
+    def within(terms: Terms) -> Terms:
+        return {n: basis.T @ X @ basis for n, X in terms.items()}
 
-    return PeriodicSystem(system.speed, cut(system.M), cut(system.D), cut(system.K))
+    return PeriodicSystem(system.speed, within(system.M), within(system.D), within(system.K))
 
 
 class HeldSubspace(Subspace):
@@ -47,7 +45,9 @@ class HeldSubspace(Subspace):
     def small(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
         """Return the projected equations at a speed, and the basis (3n, k) they are in."""
         system = self.projected.at(speed)
-        return (without(system, 0), self.V[:, 1:]) if held(self.full) else (system, self.V)
+        if not held(self.full):
+            return system, self.V
+        return projected(system, np.eye(system.size)[:, 1:]), self.V[:, 1:]
 
     def trial(self, speed: float, count: int) -> FloquetModes:
         """Return the modes of smallest |λ| in the present subspace.

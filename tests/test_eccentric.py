@@ -1,0 +1,298 @@
+"""Rotors with the centre of mass off the axis and a free spin: all analyses, all routes.
+
+Their lateral motion is that of a rotor driven at constant speed, and the spin is on its own; what
+that leaves out is compared with the closed form of a Jeffcott rotor that nothing drives.
+"""
+
+import numpy as np
+import pytest
+from models import STEEL, block_beam
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    campbell,
+    critical_speeds,
+    harmonic_response,
+    stability,
+    unbalance_response,
+)
+from exudyn_rotor.linear.equations import source
+from exudyn_rotor.linear.equations.system import LinearRotor, without_drive
+from exudyn_rotor.linear.response.loads import HarmonicForce
+
+pytestmark = pytest.mark.filterwarnings("ignore:the centre of mass is")
+
+MASS, RADIUS, ECCENTRICITY = 2.0, 0.1, 0.03
+INERTIA = MASS * RADIUS**2  # about the centre of mass, along the axis
+STIFFNESS, DAMPING = 2e5, 30.0
+CRITICAL = np.sqrt(STIFFNESS / MASS)
+SPEEDS = CRITICAL * np.array([0.0, 0.5, 0.97, 1.02, 3.0])
+ROUTES = ("reduced", "dense", "full")
+
+
+def ring(eccentricity: float = ECCENTRICITY) -> SolidRotor:
+    """Return two rings whose centre is off the axis z."""
+    rotor = ring_rotor(RADIUS, 0.1, MASS)
+    moved = rotor.nodes + np.array([eccentricity, 0.0, 0.0])
+    given = SolidRotor.from_matrices(rotor.mass, rotor.stiffness, moved, "z")
+    return given.with_interface("all", range(10))
+
+
+def on_route(rotor: SolidRotor, route: str, monkeypatch: pytest.MonkeyPatch):
+    """Return what takes the route: a reduced rotor, or a solid one as dense or sparse equations."""
+    monkeypatch.setattr(source, "DENSE_SIZE", 0 if route == "full" else 600)
+    return rotor.reduce(3 * rotor.node_count - 6) if route == "reduced" else rotor
+
+
+def few(route: str) -> dict[str, int]:
+    """Return how many modes a large rotor is asked for; a quarter of 30 coordinates at most."""
+    return {"modes": 5} if route == "full" else {}
+
+
+@pytest.fixture(params=ROUTES)
+def route(request):
+    return request.param
+
+
+@pytest.fixture(params=[True, False], ids=["centred", "off the axis"])
+def rotor(request):
+    """Return the rings, held at a point of the axis, or at their centre which is off it."""
+    return ring().center_interfaces() if request.param else ring()
+
+
+def carrier(axial: float = 0.0) -> list[Support]:
+    """Return an isotropic support; along the axis as well where all but the spin is to be held."""
+    K, D = np.diag([STIFFNESS, STIFFNESS, axial]), np.diag([DAMPING, DAMPING, 1e-4 * axial])
+    return [Support("all", K, D, tilt_stiffness=3e3, tilt_damping=1.0)]
+
+
+def driven(speed: float) -> np.ndarray:
+    """Return both eigenvalues with Im λ ≥ 0 of the lateral motion at constant speed, rotor frame.
+
+    ``m s² + c s + k = 0`` in axes that stand still, seen from the rotor at ``s ± iΩ``.
+    """
+    values = np.roots([MASS, DAMPING, STIFFNESS])
+    values = np.concatenate([values + 1j * speed, values - 1j * speed])
+    return values[values.imag >= 0.0]
+
+
+def distance(found: np.ndarray, expected: np.ndarray) -> float:
+    """Return how far the worst of the expected values is from the nearest of those found."""
+    return float(np.abs(found[:, None] - expected).min(axis=0).max())
+
+
+# ------------------------------------------------------------------ against closed forms
+
+
+@pytest.mark.parametrize("level", ["none", "tilt"])
+def test_frequencies_are_those_at_constant_speed(rotor, route, level, monkeypatch):
+    target = on_route(rotor, route, monkeypatch)
+    found = campbell(target, SPEEDS, supports=carrier(), modes=8, stiffening=level)
+    assert found.free_motions == ("translation along axis", "spin")
+    values = found.growth + 1j * found.frequencies_rotating
+    assert np.all(np.sum(values == 0.0, axis=1) == 2)
+    for speed, one in zip(SPEEDS, values, strict=True):
+        assert distance(one, driven(speed)) < 1e-6 * CRITICAL
+
+
+@pytest.mark.parametrize("level", ["none", "tilt"])
+def test_exponents_are_those_at_constant_speed(rotor, route, level, monkeypatch):
+    """Nothing is neutral: the spin is left out on all routes."""
+    speeds = SPEEDS[1:]
+    target = on_route(rotor, route, monkeypatch)
+    given = {"supports": carrier(1e5), "stiffening": level}
+    found = stability(target, speeds, **given, **few(route))
+    assert np.abs(found.exponents).min() > 1.0
+    if route != "full":
+        assert found.exponents.shape[1] == 2 * (3 * rotor.node_count - 1)
+    for speed, one in zip(speeds, found.exponents, strict=True):
+        one = np.where(one.imag < 0.0, one.conj(), one)
+        assert distance(one, driven(speed)) < 1e-5 * CRITICAL
+
+
+def test_critical_speed_is_that_at_constant_speed(rotor, route, monkeypatch):
+    target = on_route(rotor, route, monkeypatch)
+    found = critical_speeds(target, supports=carrier(), max_speed=2.0 * CRITICAL)
+    assert np.abs(found.speeds / CRITICAL - 1.0).min() < 1e-7
+
+
+def test_whirl_is_that_at_constant_speed(rotor, route, monkeypatch):
+    """``(k − mΩ² + icΩ) u = m e Ω²`` in the rotor frame."""
+    target, speeds = on_route(rotor, route, monkeypatch), SPEEDS[1:]
+    found = unbalance_response(target, speeds, supports=carrier(1e5), frame="rotor")
+    u = found.motion[:, 0, 0, :2].real @ [1.0, 1j]
+    stiffness = STIFFNESS - MASS * speeds**2 + 1j * DAMPING * speeds
+    np.testing.assert_allclose(u, MASS * ECCENTRICITY * speeds**2 / stiffness, rtol=1e-6)
+
+
+def test_balanced_spin_is_neutral_at_every_level(route, monkeypatch):
+    """At 'none' the centrifugal field must not drive it: growth Ω was found there."""
+    target = on_route(ring(0.0), route, monkeypatch)
+    for level in ("none", "tilt"):
+        found = campbell(target, SPEEDS, supports=carrier(), modes=8, stiffening=level)
+        values = found.growth + 1j * found.frequencies_rotating
+        assert np.all(np.sum(values == 0.0, axis=1) == 2)
+
+
+def test_torsion_support_alone_holds_the_spin(rotor, route, monkeypatch):
+    target = on_route(rotor, route, monkeypatch)
+    torsion = Support("all", tilt_stiffness=np.diag([0.0, 0.0, 80.0]))
+    supports = [*carrier(1e5), torsion]
+    for level in ("none", "tilt"):
+        found = campbell(target, SPEEDS, supports=supports, modes=8, stiffening=level)
+        error = np.abs(found.frequencies_rotating / np.sqrt(80.0 / INERTIA) - 1.0)
+        assert error.min(axis=1).max() < 1e-4
+        assert found.free_motions == ()
+    held = stability(target, [300.0], supports=supports, **few(route))
+    assert np.abs(np.abs(held.exponents.imag) / np.sqrt(80.0 / INERTIA) - 1.0).min() < 1e-4
+
+
+def test_springs_that_turn_hold_a_spin_off_the_axis(route, monkeypatch):
+    """A body hung up at a root off the axis, as a blade: nothing of its equations is left out.
+
+    With the lever l from the root to the centre of mass, ``ω² = k (1/m + l²/I)`` across it.
+    """
+    rotor, lever = ring(0.3), 0.2
+    hub = rotor.with_interface("root", range(10))
+    at_root = hub.interfaces["root"].centered_on(np.array([0.3 - lever, 0.0, 0.0]))
+    interfaces = {**hub.interfaces, "root": at_root}
+    fields = {name: getattr(hub, name) for name in hub.__dataclass_fields__}
+    target = on_route(SolidRotor(**fields | {"interfaces": interfaces}), route, monkeypatch)
+    supports = [Support("root", STIFFNESS, frame="rotor")]
+    found = campbell(target, [0.0], supports=supports, modes=8)
+    expected = np.sqrt(STIFFNESS * (1.0 / MASS + lever**2 / INERTIA))
+    assert np.abs(found.frequencies_rotating / expected - 1.0).min() < 1e-4
+
+
+# ------------------------------------------------------------------ meshes, flexible
+
+
+@pytest.fixture(scope="module")
+def beam():
+    """Return a beam with a prestress and masses that put it out of balance in both senses."""
+    rotor = SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
+    rotor = rotor.add_point_mass([0.02, 0.03, 0.3], 0.4).add_point_mass([0.02, -0.03, 0.0], 0.1)
+    return rotor.with_prestress(rotor.prestress())
+
+
+@pytest.mark.parametrize("centred", [True, False])
+@pytest.mark.parametrize("level", ["none", "tilt", "full"])
+def test_routes_agree_on_a_mesh(beam, level, centred, monkeypatch):
+    """All modes are kept in the reduction, so nothing but rounding may be between the routes."""
+    rotor = beam.center_interfaces() if centred else beam
+    supports = [Support("left", 1e6, 50.0, tilt_stiffness=1e4), Support("right", 1e5, 50.0)]
+    given = {"supports": supports, "modes": 8, "stiffening": level}
+    found = []
+    for route in ROUTES:
+        target = on_route(rotor, route, monkeypatch)
+        result = campbell(target, [0.0, 300.0, 900.0], **given)
+        assert "spin" in result.free_motions
+        values = result.growth + 1j * result.frequencies_rotating
+        assert np.all(np.sum(values == 0.0, axis=1) >= 2)
+        found.append(values)
+    for other in found[1:]:
+        np.testing.assert_allclose(other, found[0], rtol=1e-5, atol=1e-3)
+
+
+def test_analyses_of_a_mesh_agree(beam, route, monkeypatch):
+    """Exponents are those of the modes, and at a critical speed a mode has its frequency."""
+    supports = [Support("left", np.diag([1e6, 1e6, 1e6]), 50.0, tilt_stiffness=1e4),
+                Support("right", 1e5, 50.0)]  # fmt: skip
+    target = on_route(beam, route, monkeypatch)
+    given = {"supports": supports}
+    modes = campbell(target, [300.0], modes=6, **given)
+    expected = (modes.growth + 1j * modes.frequencies_rotating)[0][1:]
+    exponents = stability(target, [300.0], **given, **few(route)).exponents[0]
+    exponents = np.where(exponents.imag < 0.0, exponents.conj(), exponents)
+    assert distance(exponents, expected) < 1e-3
+    undamped = [Support(s.interface, s.stiffness, 0.0, s.tilt_stiffness) for s in supports]
+    found = critical_speeds(target, supports=undamped, max_speed=600.0)
+    assert len(found.speeds) >= 3
+    for speed, frequency in zip(found.speeds, found.frequencies_rotating, strict=True):
+        near = campbell(target, [speed], supports=undamped, modes=6).frequencies_rotating[0, 1:]
+        assert np.abs(near - frequency).min() < 1e-4 * speed
+
+
+def test_torque_turns_a_free_spin_alone(rotor, route, monkeypatch):
+    """``Θ φ̈ = T`` about the axis, whatever the unbalance; nothing moves sideways."""
+    target = on_route(rotor, route, monkeypatch)
+    force = HarmonicForce("all", (0.0, 0.0), (0.0, 0.0, 1.0))
+    found = harmonic_response(target, [40.0], force, speed=200.0, supports=carrier(1e5))
+    motion = found.motion[0, 0]
+    assert np.abs(motion[:, 5]).max() == pytest.approx(1.0 / (INERTIA * 40.0**2), rel=1e-4)
+
+
+# ------------------------------------------------------------------ what is left out
+
+
+def undriven(epsilon: float, speed: float) -> np.ndarray:
+    """Return the 6 eigenvalues of a Jeffcott rotor that nothing drives; m = k = Θ = 1.
+
+    Centre of mass (R + u, v) and angle φ in axes that turn at Ω, about the steady whirl
+    ``R = e/(1 − Ω²)``: energy ``½(u̇ − Ωv)² + ½(v̇ + Ω(R + u))² + ½(Ω + φ̇)²`` and the potential of
+    the spring ``½|(R + u, v) − e(cos φ, sin φ)|²``.
+    """
+    e, Z = np.sqrt(epsilon), np.zeros((3, 3))
+    whirl = e / (1.0 - speed**2)
+    K = np.array([[1.0 - speed**2, 0, 0], [0, 1.0 - speed**2, -e], [0, -e, e * whirl]])
+    D = 2.0 * speed * np.array([[0, -1.0, 0], [1.0, 0, 0], [0, 0, 0]])
+    return np.linalg.eigvals(np.block([[Z, np.eye(3)], [-K, -D]]))
+
+
+def change(epsilon: float, speed: float) -> float:
+    """Return how far the free spin moves the frequencies at constant speed, ``|1 ± Ω|``."""
+    values = np.sort(undriven(epsilon, speed).imag)[-2:]
+    return float(np.abs(values - np.abs([1.0 - speed, 1.0 + speed])).max())
+
+
+def estimates(epsilon: float) -> tuple[float, float]:
+    e = RADIUS * np.sqrt(epsilon / (1.0 - epsilon))  # Θ is about the axis
+    return without_drive(LinearRotor.of(ring(e).reduce(0)).invariants)
+
+
+@pytest.mark.parametrize("epsilon", [1e-4, 1e-3, 1e-2])
+def test_what_is_left_out_is_as_large_as_stated(epsilon):
+    error, band = estimates(epsilon)
+    assert error == pytest.approx(change(epsilon, 0.0), rel=0.01)
+    for speed in (1.0 - 3.0 * band, 1.0 + 3.0 * band):
+        whirl = epsilon / (1.0 - speed**2) ** 2  # m r²/Θ
+        assert 0.5 < change(epsilon, speed) / whirl < 2.0
+    growth = [
+        undriven(epsilon, speed).real.max()
+        for speed in (1.0 - 0.5 * band, 1.0 + 0.05 * band, 1.0 + 0.9 * band, 1.0 + 1.15 * band)
+    ]
+    assert [one > 1e-3 for one in growth] == [False, True, True, False]
+
+
+def test_closed_form_without_coupling_is_the_spin_held():
+    for speed in (0.3, 1.4):
+        assert change(0.0, speed) < 1e-7
+
+
+RUNS = {
+    "campbell": lambda target, given: campbell(target, [0.0, 10.0], modes=4, **given),
+    "critical speeds": lambda target, given: critical_speeds(target, max_speed=9e2, **given),
+    "response": lambda target, given: unbalance_response(target, [100.0], **given),
+    "stability": lambda target, given: stability(target, [100.0], **given),
+}
+
+
+@pytest.mark.filterwarnings("default:the centre of mass is")
+@pytest.mark.parametrize("analysis", RUNS)
+def test_every_analysis_on_every_route_warns_once(analysis, route, monkeypatch):
+    given = {"supports": carrier(1e5)}
+    if analysis == "stability":
+        given |= few(route)
+    target = on_route(ring(0.006), route, monkeypatch)
+    with pytest.warns(UserWarning, match=r"0\.006 m off .* 0\.2% at rest.* 12% above") as caught:
+        RUNS[analysis](target, given)
+    assert len(caught) == 1
+
+
+@pytest.mark.filterwarnings("error:the centre of mass is")
+def test_small_eccentricity_and_held_spin_do_not_warn(route, monkeypatch):
+    campbell(on_route(ring(0.004), route, monkeypatch), [10.0], supports=carrier(), modes=4)
+    turning = [Support("all", 1e6, frame="rotor")]
+    campbell(on_route(ring(0.03), route, monkeypatch), [10.0], supports=turning, modes=4)
