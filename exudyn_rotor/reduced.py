@@ -63,7 +63,7 @@ class ModeShapes:
 
 @dataclass(frozen=True, eq=False)
 class Centrifugal:
-    """Static fields by the rotation, about which the rotor vibrates; all of them, not modes only.
+    """Static fields about which the rotor vibrates; all of them, not modes only.
 
     Attributes
     ----------
@@ -73,14 +73,24 @@ class Centrifugal:
         Per ω² at the nodes, components xx, yy, zz, yz, xz, xy, mesh axes [Pa s²].
     yield_stress : float or None
         Yield stress of the material [Pa].
+    constant_stress : ndarray or None, shape (n, 6)
+        Stress at rest, which does not depend on the speed, components as in `stress` [Pa].
     """
 
     displacement: np.ndarray | None = None
     stress: np.ndarray | None = None
     yield_stress: float | None = None
+    constant_stress: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        _freeze(self, "displacement", "stress")
+        _freeze(self, "displacement", "stress", "constant_stress")
+
+    def stress_at(self, speed: float) -> np.ndarray | None:
+        """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa]."""
+        if self.stress is None:
+            return None
+        by_spin = speed**2 * self.stress
+        return by_spin if self.constant_stress is None else self.constant_stress + by_spin
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,18 +176,23 @@ class ReducedRotor:
 
         Raises
         ------
+        TypeError
+            If the speed is not one number.
         ValueError
-            If the rotor was reduced without a computed prestress.
+            If the speed is not finite, or the rotor was reduced without a computed prestress.
         """
-        return speed**2 * self._static("displacement").reshape(-1, 3)
+        return _speed(speed) ** 2 * self._static("displacement").reshape(-1, 3)
 
     def static_stress(self, speed: float) -> np.ndarray:
-        """Return the static centrifugal stress at a spin speed ω [rad/s], shape (n, 6) [Pa].
+        """Return the static stress at a spin speed ω [rad/s], shape (n, 6) [Pa].
 
-        Components xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
-        :meth:`static_displacement`. A stress at rest is not in it.
+        That of the rotation, and the stress at rest if the prestress was given one. Components
+        xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
+        :meth:`static_displacement`.
         """
-        return speed**2 * self._static("stress")
+        speed = _speed(speed)
+        self._static("stress")
+        return self.centrifugal.stress_at(speed)
 
     def _static(self, name: str) -> np.ndarray:
         field = getattr(self.centrifugal, name, None)
@@ -206,6 +221,15 @@ class ReducedRotor:
             f"ReducedRotor({len(self.rigid)} rigid + {self.size - len(self.rigid)} flexible modes, "
             f"{self.invariants.mass:.4g} kg, interfaces: {', '.join(self.interfaces) or 'none'})"
         )
+
+
+def _speed(value: object) -> float:
+    """Return a spin speed that is one finite number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"speed: needs one number [rad/s], got {value!r}")
+    if not np.isfinite(value):
+        raise ValueError(f"speed: needs a finite number [rad/s], got {value!r}")
+    return float(value)
 
 
 def _freeze(owner: object, *names: str) -> None:

@@ -137,7 +137,9 @@ def _centrifugal(rotor: SolidRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
-    return Centrifugal(carried.displacement, carried.stress, carried.yield_stress)
+    return Centrifugal(
+        carried.displacement, carried.stress, carried.yield_stress, carried.constant_stress
+    )
 
 
 def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:

@@ -15,7 +15,7 @@ _FORMAT = "exudyn_rotor reduced rotor 1"
 _INVARIANTS = ("direction", "mass", "center", "J", "S", "P", "M", "K", "D", "G", "C")
 # entries that a rotor without prestress does not have
 _PRESTRESS = ("K2", "B")
-_CENTRIFUGAL = ("displacement", "stress", "yield_stress")
+_CENTRIFUGAL = ("displacement", "stress", "yield_stress", "constant_stress")
 _SHAPES = ("nodes", "matrix", "triangles", "stress")
 _INTERFACE = ("reference", "center", "radius", "motion")
 

@@ -137,7 +137,7 @@ def test_modes_at_speed_refuse(rotor):
     with pytest.raises(ValueError, match="carries no prestress"):
         spinning_modes(rotor, 2, [100.0])
     carrying = rotor.with_prestress(rotor.prestress())
-    for speeds in ([0.0], [np.nan], 5.0):
+    for speeds in ([0.0], [np.nan], 5.0, []):
         with pytest.raises(ValueError, match="speeds: need a list of positive numbers"):
             spinning_modes(carrying, 2, speeds)
     with pytest.raises(ValueError, match="makes the rotor buckle"):

@@ -79,8 +79,8 @@ class ModeBasis:
                 )
 
 
-def check_same_mesh(nodes: np.ndarray, others: np.ndarray) -> None:
-    """Refuse modes whose nodes (n, 3) are not those of the rotor.
+def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
+    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it.
 
     Raises
     ------
@@ -89,13 +89,14 @@ def check_same_mesh(nodes: np.ndarray, others: np.ndarray) -> None:
     """
     if others.shape != nodes.shape:
         raise ValueError(
-            f"modal basis from another mesh: the rotor has other nodes ({len(others)} nodes in "
-            f"the basis, {len(nodes)} in the rotor); compute the modes from this rotor"
+            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
+            f"{label.split()[-1]}, {len(nodes)} in the rotor); compute the {label} with this rotor"
         )
     distance = np.linalg.norm(nodes - others, axis=1).max()
     if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
         raise ValueError(
-            f"modal basis from another mesh: node positions differ by up to {distance:.3g} m"
+            f"{label} from another mesh: node positions differ by up to {distance:.3g} m; compute "
+            f"the {label} with this rotor"
         )
 
 

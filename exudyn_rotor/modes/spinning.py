@@ -49,8 +49,8 @@ def spinning_modes(
     Raises
     ------
     ValueError
-        If the rotor carries no prestress, a speed is not positive, there are not that many
-        modes, or the prestress makes the rotor unstable at a speed.
+        If the rotor carries no prestress, no speed is given or one is not positive, there are not
+        that many modes, or the prestress makes the rotor unstable at a speed.
     """
     if rotor.carried_prestress is None:
         raise ValueError(
@@ -58,7 +58,12 @@ def spinning_modes(
             "rotor.with_prestress(rotor.prestress())"
         )
     speeds = np.asarray(speeds, dtype=float)
-    if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or np.any(speeds <= 0.0):
+    if (
+        speeds.ndim != 1
+        or speeds.size == 0
+        or not np.all(np.isfinite(speeds))
+        or np.any(speeds <= 0.0)
+    ):
         raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
     rest = free_modes(rotor, count, tolerance=tolerance)
     found, labels = [rest.matrix], list(rest.labels)

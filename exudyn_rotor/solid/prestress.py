@@ -3,12 +3,19 @@
 The centrifugal load per ω², ``f_c = M x_⊥``, deforms the rotor statically by u⁰ and stresses it by
 σ⁰; vibrations about this state have the stiffness ``K + ω² K_G``,
 ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV``. Inertia relief balances the load where nothing holds the rotor.
+
+Nodes held by a massless rigid hub feel its forces R, which turn with the hub. K_G takes them for
+dead loads; by equilibrium ``K_G (a×x) = a×(f_c + R)``, a false stiffness of rotations. With the
+mean translation t and rotation ``φ = Φu`` of these nodes, ``u = t + φ×y + ψ``, y from the centre of
+mass, R works on the second-order displacements ``½ φ×(φ×y) + φ×ψ``, which takes that out again:
+``K_hub = Φᵀ (sym H − tr(H) I) Φ − Φᵀ N − Nᵀ Φ``, ``H = Σ R yᵀ``, ``N u = Σ R×ψ``. Rotations of the
+rotor then feel f_c alone, as at the level 'tilt'; a net force of the hub does no work on them.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +25,9 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor.axis import read_only
 from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions
+from exudyn_rotor.nodal import skew
 from exudyn_rotor.solid import checks
+from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.tensor import von_mises
 
 if TYPE_CHECKING:
@@ -26,6 +35,10 @@ if TYPE_CHECKING:
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
 _OUT_OF_BALANCE = 0.3
+# nodes that stand for the rotation of a hub
+_HUB_NODES = 100
+
+_Solve = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +48,8 @@ class Prestress:
     Attributes
     ----------
     matrix : scipy.sparse.csr_array, shape (3n, 3n)
-        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with the
-        initial-displacement stiffness if that was asked for [N s²/m].
+        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
+        hub's forces and the initial-displacement stiffness if these were asked for [N s²/m].
     nodes : ndarray, shape (n, 3)
         Positions of the mesh it belongs to [m].
     euler : scipy.sparse.csr_array or None
@@ -47,13 +60,19 @@ class Prestress:
         Its stress at the nodes per ω², xx, yy, zz, yz, xz, xy in mesh axes [Pa s²].
     constant : scipy.sparse.csr_array or None
         K_G of a stress that does not depend on the speed [N/m].
+    constant_stress : ndarray or None, shape (n, 6)
+        That stress at the nodes, in equilibrium, components as in `stress` [Pa].
     initial_displacement : bool
         Whether `matrix` holds the initial-displacement stiffness.
     balanced : bool
         True if inertia forces balance the load on every rigid motion that the rotor's stiffness
-        leaves free; False if clamped nodes take it up.
+        leaves free; False if held nodes take it up.
     yield_stress : float or None
         Yield stress of the material [Pa].
+    load : ndarray or None, shape (3n,)
+        Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
+    hub : ndarray of int or None
+        Nodes that a rigid hub held in the static solution.
     """
 
     matrix: sp.csr_array
@@ -65,11 +84,16 @@ class Prestress:
     initial_displacement: bool = False
     balanced: bool = True
     yield_stress: float | None = None
+    constant_stress: np.ndarray | None = None
+    load: np.ndarray | None = None
+    hub: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        for name in ("nodes", "displacement", "stress"):
+        for name in ("nodes", "displacement", "stress", "constant_stress", "load"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, read_only(getattr(self, name)))
+        if self.hub is not None:
+            object.__setattr__(self, "hub", read_only(self.hub, np.int64))
 
     @classmethod
     def from_matrix(
@@ -87,7 +111,8 @@ class Prestress:
         euler : array_like or sparse, shape (3n, 3n), optional
             The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
         balanced : bool, optional
-            False if the stress was computed with nodes held fixed, not with inertia relief.
+            False if the stress was computed with nodes held fixed, not with inertia relief; the
+            rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
 
         Raises
         ------
@@ -132,24 +157,24 @@ def static_prestress(
         )
     _check_yield(yield_stress, speed)
     elements = rotor.elements
-    own = None if stress is None else np.asarray(stress, dtype=float)
+    own = None if stress is None else _numbers(stress)
     residual = None if own is None else elements.load_of_stress(own)
-    supported = rotor.clamped(clamped) if clamped else rotor
-    rigid = free_rigid_motions(
-        supported.nodes, supported.mass, supported.stiffness, supported.rigid_motions
-    )
-    relief = InertiaRelief(supported.stiffness, supported.mass, rigid)
+    hub, solve = _support(rotor, clamped)
 
-    displacement = relief.solve(centrifugal_load(rotor))
+    load = centrifugal_load(rotor)
+    displacement = solve(load)
     matrix = elements.geometric_stiffness(displacement)
+    matrix = matrix + _hub_stiffness(rotor, hub, rotor.stiffness @ displacement - load)
     if initial_displacement:
         matrix = matrix + elements.initial_displacement_stiffness(displacement)
     constant = None
     if own is not None:
-        springback = relief.solve(residual)
-        own = _in_equilibrium(rotor, own, springback)
-        constant = elements.geometric_stiffness_of_stress(np.asarray(stress, dtype=float))
+        springback = solve(residual)
+        constant = elements.geometric_stiffness_of_stress(own)
         constant = constant - elements.geometric_stiffness(springback)
+        reactions = residual - rotor.stiffness @ springback
+        constant = constant + _hub_stiffness(rotor, hub, reactions)
+        own = _in_equilibrium(rotor, own, springback)
     by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
     if speed is not None:
         total = speed**2 * by_spin + (0.0 if own is None else own)
@@ -157,15 +182,16 @@ def static_prestress(
     return Prestress(
         matrix=_symmetric(matrix),
         nodes=rotor.nodes,
-        euler=_symmetric(elements.geometric_stiffness(relief.solve(euler_load(rotor))))
-        if euler
-        else None,
+        euler=_euler_stiffness(rotor, hub, solve) if euler else None,
         displacement=displacement,
         stress=by_spin,
         constant=None if constant is None else _symmetric(constant),
         initial_displacement=bool(initial_displacement),
         balanced=not clamped,
         yield_stress=yield_stress,
+        constant_stress=own,
+        load=load,
+        hub=hub,
     )
 
 
@@ -179,13 +205,72 @@ def euler_load(rotor: SolidRotor) -> np.ndarray:
     return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
 
 
+def _support(rotor: SolidRotor, clamped: Sequence[str]) -> tuple[np.ndarray, _Solve]:
+    """Return the nodes that a hub holds, and the static solution with them held."""
+    supported = rotor.clamped(clamped) if clamped else rotor
+    rigid = free_rigid_motions(
+        supported.nodes, supported.mass, supported.stiffness, supported.rigid_motions
+    )
+    relief = InertiaRelief(supported.stiffness, supported.mass, rigid)
+    held = supported.elements.held
+
+    def solve(load: np.ndarray) -> np.ndarray:
+        displacement = relief.solve(load)
+        displacement.reshape(-1, 3)[held] = 0.0  # the stiff springs of `clamped` give way a little
+        return displacement
+
+    return np.setdiff1d(held, rotor.elements.held), solve
+
+
+def _hub_stiffness(rotor: SolidRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:
+    """Return ``K_hub`` (3n, 3n) of the nodal forces (3n,) by which a rigid hub holds its nodes."""
+    if hub.size == 0:
+        return sp.csr_array((rotor.nodes.size, rotor.nodes.size))
+    forces, arms = forces.reshape(-1, 3)[hub], rotor.nodes[hub] - rotor.center_of_mass
+    moments = forces.T @ arms
+    own = np.trace(moments) * np.eye(3) - 0.5 * (moments + moments.T)
+    # any of its nodes tell how a rigid hub moves, and the matrix is dense on those
+    some = hub[:: -(-hub.size // _HUB_NODES)]
+    mean = Interface("hub", some, np.ones(some.size), rotor.nodes[some], rotor.center_of_mass)
+    motion = mean.mean_motion(rotor.node_count)
+    shift, turn = motion[:3], motion[3:]
+    # N with ψ = u − t − φ×y put in; its part with φ×y is in `own`
+    columns = (3 * hub[:, None] + np.arange(3)).ravel()
+    couple = sp.csr_array(np.hstack([skew(force) for force in forces]))
+    couple = couple @ sp.eye_array(rotor.nodes.size, format="csr")[columns]
+    couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift
+    mixed = turn.T @ couple
+    return sp.csr_array(turn.T @ sp.csr_array(own) @ turn - mixed - mixed.T)
+
+
+def _euler_stiffness(rotor: SolidRotor, hub: np.ndarray, solve: _Solve) -> sp.csr_array:
+    load = euler_load(rotor)
+    displacement = solve(load)
+    matrix = rotor.elements.geometric_stiffness(displacement)
+    return _symmetric(matrix + _hub_stiffness(rotor, hub, rotor.stiffness @ displacement - load))
+
+
 def _symmetric(matrix: sp.csr_array) -> sp.csr_array:
     return checks.frozen(sp.csr_array(0.5 * (matrix + matrix.T)))
 
 
+def _numbers(stress: ArrayLike) -> np.ndarray:
+    try:
+        return np.asarray(stress, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise TypeError(
+            f"stress: needs an array of numbers, shape (n, 6) [Pa], got {type(stress).__name__} "
+            f"({error})"
+        ) from error
+
+
 def _check_yield(yield_stress: float | None, speed: float | None) -> None:
     for name, value in (("yield_stress", yield_stress), ("speed", speed)):
-        if value is not None and not (np.isfinite(value) and value > 0.0):
+        if value is None:
+            continue
+        if np.ndim(value) or not np.issubdtype(np.asarray(value).dtype, np.number):
+            raise TypeError(f"{name}: needs one number, got {value!r}")
+        if not (np.isfinite(value) and value > 0.0):
             raise ValueError(f"{name}: must be a positive number, got {value!r}")
     if speed is not None and yield_stress is None:
         raise ValueError("speed: only serves the check of yielding; give yield_stress=, too")

@@ -17,6 +17,8 @@ FREE_BELOW = 1e-9
 HELD_ABOVE = 1e-5
 LOCALLY_HELD_ABOVE = 1e-12
 LOCAL_RATIO = 1e-3
+# the same ratio in the rows of one node, from which a support counts as acting there
+_SUPPORTED_ABOVE = 1e-6
 
 
 def rigid_basis(nodes: np.ndarray) -> np.ndarray:
@@ -50,6 +52,17 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
     terms = abs(stiffness) @ np.abs(motions)
     whole = _ratio(np.linalg.norm(forces, axis=0), np.linalg.norm(terms, axis=0))
     return whole, np.median(_ratio(forces, terms), axis=0)
+
+
+def unsupported_nodes(nodes: np.ndarray, stiffness: sp.csr_array) -> np.ndarray:
+    """Return at which nodes `stiffness` balances all rigid motions, shape (n,), bool.
+
+    The others are held, or next to held ones, or carry springs to the ground.
+    """
+    basis = rigid_basis(nodes)
+    forces = np.linalg.norm((stiffness @ basis).reshape(len(nodes), -1), axis=1)
+    terms = np.linalg.norm((abs(stiffness) @ np.abs(basis)).reshape(len(nodes), -1), axis=1)
+    return forces <= _SUPPORTED_ABOVE * terms
 
 
 def count_rigid_motions(

@@ -11,11 +11,11 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.modes.component import check_same_mesh
-from exudyn_rotor.modes.relief import free_rigid_motions
+from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions
 from exudyn_rotor.nodal import rotations
 from exudyn_rotor.solid import checks, prestress
 from exudyn_rotor.solid.prestress import Prestress
-from exudyn_rotor.solid.rigid import count_rigid_motions
+from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis, unsupported_nodes
 
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
@@ -23,8 +23,16 @@ if TYPE_CHECKING:
 # of the largest diagonal entry: clamped nodes move by less than 1e-10 of the others, and dense
 # eigenvalues, whose error is relative to the stiffest spring, keep four digits
 _CLAMP = 1e6
-# share of the moment of inertia by which an imported matrix may miss its action on rotations
-_ROTATION_TOLERANCE = 0.01
+# share of the load by which an imported matrix may miss it, on positions and on rotations
+_IMPORT_TOLERANCE = 0.01
+# the same of a computed prestress, and how far rounding of the elastic forces goes
+_SAME = 1e-6
+_ROUNDING = 1e-12
+_COMPUTE = "compute the prestress with this rotor: rotor.prestress()"
+_ALONE = (
+    "it must hold the geometric stiffness alone (no spin softening, no elastic stiffness), for "
+    "1 rad/s or 1 rad/s²"
+)
 
 
 class StressedRotor:
@@ -48,8 +56,9 @@ class StressedRotor:
         Parameters
         ----------
         clamped : sequence of str, optional
-            Interfaces whose nodes are held fixed for the static solution, e.g. a bore on a rigid
-            shaft.
+            Interfaces whose nodes a massless rigid hub holds fixed for the static solution, e.g. a
+            bore on a rigid shaft. The hub moves with the rotor afterwards; a rotor that is held
+            in its frame needs :meth:`clamped`.
         initial_displacement : bool, optional
             Also the stiffness from the change of shape by u⁰: the rest of what is linear in u⁰ in
             St. Venant–Kirchhoff elasticity. Of the order of the static strain.
@@ -67,6 +76,8 @@ class StressedRotor:
 
         Raises
         ------
+        TypeError
+            If `stress`, `yield_stress` or `speed` hold no numbers.
         ValueError
             If the rotor has no elements (not made by :meth:`from_ngsolve`) or carries a prestress
             already, an interface is unknown, or `stress` belongs to another mesh.
@@ -94,17 +105,19 @@ class StressedRotor:
         TypeError
             If `prestress` is of another kind.
         ValueError
-            If it belongs to another mesh, the rotor carries one already, or the matrix acts on
-            rotations of the rotor in another way than the centrifugal load does.
+            If the rotor carries one already, or it belongs to another mesh or another static
+            state: other axis, mass, elasticity, springs or held nodes; or if its stress at rest
+            makes the rotor buckle.
         """
         if not isinstance(prestress, Prestress):
             raise TypeError(f"prestress: expected a Prestress, got {type(prestress).__name__}")
         check_unstressed(self)
-        check_same_mesh(self.nodes, prestress.nodes)
-        _check_rotations(self, prestress)
+        check_same_mesh(self.nodes, prestress.nodes, "prestress")
+        _check_static_state(self, prestress)
         stiffness = self.stiffness
         if prestress.constant is not None:
             stiffness = checks.frozen(sp.csr_array(stiffness + prestress.constant))
+            _check_buckling(self, stiffness)
         return replace(
             self, stiffness=stiffness, carried_prestress=replace(prestress, constant=None)
         )
@@ -122,7 +135,8 @@ class StressedRotor:
         Raises
         ------
         ValueError
-            If an interface is unknown, none is given, or the rotor carries a prestress.
+            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
+            carries a prestress.
         """
         check_unstressed(self)
         names = [names] if isinstance(names, str) else list(names)
@@ -133,6 +147,11 @@ class StressedRotor:
                 f"{list(self.interfaces)}"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
+        if rigid_basis(self.nodes[held]).shape[1] < 6:
+            raise ValueError(
+                f"clamped: the {held.size} nodes of {names} lie on one line and cannot hold "
+                "rotations about it; clamp three nodes or more that do not"
+            )
         kept = np.ones((self.node_count, 3))
         kept[held] = 0.0
         mask = sp.diags_array(kept.ravel())
@@ -180,25 +199,117 @@ def relief_rotations(rotor: SolidRotor) -> np.ndarray:
     return (np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum).T
 
 
+def _check_buckling(rotor: SolidRotor, stiffness: sp.csr_array) -> None:
+    """Refuse a stress at rest that makes the rotor buckle."""
+    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+    try:
+        InertiaRelief(stiffness, rotor.mass, free)
+    except ValueError as error:
+        raise ValueError(
+            "prestress: the rotor buckles under its stress at rest; check sign and unit of "
+            "prestress(stress=…) [Pa, tension positive]"
+        ) from error
+
+
+def _check_static_state(rotor: SolidRotor, given: Prestress) -> None:
+    """Refuse a prestress of another static state than the rotor's own."""
+    if given.constant is None and given.constant_stress is not None:
+        raise ValueError(
+            "prestress: this is what another rotor carries, whose stiffness holds the stress at "
+            f"rest already; {_COMPUTE[:-1]}stress=…)"
+        )
+    if given.load is None or given.displacement is None:
+        _check_imported(rotor, given)
+    else:
+        _check_computed(rotor, given)
+    if not rotor.grounded:
+        _check_rotations(rotor, given)
+
+
+def _check_computed(rotor: SolidRotor, given: Prestress) -> None:
+    """Compare load and displacement; forces of clamped nodes, which are alone, are not known."""
+    load = prestress.centrifugal_load(rotor)
+    change = np.linalg.norm(given.load - load)
+    if change > _SAME * np.linalg.norm(load):
+        raise ValueError(
+            "prestress: it was computed for another centrifugal load, which differs by "
+            f"{change / max(np.linalg.norm(load), 1e-300):.3g} of this rotor's own: another "
+            f"density or axis, or point masses that were added or taken off; {_COMPUTE}"
+        )
+    if given.balanced:
+        load = _balanced(rotor, load)
+    strength = abs(rotor.stiffness)
+    kept = (strength.sum(axis=1) > strength.diagonal()).reshape(-1, 3)
+    if given.hub is not None:
+        kept[given.hub] = False
+    left = np.linalg.norm((rotor.stiffness @ given.displacement - load)[kept.ravel()])
+    rounding = np.linalg.norm(strength @ np.abs(given.displacement))
+    if left > _SAME * np.linalg.norm(load) + _ROUNDING * rounding:
+        raise ValueError(
+            "prestress: its static displacement is none of this rotor, the elastic forces differ "
+            f"from its load by {left / max(np.linalg.norm(load), 1e-300):.3g} of it: another "
+            f"elastic modulus, other clamped nodes, or other springs to the ground; {_COMPUTE}"
+        )
+
+
+def _check_imported(rotor: SolidRotor, given: Prestress) -> None:
+    """Check ``K_G x = f``, which holds by ``∇x = I`` at nodes that no support touches."""
+    if not given.balanced and rotor.rigid_motions:
+        raise ValueError(
+            "prestress: balanced=False says that held nodes take up the load, but the stiffness "
+            f"of this rotor leaves {rotor.rigid_motions} rigid motions free, which their forces "
+            "would resist falsely; hold them with rotor.clamped(...), or use a matrix computed "
+            "with inertia relief"
+        )
+    away = np.ones(rotor.node_count, dtype=bool)
+    if rotor.grounded:
+        away = unsupported_nodes(rotor.nodes, rotor.stiffness)
+        if not given.initial_displacement:
+            load = prestress.centrifugal_load(rotor)
+            _check_load(rotor, "matrix", given.matrix, load, away)
+    if given.euler is not None:
+        _check_load(rotor, "Euler matrix", given.euler, prestress.euler_load(rotor), away)
+
+
+def _check_load(
+    rotor: SolidRotor, name: str, matrix: sp.csr_array, load: np.ndarray, away: np.ndarray
+) -> None:
+    found = (matrix @ (rotor.nodes - rotor.center_of_mass).ravel()).reshape(-1, 3)[away]
+    expected = _balanced(rotor, load).reshape(-1, 3)[away]
+    error, size = np.linalg.norm(found - expected), np.linalg.norm(expected)
+    if error > _IMPORT_TOLERANCE * size + _SAME * np.linalg.norm(load):
+        raise ValueError(
+            f"prestress: the {name} times the nodal positions gives the load of its stress, which "
+            f"is {error / max(size, 1e-300):.3g} times this rotor's own load off it at nodes away "
+            f"from supports; {_ALONE}, with this rotor's axis, density, point masses and held "
+            "nodes"
+        )
+
+
 def _check_rotations(rotor: SolidRotor, given: Prestress) -> None:
     """Refuse a matrix that does not act on rotations of a free rotor as the load does.
 
     By equilibrium ``(a×x)ᵀ K_G (b×x) = (a×x) · (b×f)`` with f the balanced load.
     """
-    if rotor.grounded or not given.balanced:
-        return
     turns = rotations(rotor.nodes, rotor.center_of_mass)
-    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, 6)
     load = prestress.centrifugal_load(rotor)
-    load = (load - rotor.mass @ (free @ (free.T @ load))).reshape(-1, 3)
+    load = (_balanced(rotor, load) if given.balanced else load).reshape(-1, 3)
     turned = np.stack([np.cross(axis, load).ravel() for axis in np.eye(3)], axis=1)
     expected, found = turns.T @ turned, turns.T @ (given.matrix @ turns)
+    expected = 0.5 * (expected + expected.T)
     e = rotor.axis.direction
-    if np.abs(found - expected).max() > _ROTATION_TOLERANCE * abs(e @ expected @ e):
+    error = np.abs(found - expected)
+    i, j = np.unravel_index(np.argmax(error), error.shape)
+    if error[i, j] > _IMPORT_TOLERANCE * abs(e @ expected @ e):
         raise ValueError(
-            f"prestress: the matrix resists a spin about the axis with {e @ found @ e:.6g} kg m², "
-            f"and the centrifugal load per (rad/s)² of this rotor with {e @ expected @ e:.6g}; "
-            "it must hold the geometric stiffness alone (no spin softening, no elastic "
-            "stiffness), for 1 rad/s; if nodes were fixed in its static solution, say "
-            "balanced=False"
+            f"prestress: the matrix couples rotations about mesh axes {'xyz'[i]} and {'xyz'[j]} "
+            f"with {found[i, j]:.6g} kg m², and the centrifugal load per (rad/s)² of this rotor "
+            f"with {expected[i, j]:.6g}; {_ALONE}, and with this rotor's axis, density and point "
+            "masses"
         )
+
+
+def _balanced(rotor: SolidRotor, load: np.ndarray) -> np.ndarray:
+    """Return a load (3n,) less the inertia forces of the rigid motions that it causes."""
+    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+    return load - rotor.mass @ (free @ (free.T @ load))
