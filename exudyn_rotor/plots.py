@@ -10,7 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, NullLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.modal.campbell import Campbell
@@ -79,7 +81,7 @@ def plot_campbell(axes: Axes, result: Campbell) -> Axes:
 def draw_surface(
     positions: np.ndarray, triangles: np.ndarray, values: np.ndarray, label: str
 ) -> Figure:
-    """Return a picture of nodal values on a surface.
+    """Return a picture of nodal values on a surface; a long body lies across the picture.
 
     Parameters
     ----------
@@ -89,26 +91,87 @@ def draw_surface(
     values : ndarray, shape (n,)
     label : str
         Of the colour bar.
+
+    Raises
+    ------
+    ValueError
+        If there are no triangles, or not one value per node.
     """
+    _check_surface(positions, triangles, values)
     corners = triangles
     if triangles.shape[1] == 6:
         corners = triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
     mapped = ScalarMappable(cmap="viridis")
     mapped.set_array(values[corners].mean(axis=1))
     colors = mapped.to_rgba(mapped.get_array())
-    made = Figure(figsize=(8.0, 5.0), layout="constrained")
+    made = Figure()
     axes = made.add_subplot(projection="3d")
     # edges of the faces' own colour close the gaps between them
     faces = Poly3DCollection(positions[corners], facecolors=colors, edgecolors=colors, lw=0.3)
     axes.add_collection3d(faces)
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(np.maximum(high - low, 1e-3 * np.max(high - low)), zoom=0.85)
-    for name, extent in zip("xyz", (high - low) / np.max(high - low), strict=True):
-        getattr(axes, f"set_{name}label")(f"{name} [m]", labelpad=8.0)
-        axes.locator_params(axis=name, nbins=max(1, round(5 * extent)))
-    made.colorbar(mapped, ax=axes, label=label, shrink=0.7)
+    place = _fit(axes, *_frame(axes, positions[np.unique(corners)]))
+    made.colorbar(mapped, cax=made.add_axes(place), label=label)
     return made
+
+
+def _check_surface(positions: np.ndarray, triangles: np.ndarray, values: np.ndarray) -> None:
+    if len(triangles) == 0:
+        raise ValueError(
+            "triangles: there are none, so there is no surface to draw; models from NGSolve have "
+            "one, others need triangles=…"
+        )
+    if np.shape(values) != (len(positions),):
+        raise ValueError(
+            f"values: needs one for each of the {len(positions)} nodes, got the shape "
+            f"{np.shape(values)}"
+        )
+
+
+_LONG = 1.5  # a body longer than this times its width lies across the picture, without axes
+_THIN = 0.3  # tick labels of an axis shorter than this share of the longest would overlap
+# elevation, azimuth and roll [deg] that let the axis x, y or z of a long body point to the right
+_ACROSS = ((20.0, -75.0, 0.0), (20.0, 15.0, 0.0), (20.0, -160.0, -90.0))
+
+
+def _frame(axes: Axes, points: np.ndarray) -> tuple[np.ndarray, float]:
+    """Set limits, view and axes for a body; return the points to fit in and the margin [inch]."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = high - low
+    longest, share = int(np.argmax(size)), size / size.max()
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(np.maximum(share, 1e-3), zoom=0.85)
+    axes.patch.set_visible(False)  # it may reach under the colour bar
+    if np.sort(share)[1] < 1.0 / _LONG:  # ticks would stand in the body itself
+        axes.view_init(*_ACROSS[longest])
+        axes.set_axis_off()
+        axes.figure.text(0.02, 0.03, _extents(low, high, longest))
+        return points, 0.4
+    for name, part, pad in zip("xyz", share, (22.0, 22.0, 12.0), strict=True):
+        shown = part >= _THIN
+        getattr(axes, f"set_{name}label")(f"{name} [m]" if shown else "", labelpad=pad)
+        locator = MaxNLocator(max(2, round(4 * part)), prune="both") if shown else NullLocator()
+        getattr(axes, f"{name}axis").set_major_locator(locator)
+    return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, 8).T, 0.7
+
+
+def _extents(low: np.ndarray, high: np.ndarray, longest: int) -> str:
+    others = [f"{high[i] - low[i]:.4g} m in {'xyz'[i]}" for i in range(3) if i != longest]
+    along = f"{'xyz'[longest]} from {low[longest]:.4g} m to {high[longest]:.4g} m"
+    return f"{along}, left to right; {', '.join(others)}"
+
+
+def _fit(axes: Axes, points: np.ndarray, margin: float) -> tuple[float, float, float, float]:
+    """Let a body between `points` fill the figure; return the place of the colour bar."""
+    bar = 1.35  # inch
+    flat = np.stack(proj_transform(*points.T, axes.get_proj())[:2], axis=1)
+    flat = (axes.transData - axes.transAxes).transform(flat)
+    low, size = flat.min(axis=0), np.ptp(flat, axis=0)
+    side = min(6.0 / size[0], 4.5 / size[1])  # of the axes, which are square
+    body = np.maximum(side * size + 2.0 * margin, (4.5, 2.5))
+    whole = body + np.array([bar, 0.0])
+    axes.figure.set_size_inches(whole)
+    axes.set_position((*((0.5 * body - side * (low + 0.5 * size)) / whole), *(side / whole)))
+    return (body[0] + 0.15) / whole[0], 0.15, 0.2 / whole[0], 0.7
 
 
 def legend_above(axes: Axes, columns: int = 2, handles: list | None = None) -> None:

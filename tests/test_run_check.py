@@ -86,12 +86,15 @@ def test_without_watch_only_the_end_is_known(reduced):
 
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
-def test_every_formulation_keeps_all_loads(reduced, translation, locking):
+@pytest.mark.parametrize("markers", ["rigid", "position"])
+def test_every_formulation_keeps_all_loads(reduced, translation, locking, markers):
     """Weight, unbalance and bearings reach the equations; the axis lies askew to gravity."""
     turn = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
     mbs = exu.SystemContainer().AddSystem()
     options = {"rotation": turn, "gravity": [1, -9, 4], "initial_speed": 150.0}
-    body = add_rotor(mbs, reduced, translation=translation, locking=locking, **options)
+    body = add_rotor(
+        mbs, reduced, translation=translation, locking=locking, markers=markers, **options
+    )
     ground = mbs.CreateGround()
     for name, place in (("left", [0, 0, 0]), ("right", [0.5, 0, 0])):
         mbs.CreateCartesianSpringDamper(
@@ -127,11 +130,11 @@ def test_tilt_is_the_angle_of_the_axis(reduced):
 
 
 def test_travel_is_that_of_the_centre_of_mass(reduced):
-    labels = _labels(reduced, spin=0.0, translation="none")
+    labels = _labels(reduced, translation="none")
     mass = reduced.invariants.mass
     size = np.sqrt(np.trace(reduced.invariants.J) / mass)
     values = _modal(labels, translation_1=0.2 * size * np.sqrt(mass))
-    body = _at_rest(reduced, spin=0.0, translation="none", modal_coordinates=values)
+    body = _at_rest(reduced, translation="none", modal_coordinates=values)
     check = check_run(body, warn=False)
     assert check["travel"].value == pytest.approx(0.2, rel=1e-6)
     assert [row.name for row in check.failed] == ["travel"]

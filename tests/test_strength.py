@@ -1,20 +1,27 @@
 """Stress of a running rotor against disc theory, Exudyn's own stress sensor and superposition."""
 
+from dataclasses import replace
+
 import exudyn as exu
+import matplotlib
 import ngsolve as ngs
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorNode
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from models import STEEL, block_beam
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import (
     Formulation,
+    ReducedRotor,
     SolidRotor,
     StressField,
     StressHistory,
     add_rotor,
     load_result,
+    plots,
     select_modes,
     stress_history,
 )
@@ -100,7 +107,9 @@ def test_dynamic_part_is_what_exudyn_s_own_sensor_says(beam):
         )
     )
     node = 17
-    native = body.add_node_sensor(node, KINDS.StressLocal)
+    with pytest.warns(UserWarning, match="stress of the modes alone") as caught:
+        native = body.add_node_sensor(node, KINDS.StressLocal)
+    assert caught[0].filename == __file__
     mbs.CreateForce(itemNumber=body.marker("right"), loadVector=[50.0, 20.0, 0.0])
     mbs.Assemble()
     settings = exu.SimulationSettings()
@@ -118,6 +127,18 @@ def test_dynamic_part_is_what_exudyn_s_own_sensor_says(beam):
     assert np.abs(static).max() > 1e-3 * scale
 
 
+def test_only_stress_sensors_of_prestressed_rotors_that_spin_warn(beam):
+    """Warnings are errors in these tests."""
+    bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(2, stress=True)
+    for reduced, speed, kind in (
+        (beam, 300.0, KINDS.Displacement),
+        (beam, 0.0, KINDS.StressLocal),
+        (bare, 300.0, KINDS.StressLocal),
+    ):
+        mbs = exu.SystemContainer().AddSystem()
+        add_rotor(mbs, reduced, translation="none", spin=speed).add_node_sensor(0, kind)
+
+
 def test_pictures_and_storage(beam, tmp_path):
     field, zeta = steady_state(beam, 300.0)
     history = stress_history(field, [0.0, 1.0], np.stack([0 * zeta, zeta]), [0.0, 300.0], count=2)
@@ -132,6 +153,65 @@ def test_pictures_and_storage(beam, tmp_path):
     assert len(field.plot(zeta, 300.0).axes) == 2
 
 
+def test_field_of_a_body_is_that_of_its_selection(beam, tmp_path):
+    """Shapes, storage and a prestress do not change what a basis is."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, beam.without_shapes(), spin=300.0, translation="none")
+    beam.save(tmp_path / "beam.npz")
+    loaded = ReducedRotor.load(tmp_path / "beam.npz")
+    expected = StressField.of(beam, body.selection)
+    for field in (StressField.of(beam, body), StressField.of(loaded, body)):
+        assert np.array_equal(field.modes, expected.modes)
+        assert np.array_equal(field.rest, expected.rest)
+
+
+def softer(rotor):
+    material = STEEL | {"youngsModulus": 2.0e11}
+    return SolidRotor.from_ngsolve(block_beam(), material, "z").reduce(6, stress=True)
+
+
+def other_sign(rotor):
+    signs = np.ones(rotor.size)
+    signs[-1] = -1.0
+    return replace(rotor, invariants=rotor.invariants.in_basis(np.diag(signs)))
+
+
+# each has stress modes, all but the last as many columns as the beam
+OTHERS = {
+    "finer mesh": lambda rotor: SolidRotor.from_ngsolve(block_beam(0.03), STEEL, "z").reduce(
+        6, stress=True
+    ),
+    "softer": softer,
+    "other sign": other_sign,
+    "fewer modes": lambda rotor: SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(
+        4, stress=True
+    ),
+}
+
+
+@pytest.mark.parametrize("other", OTHERS)
+def test_selection_of_another_rotor_is_refused(beam, other):
+    chosen = select_modes(beam, Formulation("none", 300.0))
+    assert chosen.is_of(beam)
+    assert len(repr(chosen)) < 200
+    with pytest.raises(ValueError, match=r"it is of another rotor, ReducedRotor\(6 rigid \+ 6"):
+        StressField.of(OTHERS[other](beam), chosen)
+
+
+def test_stress_at_speed_without_the_static_part_warns():
+    bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(4, stress=True)
+    field, zeta = steady_state(bare, 300.0)
+    rows = np.stack([zeta, zeta])
+    advice = r"up to 300 rad/s without .* reduce\(…, stress=True, prestress=True\)"
+    with pytest.warns(UserWarning, match=advice) as caught:
+        stress_history(field, [0.0, 1.0], rows, [0.0, -300.0])
+    with pytest.warns(UserWarning, match=advice) as drawn:
+        field.plot(zeta, 300.0)
+    assert [w.filename for w in (*caught, *drawn)] == [__file__] * 2
+    stress_history(field, [0.0, 1.0], rows, 0.0)  # at rest there is no such part
+    field.plot(zeta, 0.0)
+
+
 def test_bad_input_is_refused(beam):
     field, zeta = steady_state(beam, 300.0)
     rows = np.stack([zeta, zeta])
@@ -139,8 +219,112 @@ def test_bad_input_is_refused(beam):
         stress_history(field, [0.0, 1.0], rows[:, :-1], 300.0)
     with pytest.raises(ValueError, match="zeta: has values that are not finite"):
         stress_history(field, [0.0, 1.0], rows * np.nan, 300.0)
-    with pytest.raises(ValueError, match="nodes: needs node numbers"):
-        stress_history(field, [0.0, 1.0], rows, 300.0, nodes=[10**6])
+    with pytest.raises(ValueError, match=r"speed: .* each of the 2 times, got the shape \(3,\)"):
+        stress_history(field, [0.0, 1.0], rows, [1.0, 2.0, 3.0])
+    with pytest.raises(ValueError, match=r"zeta: needs 11 modal .* got the shape \(10,\)"):
+        field.at(zeta[:-1], 300.0)
+    with pytest.raises(TypeError, match="field: expected a StressField, got ReducedRotor"):
+        stress_history(beam, [0.0, 1.0], rows, 300.0)
+    for wrong in (None, Formulation("none", 300.0)):
+        with pytest.raises(TypeError, match=r"selection: .* RotorBody, got (None|Form)"):
+            StressField.of(beam, wrong)
+    with pytest.raises(TypeError, match="reduced: expected a ReducedRotor, got StressField"):
+        StressField.of(field, select_modes(beam, Formulation("none", 300.0)))
     bare = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").reduce(1)
     with pytest.raises(ValueError, match="without stress modes"):
         StressField.of(bare, select_modes(bare, Formulation("none", 1.0)))
+
+
+WRONG_CHOICES = {
+    "no such node": ({"nodes": [3, 10**6]}, r"nodes: .* from 0 to \d+, got 1000000$"),
+    "negative": ({"nodes": [-1]}, "got -1$"),
+    "mask": ({"nodes": np.ones(10**4, bool)}, r"got the shape \(10000,\) of a mask; use np.flat"),
+    "fractions": ({"nodes": [0.5]}, "of float64$"),
+    "one number": ({"nodes": 5}, r"in one row, got the shape \(\)"),
+    "no nodes": ({"nodes": []}, r"got the shape \(0,\)"),
+    "count zero": ({"count": 0}, "count: needs a number of nodes, 1 or more, got 0"),
+    "fraction": ({"count": 2.5}, "count: needs a number of nodes, 1 or more, got 2.5"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_CHOICES)
+def test_wrong_choice_of_nodes_is_named_in_one_line(beam, case):
+    options, message = WRONG_CHOICES[case]
+    field, zeta = steady_state(beam, 300.0)
+    with pytest.raises(ValueError, match=message) as caught:
+        stress_history(field, [0.0], zeta[None], 300.0, **options)
+    assert len(str(caught.value)) < 150
+
+
+def box(size):
+    """Return nodes and triangles of a box."""
+    nodes = np.array(np.meshgrid(*[[0.0, x] for x in size], indexing="ij")).reshape(3, 8).T
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return nodes, np.array([t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))])
+
+
+def drawn(size):
+    """Return the axes, the pixels of a body drawn in violet, and the renderer."""
+    nodes, triangles = box(size)
+    with matplotlib.rc_context(matplotlib.rcParamsDefault):  # Exudyn's plots set another font size
+        made = plots.draw_surface(nodes, triangles, np.zeros(8), "stress")
+        canvas = FigureCanvasAgg(made)
+        canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba()).astype(int)
+    axes = made.axes[0]
+    violet = np.abs(pixels[:, :, :3] - [68, 1, 84]).sum(axis=2) < 6
+    violet[:, int(made.axes[1].get_window_extent().x0) :] = False
+    return axes, violet, canvas.get_renderer()
+
+
+@pytest.mark.parametrize("along", [0, 1, 2])
+@pytest.mark.parametrize("width", [0.002, 0.02, 0.1])
+def test_a_long_body_fills_the_picture_from_left_to_right(along, width):
+    size = np.full(3, width)
+    size[along] = 0.4
+    axes, body, _ = drawn(size)
+    columns = np.flatnonzero(body.any(axis=0))
+    assert columns[0] < 0.1 * body.shape[1]
+    assert np.ptp(columns) > 0.7 * body.shape[1]
+    assert body.shape[0] < 0.6 * body.shape[1]
+    ends = np.zeros((2, 3))
+    ends[1, along] = 0.4
+    across, _, _ = proj_transform(*ends.T, axes.get_proj())
+    assert across[0] < across[1]
+    note = axes.figure.texts[0].get_text()
+    assert note.startswith(f"{'xyz'[along]} from 0 m to 0.4 m, left to right; {width:g} m in")
+
+
+COMPACT = [
+    (0.4, 0.4, 0.02),
+    (0.1, 0.11, 0.02),
+    (0.1, 0.11, 0.04),
+    (0.1, 0.4, 0.4),
+    (0.4, 0.1, 0.4),
+    (0.1, 0.11, 0.12),
+    (0.1, 0.1, 0.14),
+]
+
+
+@pytest.mark.parametrize("size", COMPACT)
+def test_labels_of_a_compact_body_stand_apart_and_inside(size):
+    axes, body, renderer = drawn(size)
+    assert np.ptp(np.flatnonzero(body.any(axis=1))) > 0.4 * body.shape[0]
+    texts = [axis.label for axis in (axes.xaxis, axes.yaxis, axes.zaxis)]
+    texts += [t.label1 for axis in (axes.xaxis, axes.yaxis, axes.zaxis) for t in axis.majorTicks]
+    extents = [t.get_window_extent(renderer) for t in texts if t.get_text()]
+    assert len(extents) >= 6
+    for i, one in enumerate(extents):
+        assert not any(one.overlaps(other) for other in extents[i + 1 :])
+        assert one.x0 > 0
+        assert one.y0 > 0
+        assert one.x1 < axes.figure.axes[1].get_window_extent().x0
+        assert one.y1 < body.shape[0]
+
+
+def test_a_surface_that_cannot_be_drawn_is_refused():
+    nodes, triangles = box((1.0, 1.0, 1.0))
+    with pytest.raises(ValueError, match=r"values: .* the 8 nodes, got the shape \(3,\)"):
+        plots.draw_surface(nodes, triangles, np.ones(3), "stress")
+    with pytest.raises(ValueError, match="triangles: there are none"):
+        plots.draw_surface(nodes, triangles[:0], np.ones(8), "stress")

@@ -11,7 +11,8 @@ from exudyn.FEM import FEMinterface, KirchhoffMaterial
 from models import STEEL, disc_on_shaft
 from scipy.spatial.transform import Rotation
 
-import exudyn_rotor  # noqa: F401  (adds the call to MainSystem)
+# the package adds the call to MainSystem
+from exudyn_rotor import Formulation, Prestress, SolidRotor, select_modes
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
@@ -347,3 +348,62 @@ def test_rotor_at_rest_without_seats_needs_an_axis(fem):
     with pytest.raises(ValueError, match="give axis='x'"):
         mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model)
     assert item_counts(mbs) == before
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
+
+
+def stiffness_at_speed(fem, **options):
+    """Return the eigenvalues of the stiffness of the modes at 2000 rad/s."""
+    mbs = exu.SystemContainer().AddSystem()
+    made = mbs.CreateFixedAxisFFRFReducedOrderObject(
+        "rotor", fem, axis="z", translation="none", spin=2000.0, **options
+    )
+    motion = made["FFRFReducedOrderObjectDict"]["rotorBody"].motion
+    rest = np.zeros(motion.size)
+    at_rest = motion.forces(0.0, rest, rest)
+    matrix = [at_rest - motion.forces(0.0, unit, rest) for unit in np.eye(motion.size)]
+    return np.linalg.eigvalsh(np.array(matrix))
+
+
+@pytest.mark.parametrize("source", ["same mesh", "matrix"])
+def test_full_stiffening_with_a_given_prestress(fem, solid, source):
+    """``K + ω²(K2 − C)`` is that of the rotor reduced with the same prestress."""
+    prestress = solid.prestress()
+    if source == "matrix":
+        prestress = Prestress.from_matrix(prestress.matrix, solid.nodes)
+    found = stiffness_at_speed(fem, stiffening="full", prestress=prestress)
+    reduced = solid.reduce(fem, prestress=prestress)
+    chosen = select_modes(reduced, Formulation("none", 2000.0)).invariants
+    expected = np.linalg.eigvalsh(chosen.K + 2000.0**2 * (chosen.K2 - chosen.C))
+    assert found == pytest.approx(expected, rel=1e-6, abs=1.0)  # a spin has none
+    tilt = stiffness_at_speed(fem, stiffening="tilt")
+    assert np.abs(found - tilt).max() > 0.1 * 2000.0**2
+
+
+WRONG_PRESTRESS = {
+    "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=, made by"),
+    "True": ({"prestress": True}, TypeError, "prestress: expected a Prestress, got True"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_PRESTRESS)
+def test_prestress_that_cannot_be_used_says_what_to_give(fem, case):
+    options, kind, message = WRONG_PRESTRESS[case]
+    mbs = exu.SystemContainer().AddSystem()
+    before = item_counts(mbs)
+    with pytest.raises(kind, match=message):
+        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z", **options)
+    assert item_counts(mbs) == before
+
+
+def test_what_is_returned_prints_short(fem):
+    mbs = exu.SystemContainer().AddSystem()
+    made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z")
+    body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
+    assert repr(body) == (
+        "RotorBody('rotor', Sect. 2.2, stiffening 'tilt', 8 modes, markers: left, right)"
+    )
+    assert len(repr(made)) < 400

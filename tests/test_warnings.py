@@ -13,12 +13,16 @@ from point_rotors import ring_rotor
 import exudyn_rotor
 from exudyn_rotor import (
     AssumptionWarning,
+    Formulation,
     SolidRotor,
+    StressField,
     Support,
     add_rotor,
     campbell,
     check_run,
     propose,
+    select_modes,
+    stress_history,
 )
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
@@ -58,6 +62,18 @@ def run_beyond_its_assumptions(beam):
     check_run(body)
 
 
+def native_stress_of_a_prestressed_rotor(beam):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, beam.reduce(1, prestress=True, stress=True), spin=10.0)
+    body.add_node_sensor(0, exu.OutputVariableType.StressLocal)
+
+
+def stress_at_speed_without_prestress(beam):
+    reduced = beam.reduce(1, stress=True)
+    field = StressField.of(reduced, select_modes(reduced, Formulation("none", 10.0)))
+    stress_history(field, [0.0], np.zeros((1, field.modes.shape[2])), 10.0)
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "solid/prestress.py:_in_equilibrium": (
@@ -66,8 +82,14 @@ PLACES = {
     "solid/prestress.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress",
     ),
-    "linear/equations/system.py:_warn_of_eccentricity": (
+    "linear/equations/system.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
+    ),
+    "body/sensors.py:_warn_of_static_stress": (
+        native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone",
+    ),
+    "strength/field.py:warn_without_static": (
+        stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress",
     ),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
@@ -105,7 +127,7 @@ def test_warning_fires(place, beam):
 
 
 # reached through a varying number of calls
-DEEP = {"linear/equations/system.py:_warn_of_eccentricity"}
+DEEP = {"linear/equations/system.py:warn_of_eccentricity"}
 
 
 @pytest.mark.parametrize("place", sorted(set(PLACES) - DEEP))

@@ -13,7 +13,7 @@ import numpy as np
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.locking import SPIN, TILTS
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record
+from exudyn_rotor.body.watch import Record, newton_tolerance
 from exudyn_rotor.nodal import skew
 
 _MOST = 400  # instants that are looked at
@@ -31,21 +31,26 @@ def lost_load(body: RotorBody, record: Record, size: float) -> float:
     steps = np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
     lost, whole = 0.0, 0.0
     for index in steps:
-        force, torque, missing = _balance(body, record, index)
+        force, torque, missing, unbalanced = _balance(body, record, index)
         whole = max(whole, size * np.linalg.norm(force), np.linalg.norm(torque))
-        lost = max(lost, size * np.linalg.norm(missing[:3]), np.linalg.norm(missing[3:]))
+        beyond = max(size * np.linalg.norm(missing[:3]), np.linalg.norm(missing[3:]))
+        lost = max(lost, beyond - size * unbalanced)
     return float(lost / whole) if whole else 0.0
 
 
 def _balance(
     body: RotorBody, record: Record, index: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return force and moment on the rotor, and the part of both (6,) that is lost."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Return force and moment on the rotor, the part of both (6,) that is lost, and a force [N].
+
+    The latter is what Newton's method may leave of the inertia forces, which are known to that.
+    """
     motion, place = body.motion, body.layout
     t = float(record.time[index])
     q, q_t, q_tt = (part[index] for part in (record.q, record.q_t, record.q_tt))
     own, rate = q[place.unknowns], q_t[place.unknowns]
-    external = motion.mass_matrix(t, own) @ q_tt[place.unknowns] - motion.forces(t, own, rate)
+    inertia = motion.mass_matrix(t, own) @ q_tt[place.unknowns]
+    external = inertia - motion.forces(t, own, rate)
     held = place.lock_mass * q_tt + place.lock_damping * q_t + place.lock_stiffness * q
     held += record.held[index]
     for number, guide in body.locks.prescribed.items():
@@ -64,8 +69,22 @@ def _balance(
             missing[number] = held[number] - push[number]
     force = motion.free_directions @ external[motion.translations] + push
     torque, lost = _moment(body, held, turn @ _levers(body) @ felt)
-    missing[3:] = lost
-    return force, torque, missing
+    # tilts are felt about the centre of mass, also where that has left the frame's node
+    travel = turn @ motion.invariants.S @ own[motion.modes] / motion.invariants.mass
+    e = body.motion.orientation @ motion.invariants.direction
+    lever = np.cross(travel, force - _weight(body))  # Exudyn's gravity gets no lever
+    # position markers exert it on the node, rigid ones do not
+    missing[3:] = min(lost, lost - (lever - e * (e @ lever)), key=np.linalg.norm)
+    residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
+    return force, torque, missing, float(residual * np.sqrt(motion.invariants.mass))
+
+
+def _weight(body: RotorBody) -> np.ndarray:
+    """Return the weight that Exudyn applies, inertial axes [N]."""
+    if body.gravity_load is None:
+        return np.zeros(3)
+    gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
+    return body.motion.invariants.mass * np.asarray(gravity)
 
 
 def _levers(body: RotorBody) -> np.ndarray:

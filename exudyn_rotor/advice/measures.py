@@ -17,6 +17,7 @@ from exudyn_rotor.stiffening import stiffening, tilt_factors
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
 _SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
+_HALVES = (slice(0, 3), slice(3, 6))  # translation, and tilt times the size
 _EXPLICIT_LIMIT = np.sqrt(8.0)  # ωh that RK44 bears without damping; RK33 bears √3
 
 
@@ -87,7 +88,12 @@ class Measures:
         return float(moved.max() / self.size)
 
     def travel(self) -> float:
-        """Return how far the centre of mass leaves a frame that does not follow, over the size."""
+        """Return how far the centre of mass leaves a frame that does not follow, over the size.
+
+        Zero where the spin is prescribed: the mass matrix is constant there.
+        """
+        if not self.body.formulation.has_spin:
+            return 0.0
         moved = np.linalg.norm(self.zeta @ self.invariants.S.T, axis=1) / self.invariants.mass
         return float(moved.max() / self.size)
 
@@ -195,9 +201,11 @@ class Measures:
         return 0.0
 
     def step_error(self) -> float:
-        """Return the relative period error ``0.0844 (ωh)²`` of the motion that was recorded.
+        """Return the relative period error of the recorded motion, ``κ(ωh)²`` with κ = 0.0844.
 
-        ω is the mean frequency of the coordinates, weighted with their amplitudes squared.
+        ω is the mean frequency of the coordinates, weighted with their amplitudes squared. Motion
+        of the rigid rotor that is slow in space, ``ω_s``, errs by ``κ(ωh)² ω/ω_s`` where it is
+        integrated in the rotor frame.
         """
         solver = last_solver(self.body)
         if solver is None or solver.explicit or len(self.record.time) < 3:
@@ -205,13 +213,33 @@ class Measures:
         kept = np.ones(self.body.motion.size, dtype=bool)
         if self.body.formulation.has_spin:
             kept[self.body.motion.formulation.translation_count] = False
-        q, q_t = self._q[:, kept], self._q_t[:, kept]
         weight = np.ones(kept.sum())
-        weight[: self.body.motion.formulation.translation_count] = self.invariants.mass
-        moved = float(q.var(axis=0) @ weight)
-        if moved == 0.0:
-            return 0.0
-        return float(PERIOD_ERROR * solver.step**2 * (q_t.var(axis=0) @ weight) / moved)
+        weight[: self.body.motion.formulation.translation_count] = np.sqrt(self.invariants.mass)
+        own = _frequency(weight * self._q[:, kept], weight * self._q_t[:, kept])
+        amplified = max(own**2, self._slow())
+        return float(PERIOD_ERROR * solver.step**2 * amplified)
+
+    def _slow(self) -> float:
+        """Return ``ω³/ω_s`` of the rigid rotor's lateral motion [rad²/s²], by its share of it."""
+        inv, e = self.invariants, self.invariants.direction
+        rows = np.vstack([inv.S / inv.mass, self.size * tilt_factors(inv)[0][:3]])
+        across = np.kron(np.eye(2), np.eye(3) - np.outer(e, e)) @ rows
+        time, speed = self.record.time, self.record.speed
+        angle = np.append(0.0, np.cumsum(0.5 * np.diff(time) * (speed[1:] + speed[:-1])))
+        own, rate = self.zeta @ across.T, self.zeta_t @ across.T
+        turned = rate + speed[:, None] * np.hstack(
+            [np.cross(e, own[:, :3]), np.cross(e, own[:, 3:])]
+        )
+        spatial = np.hstack([_turned(own[:, part], e, angle) for part in _HALVES])
+        spatial_rate = np.hstack([_turned(turned[:, part], e, angle) for part in _HALVES])
+        whole = np.sqrt((spatial**2).sum(axis=1).mean())
+        worst = 0.0
+        for part in _HALVES:
+            slow = _frequency(spatial[:, part], spatial_rate[:, part])
+            if slow > 0.0:
+                share = np.sqrt(spatial[:, part].var(axis=0).sum()) / whole
+                worst = max(worst, share * _frequency(own[:, part], rate[:, part]) ** 3 / slow)
+        return worst
 
     def spin_step(self) -> float:
         """Return the largest spin angle per step [rad]."""
@@ -225,6 +253,17 @@ class Measures:
             return 0.0
         highest = np.sqrt(np.diag(self.invariants.K)[self.flexible].max()) + self.fastest
         return float(solver.step * highest / _EXPLICIT_LIMIT)
+
+
+def _frequency(values: np.ndarray, rates: np.ndarray) -> float:
+    """Return the mean frequency of signals (s, c), weighted with their amplitudes squared."""
+    moved = values.var(axis=0).sum()
+    return float(np.sqrt(rates.var(axis=0).sum() / moved)) if moved else 0.0
+
+
+def _turned(values: np.ndarray, e: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return vectors (s, 3) across e, turned about it by angles (s,)."""
+    return np.cos(angle)[:, None] * values + np.sin(angle)[:, None] * np.cross(e, values)
 
 
 def _grows(K: np.ndarray, D: np.ndarray, smallest: float) -> bool:

@@ -74,6 +74,14 @@ class RotorBody:
     mesh_node_count: int = 0
     watched: dict = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """Return one line; :meth:`report` says more."""
+        return (
+            f"RotorBody({self.name!r}, Sect. {self.formulation.section}, "
+            f"stiffening {self.stiffening!r}, {len(self.selection.labels)} modes, "
+            f"markers: {', '.join(self.markers) or 'none'})"
+        )
+
     def marker(self, interface: str) -> exudyn.MarkerIndex:
         """Return the marker of an interface.
 
@@ -130,7 +138,12 @@ class RotorBody:
         )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
-        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
+        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
+
+        Stress in Exudyn, here and in contour plots, is that of the modal coordinates alone, without
+        the static centrifugal stress that the modes do not show; for a rotor with a prestress that
+        warns. :class:`exudyn_rotor.StressField` gives the whole.
+        """
         return sensors.add_node_sensor(self, node, output, **options)
 
     def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):

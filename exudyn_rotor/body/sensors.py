@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import exudyn
@@ -10,6 +11,7 @@ from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFun
 
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.body.locking import SPIN, guiding_force
+from exudyn_rotor.formulation import ConstantSpeed
 
 if TYPE_CHECKING:
     from exudyn_rotor.body.rotor_body import RotorBody
@@ -18,7 +20,17 @@ _KINDS = exudyn.OutputVariableType
 
 
 def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.SensorIndex:
-    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default."""
+    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default.
+
+    Exudyn takes stress (``StressLocal``), here and in its contour plots, from the modal coordinates
+    alone. The static centrifugal stress that the modes do not show is missing, which can be nearly
+    all of the stress; :class:`exudyn_rotor.StressField` adds it.
+
+    Warns
+    -----
+    UserWarning
+        For stress of a rotor that was reduced with a prestress and spins.
+    """
     shell = _shell(body)
     count = body.mesh_node_count
     if not 0 <= node < count:
@@ -26,11 +38,28 @@ def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.Sen
             f"rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
             + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
         )
+    _warn_of_static_stress(body, output)
     settings = {"storeInternal": True, "writeToFile": False} | options
     return body.mbs.AddSensor(
         SensorSuperElement(
             bodyNumber=shell, meshNodeNumber=int(node), outputVariableType=output, **settings
         )
+    )
+
+
+def _warn_of_static_stress(body: RotorBody, output: exudyn.OutputVariableType) -> None:
+    """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
+    spin = body.formulation.spin
+    at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
+    # K2 is what a body keeps of a prestress
+    if output != _KINDS.StressLocal or at_rest or body.selection.invariants.K2 is None:
+        return
+    warnings.warn(
+        f"rotor {body.name!r}: Exudyn's stress sensor shows the stress of the modes alone, without "
+        "the static centrifugal stress that they do not hold; record the modal coordinates and use "
+        "StressField.of(reduced, body) with stress_history",
+        UserWarning,
+        stacklevel=4,
     )
 
 

@@ -17,6 +17,7 @@ from exudyn_rotor.body import inputs
 from exudyn_rotor.body.adding import add_rotor
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.solid.prestress import Prestress
 from exudyn_rotor.solid.rotor import SolidRotor
 
 
@@ -42,6 +43,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     stiffening: str = "tilt",
     locking: str = "auto",
     markers: str = "rigid",
+    prestress: Prestress | None = None,
 ) -> dict:
     """Create a flexible rotor that spins about one fixed axis.
 
@@ -72,10 +74,13 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         translation: 'free', 'in-plane', 'none' or a PrescribedMotion
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
-            a rotor from NGSolve, see add_rotor
+            prestress
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.body.locking
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
+        prestress: static stress for stiffening='full', since a FEMinterface holds no elements to
+            compute it on: SolidRotor.prestress() of a rotor from NGSolve with the same mesh, or
+            Prestress.from_matrix() with the geometric stiffness of another program
 
     Returns:
         :dict: marker number of every boundary under its marker name, and under
@@ -93,13 +98,14 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             name='rotor', femInterface=fem, axis='z', initialAngularVelocity=[0, 0, 100])
         mLeft = rotor['rotor:left']
     """
+    _check_prestress(stiffening, prestress)
     rotation = inputs.rotation_matrix(referenceRotationMatrix)
     omega = inputs.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
     velocity = inputs.vector(initialVelocity, "initialVelocity", "m/s")
     if axis is None:
         axis = SpinAxis(rotation.T @ omega) if np.any(omega) else axis_through_seats(femInterface)
     rotor = SolidRotor.from_fem_interface(femInterface, axis)
-    reduced = rotor.reduce(femInterface)
+    reduced = rotor.reduce(femInterface, prestress=prestress)
     formulation = Formulation(translation, spin)
     speed = _speed_along(rotation @ rotor.axis.direction, omega)
     if formulation.translation_count:
@@ -127,6 +133,21 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     if verbose:
         exudyn.Print(body.report())
     return _dictionary(body)
+
+
+def _check_prestress(stiffening: str, prestress: Prestress | None) -> None:
+    if prestress is not None and not isinstance(prestress, Prestress):
+        raise TypeError(
+            f"prestress: expected a Prestress, got {prestress!r}; a FEMinterface has no elements "
+            "to compute one on: use SolidRotor.from_ngsolve(…).prestress() with the same mesh, or "
+            "Prestress.from_matrix(…)"
+        )
+    if stiffening == "full" and prestress is None:
+        raise ValueError(
+            "stiffening='full' needs the static stress: give prestress=, made by "
+            "SolidRotor.from_ngsolve(…).prestress() with the same mesh or by "
+            "Prestress.from_matrix(…), or use stiffening='tilt'"
+        )
 
 
 def axis_through_seats(fem: FEMinterface) -> SpinAxis:

@@ -64,6 +64,11 @@ def add_watch(body: RotorBody) -> None:
     """Add native sensors of all coordinates and constraint forces; see :meth:`RotorBody.watch`."""
     if body.watched:
         return
+    if body.mbs.systemIsConsistent:
+        raise ValueError(
+            f"watch: the system of rotor {body.name!r} is assembled already; call body.watch() "
+            "before mbs.Assemble()"
+        )
     options = {"storeInternal": True, "writeToFile": False}
     for name, node in body.nodes.items():
         for kind in _RATES:
@@ -112,6 +117,12 @@ def last_solver(body: RotorBody) -> Solver | None:
         return Solver(step, explicit=False)
     # solvers with step control take shorter steps than the nominal one
     return Solver(min(step, solver.it.currentStepSize), explicit=True)
+
+
+def newton_tolerance(body: RotorBody) -> float:
+    """Return the relative tolerance of Newton's method in the last solution; 0 before one."""
+    settings = body.mbs.sys.get("simulationSettings")
+    return 0.0 if settings is None else settings.timeIntegration.newton.relativeTolerance
 
 
 def _stored(body: RotorBody, name: str, item: int, kind) -> np.ndarray:

@@ -12,6 +12,7 @@ from exudyn_rotor.modes.basis import RIGID
 from exudyn_rotor.reduced import ReducedRotor
 
 NEGLIGIBLE = 1e-10
+_SAME = 1e-6  # share of its scale below which a difference of two bases is round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +29,26 @@ class Selection:
     labels : tuple of str
     invariants : Invariants
         In the basis Ψ, about the origin, mesh axes.
+    source : ReducedRotor
+        The rotor that it was taken from, without shapes; see :meth:`is_of`.
     """
 
     T: np.ndarray
     origin: np.ndarray
     labels: tuple[str, ...]
     invariants: Invariants
+    source: ReducedRotor
+
+    def is_of(self, reduced: ReducedRotor) -> bool:
+        """Return whether `reduced` has the basis Q that this was taken from.
+
+        Stored and loaded, with or without shapes, it is the same rotor. Columns that changed their
+        sign are another basis.
+        """
+        return _same_basis(self.source, reduced)
+
+    def __repr__(self) -> str:
+        return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
 
 
 def select_modes(
@@ -67,7 +82,28 @@ def select_modes(
         origin = reduced.axis.project(reduced.center_of_mass)
     T, labels = _columns(reduced, formulation, origin)
     invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
-    return Selection(T, origin, labels, _without_noise(invariants, negligible))
+    kept = _without_noise(invariants, negligible)
+    return Selection(T, origin, labels, kept, reduced.without_shapes())
+
+
+def _same_basis(one: ReducedRotor, two: ReducedRotor) -> bool:
+    """Compare what is linear or bilinear in the columns, and kept without shapes."""
+    if one.rigid != two.rigid or one.size != two.size:
+        return False
+    a, b = one.invariants, two.invariants
+    pairs = [
+        (a.direction, b.direction, 1.0),
+        (a.mass, b.mass, a.mass),
+        (one.center_of_mass, two.center_of_mass, np.sqrt(np.trace(a.J) / a.mass)),
+        (a.P, b.P, np.sqrt(np.trace(a.J))),
+        (a.G, b.G, 1.0),  # the columns are mass-orthonormal
+        (a.C, b.C, 1.0),
+        (a.K, b.K, np.maximum(np.abs(a.K), np.abs(b.K))),
+    ]
+    for name in one.interfaces.keys() & two.interfaces.keys():
+        motion = one.interfaces[name].motion
+        pairs.append((motion, two.interfaces[name].motion, np.abs(motion).max()))
+    return all(np.all(np.abs(x - y) <= _SAME * scale) for x, y, scale in pairs)
 
 
 def _without_noise(invariants: Invariants, negligible: float) -> Invariants:

@@ -10,15 +10,21 @@ with the stress σ_k of every mode and σ⁰ of the static centrifugal solution 
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from exudyn_rotor.modes.selection import Selection
 from exudyn_rotor.plots import draw_surface
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises
+
+if TYPE_CHECKING:
+    from exudyn_rotor.body.rotor_body import RotorBody
 
 Nodes = slice | np.ndarray
 
@@ -48,21 +54,25 @@ class StressField:
     has_static: bool
 
     @classmethod
-    def of(cls, reduced: ReducedRotor, selection: Selection) -> StressField:
+    def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
         """Take the stress of `reduced` in the basis of a formulation.
 
         Parameters
         ----------
         reduced : ReducedRotor
             Reduced with ``stress=True``; with ``prestress=True`` the static stress is complete.
-        selection : Selection
-            ``body.selection`` of a rotor in a scene, or of :func:`exudyn_rotor.select_modes`.
+        selection : Selection or RotorBody
+            Of :func:`exudyn_rotor.select_modes` for `reduced`, or the rotor in a scene that was
+            added from it.
 
         Raises
         ------
+        TypeError
+            If an argument is of another kind.
         ValueError
-            If the rotor has no stress modes.
+            If the rotor has no stress modes, or the selection is of another rotor.
         """
+        selection = _selection_of(reduced, selection)
         if reduced.shapes is None or reduced.shapes.stress is None:
             raise ValueError(
                 "stress: the rotor was reduced without stress modes; use reduce(…, stress=True) "
@@ -83,6 +93,12 @@ class StressField:
 
     def at(self, zeta: np.ndarray, speed: float, nodes: Nodes = slice(None)) -> np.ndarray:
         """Return the stress of modal coordinates (m,) at a spin speed [rad/s], (n, 6) [Pa]."""
+        zeta, count = np.asarray(zeta, dtype=float), self.modes.shape[2]
+        if zeta.shape != (count,):
+            raise ValueError(
+                f"zeta: needs {count} modal coordinates, shape ({count},), got the shape "
+                f"{zeta.shape}; rows over time go to stress_history"
+            )
         return self.modes[nodes] @ zeta + speed**2 * self.rest[nodes]
 
     def history(self, zeta: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
@@ -92,8 +108,43 @@ class StressField:
 
     def plot(self, zeta: np.ndarray, speed: float) -> Figure:
         """Return a picture of the von Mises stress on the surface [MPa]."""
+        warn_without_static(self, speed)
         values = 1e-6 * von_mises(self.at(zeta, speed))
         return draw_surface(self.positions, self.triangles, values, "von Mises stress [MPa]")
+
+
+def warn_without_static(field: StressField, speed: ArrayLike) -> None:
+    """Warn where stress at speed lacks the static part; called by what a user calls."""
+    fastest = np.max(np.abs(speed))
+    if field.has_static or fastest == 0.0:
+        return
+    warnings.warn(
+        f"stress at speeds up to {fastest:.6g} rad/s without the static centrifugal stress, which "
+        "the modes show in part only; reduce the rotor with reduce(…, stress=True, prestress=True)",
+        UserWarning,
+        stacklevel=3,
+    )
+
+
+def _selection_of(reduced: ReducedRotor, given: Selection | RotorBody) -> Selection:
+    """Return the selection given as such or by its rotor body, checked against `reduced`."""
+    if not isinstance(reduced, ReducedRotor):
+        raise TypeError(
+            f"reduced: expected a ReducedRotor, got {type(reduced).__name__}; SolidRotor.reduce "
+            "makes one"
+        )
+    selection = getattr(given, "selection", given)
+    if not isinstance(selection, Selection):
+        raise TypeError(
+            "selection: expected what select_modes(reduced, formulation) returns, or a RotorBody, "
+            f"got {type(given).__name__}"
+        )
+    if not selection.is_of(reduced):
+        raise ValueError(
+            f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take the "
+            "one that was added to the scene, or select_modes(reduced, formulation)"
+        )
+    return selection
 
 
 def _static_share(reduced: ReducedRotor) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from tqdm import tqdm
 from exudyn_rotor import plots
 from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
-from exudyn_rotor.strength.field import StressField
+from exudyn_rotor.strength.field import StressField, warn_without_static
 
 _CHUNK = 2_000_000  # values of a stress history held at a time
 
@@ -124,22 +125,24 @@ def stress_history(
         Mesh nodes that get a history, for instance ``rotor.interfaces[name].nodes``; the hottest
         `count` by default.
     count : int
-        Number of nodes with a history.
+        Number of nodes with a history, at least 1; without effect where `nodes` are given.
 
     Raises
     ------
+    TypeError
+        If `field` is no StressField.
     ValueError
-        If shapes do not fit, values are not finite, or a node does not exist.
+        If shapes do not fit, values are not finite, a node does not exist, or `count` is below 1.
     """
     time, zeta, speed = _checked(field, time, zeta, speed)
+    chosen = None if nodes is None else _node_numbers(nodes, len(field.positions))
+    if not isinstance(count, Integral) or count < 1:
+        raise ValueError(f"count: needs a number of nodes, 1 or more, got {count!r}")
+    warn_without_static(field, speed)
     peak, when = _envelope(field, zeta, speed)
-    if nodes is None:
-        chosen = np.argsort(peak)[::-1][: max(1, int(count))]
+    if chosen is None:
+        chosen = np.argsort(peak)[::-1][:count]
     else:
-        chosen = np.asarray(nodes)
-        valid = chosen.dtype.kind in "iu" and chosen.ndim == 1 and chosen.size > 0
-        if not valid or chosen.min() < 0 or chosen.max() >= len(peak):
-            raise ValueError(f"nodes: needs node numbers from 0 to {len(peak) - 1}, got {nodes!r}")
         chosen = chosen[np.argsort(peak[chosen])[::-1]]
     return StressHistory(
         time=time,
@@ -156,6 +159,11 @@ def stress_history(
 def _checked(
     field: StressField, time: ArrayLike, zeta: ArrayLike, speed: ArrayLike | float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    if not isinstance(field, StressField):
+        raise TypeError(
+            f"field: expected a StressField, got {type(field).__name__}; make one with "
+            "StressField.of(reduced, body)"
+        )
     time, zeta = np.asarray(time, dtype=float), np.asarray(zeta, dtype=float)
     wanted = (time.size, field.modes.shape[2])
     if time.ndim != 1 or zeta.shape != wanted or time.size == 0:
@@ -163,11 +171,29 @@ def _checked(
             f"zeta: needs one row of {wanted[1]} modal coordinates for each of the "
             f"{time.size} times, got the shape {zeta.shape}"
         )
-    speed = np.broadcast_to(np.asarray(speed, dtype=float), time.shape)
+    speed = np.asarray(speed, dtype=float)
+    if speed.shape not in ((), time.shape):
+        raise ValueError(
+            f"speed: needs one number, or one for each of the {time.size} times, got the shape "
+            f"{speed.shape}"
+        )
+    speed = np.broadcast_to(speed, time.shape)
     for name, values in (("time", time), ("zeta", zeta), ("speed", speed)):
         if not np.all(np.isfinite(values)):
             raise ValueError(f"{name}: has values that are not finite; the run may have failed")
     return time, zeta, speed
+
+
+def _node_numbers(nodes: Sequence[int], total: int) -> np.ndarray:
+    """Return chosen node numbers as an array; a message names the first that does not fit."""
+    numbers, wanted = np.asarray(nodes), f"nodes: needs node numbers from 0 to {total - 1}"
+    if numbers.ndim != 1 or numbers.size == 0 or numbers.dtype.kind not in "iu":
+        kind = "a mask; use np.flatnonzero(mask)" if numbers.dtype.kind == "b" else numbers.dtype
+        raise ValueError(f"{wanted} in one row, got the shape {numbers.shape} of {kind}")
+    outside = numbers[(numbers < 0) | (numbers >= total)]
+    if outside.size:
+        raise ValueError(f"{wanted}, got {outside[0]}")
+    return numbers
 
 
 def _envelope(
