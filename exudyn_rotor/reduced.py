@@ -121,6 +121,9 @@ class ReducedRotor:
         None when the rotor was reduced without them: then no mesh nodes, no drawing.
     centrifugal : Centrifugal or None
         None when the rotor was reduced without a computed prestress, or without shapes.
+    with_attachments : ReducedRotor or None
+        The same rotor with static responses to loads at its interfaces beside the modes, without
+        shapes: what says how much the modes leave out. None where that is not known.
     """
 
     axis: SpinAxis
@@ -133,6 +136,7 @@ class ReducedRotor:
     grounded: bool = False
     shapes: ModeShapes | None = None
     centrifugal: Centrifugal | None = None
+    with_attachments: ReducedRotor | None = None
 
     def __post_init__(self) -> None:
         _freeze(self, "center_of_mass", "mode_mass")

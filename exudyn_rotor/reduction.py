@@ -10,6 +10,7 @@ import scipy.linalg
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor.invariants import Invariants
+from exudyn_rotor.modes.attachment import attachment_modes
 from exudyn_rotor.modes.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
 from exudyn_rotor.modes.component import ModeBasis, check_same_mesh, free_modes
 from exudyn_rotor.modes.fem_interface import fem_interface_modes
@@ -37,7 +38,17 @@ def reduce_rotor(
     rotor = stressed(rotor, prestress)
     if not 0.0 <= rank_tolerance < 1.0:
         raise ValueError(f"rank_tolerance: needs a share from 0 to below 1, got {rank_tolerance!r}")
-    component = _component_modes(rotor, modes)
+    return _reduced(rotor, _component_modes(rotor, modes), stress, keep_shapes, rank_tolerance)
+
+
+def _reduced(
+    rotor: SolidRotor,
+    component: ModeBasis,
+    stress: bool,
+    keep_shapes: bool,
+    rank_tolerance: float,
+    attach: bool = True,
+) -> ReducedRotor:
     center = rotor.center_of_mass
     rigid, names = _rigid_motions(rotor, center)
     basis = orthonormal_basis(rigid, names, component, rotor.mass, rotor.stiffness, rank_tolerance)
@@ -64,7 +75,22 @@ def reduce_rotor(
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
         centrifugal=_centrifugal(rotor) if keep_shapes else None,
+        with_attachments=_with_attachments(rotor, component, rank_tolerance) if attach else None,
     )
+
+
+def _with_attachments(
+    rotor: SolidRotor, component: ModeBasis, rank_tolerance: float
+) -> ReducedRotor | None:
+    """Return the rotor with attachment modes as well; None if its static response is unknown."""
+    try:
+        added = attachment_modes(rotor, component.matrix)
+    except ValueError:  # loose parts; the given modes may do without them
+        return None
+    both = ModeBasis(
+        np.hstack([component.matrix, added.matrix]), component.labels + added.labels, rotor.nodes
+    )
+    return _reduced(rotor, both, False, False, rank_tolerance, attach=False)
 
 
 def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:

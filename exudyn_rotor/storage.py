@@ -17,13 +17,17 @@ _INVARIANTS = ("direction", "mass", "center", "J", "S", "P", "M", "K", "D", "G",
 _PRESTRESS = ("K2", "B")
 _CENTRIFUGAL = ("displacement", "stress", "yield_stress", "constant_stress")
 _SHAPES = ("nodes", "matrix", "triangles", "stress")
+_ATTACHED = "attached."
 _INTERFACE = ("reference", "center", "radius", "motion")
 
 
 def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
     """Write `rotor` to `path`; a file of that name is replaced only by a complete one."""
+    write_arrays(path, {"format": _FORMAT} | _entries(rotor))
+
+
+def _entries(rotor: ReducedRotor) -> dict[str, object]:
     data = {
-        "format": _FORMAT,
         "axis": np.vstack([rotor.axis.direction, rotor.axis.point]),
         "center_of_mass": rotor.center_of_mass,
         "rigid": np.array(rotor.rigid, dtype=str),
@@ -38,7 +42,10 @@ def save_reduced(rotor: ReducedRotor, path: str | PathLike) -> None:
     for index, interface in enumerate(rotor.interfaces.values()):
         data |= {f"interface{index}.{key}": getattr(interface, key) for key in _INTERFACE}
     data |= _given("shapes", rotor.shapes, _SHAPES)
-    write_arrays(path, data)
+    if rotor.with_attachments is not None:
+        added = _entries(rotor.with_attachments)
+        data |= {_ATTACHED + key: value for key, value in added.items()}
+    return data
 
 
 def _given(group: str, owner: object, names: tuple[str, ...]) -> dict[str, object]:
@@ -79,6 +86,11 @@ def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
     if static["yield_stress"] is not None:
         static["yield_stress"] = float(static["yield_stress"])
     has_static = any(value is not None for value in static.values())
+    attached = {
+        key.removeprefix(_ATTACHED): value
+        for key, value in data.items()
+        if key.startswith(_ATTACHED)
+    }
     return ReducedRotor(
         axis=SpinAxis(*data["axis"]),
         center_of_mass=data["center_of_mass"],
@@ -90,4 +102,5 @@ def _rotor_from(data: dict[str, np.ndarray]) -> ReducedRotor:
         grounded=bool(data["grounded"]),
         shapes=shapes,
         centrifugal=Centrifugal(**static) if has_static else None,
+        with_attachments=_rotor_from(attached) if attached else None,
     )

@@ -16,6 +16,7 @@ from exudyn_rotor import (
     add_rotor,
     campbell,
     check_run,
+    craig_bampton_modes,
     keep_modes,
     propose,
 )
@@ -34,8 +35,9 @@ def reduced(solid):
 
 
 @pytest.fixture(scope="module")
-def run(reduced):
+def run(solid):
     """A quiet run: unbalance and weight at constant speed."""
+    reduced = solid.reduce(craig_bampton_modes(solid, 6)).without_shapes()
     return _finished(reduced, "none", spin=200.0, gravity=[0, -9.81, 0])
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import exudyn
@@ -48,6 +49,8 @@ class Candidate:
     interfaces : tuple of str
     translations : ndarray, shape (3, k)
         Load of a unit acceleration along (n1, n2, e).
+    attached : Candidate or None
+        The same with attachment modes; None where that is not known, as in a scene.
     """
 
     source: Source
@@ -62,6 +65,7 @@ class Candidate:
     axial: bool
     interfaces: tuple[str, ...]
     translations: np.ndarray
+    attached: Candidate | None = None
     _systems: dict[float, PeriodicSystem] = field(default_factory=dict, repr=False)
 
     @property
@@ -128,6 +132,8 @@ def candidate(
     TypeError, ValueError
         For a target of another kind, unknown interfaces, or supports given with a scene.
     """
+    if axial not in (None, True, False):
+        raise TypeError(f"axial: needs True, False or None, got {axial!r}")
     if isinstance(target, ReducedRotor):
         return _of_rotor(target, body, supports, interfaces, axial)
     if isinstance(target, exudyn.MainSystem):
@@ -141,6 +147,11 @@ def candidate(
 def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
     known = supports is not None
     source = linear_source(reduced, body=body, supports=supports if known else ())
+    attached = None
+    if reduced.with_attachments is not None:
+        with warnings.catch_warnings():  # said above
+            warnings.filterwarnings("ignore", message="the centre of mass is")
+            attached = _of_rotor(reduced.with_attachments, body, supports, interfaces, axial)
     if axial is None:
         axial = not known or any(_acts_along(support) for support in source.supports)
     first = len(reduced.rigid)
@@ -157,6 +168,7 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
         axial=bool(axial),
         interfaces=_named(interfaces, tuple(reduced.interfaces)),
         translations=axes_of(reduced.axis).T @ source.invariants.S,
+        attached=attached,
     )
 
 
@@ -236,6 +248,8 @@ def _named(interfaces: Sequence[str] | None, known: tuple[str, ...]) -> tuple[st
                 "where it is loaded; add some with rotor.with_interface"
             )
         return known
+    if not isinstance(interfaces, Iterable):
+        raise TypeError(f"interfaces: needs a list of names, got {interfaces!r}")
     names = (interfaces,) if isinstance(interfaces, str) else tuple(interfaces)
     unknown = [name for name in names if name not in known]
     if unknown or not names:

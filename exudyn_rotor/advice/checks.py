@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
@@ -12,10 +13,13 @@ from exudyn_rotor.advice.lost import lost_load
 from exudyn_rotor.advice.measures import Measures
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.request import PERIOD_ERROR, share
+from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.prestress import von_mises
+
+_SAME = 1e-6  # relative difference of masses and moments of one rotor
 
 
 @dataclass(frozen=True)
@@ -100,6 +104,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "locked": 1e-6,
         "lost load": 0.01,
         "top modes": 0.01,
+        "residual": accuracy,
         "strain": accuracy,
         "stiffening": accuracy,
         "divergence": 0.5,
@@ -164,6 +169,8 @@ def check_run(
                              feels, over the largest load
     ``top modes``   0.01     elastic energy in the highest fifth of the flexible modes over the
                              energy of the motion: how much the modes beyond may hold
+    ``residual``    a        static deflection at interfaces that the modes leave out (residual
+                             flexibility) over their displacement; not for loads elsewhere
     ``strain``      a        mean centrifugal strain as the modes show it; the relative error of
                              linear elasticity
     ``stiffening``  a        stiffening that the level leaves out, as relative change of frequency
@@ -184,6 +191,8 @@ def check_run(
     if not body.mbs.systemIsConsistent:
         raise ValueError("check_run: the system is not assembled; run it first")
     _check_kinds(reduced, proposal)
+    if reduced is not None:
+        _check_same(body, reduced)
     if accuracy is None:
         accuracy = proposal.accuracy if proposal is not None else 1e-3
     known = _limits(share(accuracy, "accuracy"), limits)
@@ -215,12 +224,25 @@ def _check_kinds(reduced: object, proposal: object) -> None:
             raise TypeError(f"{name}=: needs a {kind.__name__}, got {type(value).__name__}")
 
 
+def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:
+    """Refuse another rotor; one with other modes of the same is all right."""
+    own, given = body.selection.source.invariants, reduced.invariants
+    change = np.abs(own.J - given.J).max() / np.abs(own.J).max()
+    if abs(own.mass - given.mass) > _SAME * own.mass or change > _SAME:
+        raise ValueError(
+            f"reduced=: of {given.mass:.6g} kg is another rotor than the body's, {own.mass:.6g} kg "
+            "or other moments of inertia; give the one that was added"
+        )
+
+
 def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
     known = default_limits(accuracy)
+    if not (limits is None or isinstance(limits, Mapping)):
+        raise TypeError(f"limits: needs a mapping of check to number, got {limits!r}")
     for name, value in (limits or {}).items():
         if name not in known:
             raise ValueError(f"limits: no check {name!r}; there are: {', '.join(known)}")
-        if not (np.isfinite(value) and value >= 0.0):
+        if not (isinstance(value, Real) and np.isfinite(value) and value >= 0.0):
             raise ValueError(f"limits: {name!r} needs a number ≥ 0, got {value!r}")
         known[name] = float(value)
     return known
@@ -304,6 +326,14 @@ def _rows(
 ) -> Iterator[_Row]:
     for name, measure, meaning, advice in _ALWAYS:
         yield name, meaning, float(measure(measures)), advice
+    missing = residual_deflection(measures.body, measures.record, measures.size)
+    if missing is not None:
+        yield (
+            "residual",
+            "deflection at interfaces that the modes leave out",
+            missing,
+            "reduce with more modes, or with craig_bampton_modes",
+        )
     explicit = measures.explicit_step()
     if explicit:
         yield (

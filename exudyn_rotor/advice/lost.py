@@ -48,9 +48,8 @@ def _balance(
     motion, place = body.motion, body.layout
     t = float(record.time[index])
     q, q_t, q_tt = (part[index] for part in (record.q, record.q_t, record.q_tt))
-    own, rate = q[place.unknowns], q_t[place.unknowns]
-    inertia = motion.mass_matrix(t, own) @ q_tt[place.unknowns]
-    external = inertia - motion.forces(t, own, rate)
+    own = q[place.unknowns]
+    inertia, external = external_load(body, record, index)
     held = place.lock_mass * q_tt + place.lock_damping * q_t + place.lock_stiffness * q
     held += record.held[index]
     for number, guide in body.locks.prescribed.items():
@@ -60,7 +59,7 @@ def _balance(
             + place.lock_stiffness[number] * guide.value(t)
         )
     held[place.unknowns] = external
-    turn = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
+    turn = turned(body, q)
     felt = external[motion.modes]
     missing = np.zeros(6)
     push = turn @ motion.invariants.S @ felt
@@ -72,14 +71,29 @@ def _balance(
     # tilts are felt about the centre of mass, also where that has left the frame's node
     travel = turn @ motion.invariants.S @ own[motion.modes] / motion.invariants.mass
     e = body.motion.orientation @ motion.invariants.direction
-    lever = np.cross(travel, force - _weight(body))  # Exudyn's gravity gets no lever
+    lever = np.cross(travel, force - weight(body))  # Exudyn's gravity gets no lever
     # position markers exert it on the node, rigid ones do not
     missing[3:] = min(lost, lost - (lever - e * (e @ lever)), key=np.linalg.norm)
     residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
     return force, torque, missing, float(residual * np.sqrt(motion.invariants.mass))
 
 
-def _weight(body: RotorBody) -> np.ndarray:
+def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the inertia forces and the external load at an instant, each per coordinate."""
+    motion, place = body.motion, body.layout
+    t = float(record.time[index])
+    q, q_t, q_tt = (part[index][place.unknowns] for part in (record.q, record.q_t, record.q_tt))
+    inertia = motion.mass_matrix(t, q) @ q_tt
+    return inertia, inertia - motion.forces(t, q, q_t)
+
+
+def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
+    """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
+    motion = body.motion
+    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
+
+
+def weight(body: RotorBody) -> np.ndarray:
     """Return the weight that Exudyn applies, inertial axes [N]."""
     if body.gravity_load is None:
         return np.zeros(3)

@@ -22,6 +22,7 @@ from exudyn_rotor.advice.request import Request
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9
 _CRITICAL = 6  # speeds
+_Plan = list[tuple[float, list[float]]]  # speeds, each with frequencies of the rotor frame
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
 
@@ -39,12 +40,16 @@ class Truncation:
         Number of modes kept because their frequency lies in the band.
     top : float
         Relative change of the response by the highest fifth of all modes given.
+    missing : float or None
+        Relative change of the response by attachment modes beside all modes given; None where
+        these are not known.
     """
 
     kept: np.ndarray
     error: float
     in_band: int
     top: float
+    missing: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,9 +107,11 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     the other, those first that change the response least.
     """
     frequencies = given.frequencies
+    plan = _plan(given, request)
+    missing = None if given.attached is None else _missing(given, request, plan)
     if frequencies.size == 0:
-        return Truncation(np.zeros(0, dtype=int), 0.0, 0, 0.0)
-    responses = _responses(given, request)
+        return Truncation(np.zeros(0, dtype=int), 0.0, 0, 0.0, missing)
+    responses = _responses(given, request, plan)
     groups = [g for g in _alike(frequencies) if frequencies[g].min() > request.highest]
     scores = [responses.error_without(group) for group in groups]
     ranked = [groups[i] for i in np.argsort(scores, kind="stable")]
@@ -123,7 +130,26 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
         error=error,
         in_band=int(np.sum(frequencies <= request.highest)),
         top=responses.error_without(every[-max(1, round(0.2 * every.size)) :]),
+        missing=missing,
     )
+
+
+def _missing(given: Candidate, request: Request, plan: _Plan) -> float:
+    """Return the largest relative change of the response to any load by attachment modes.
+
+    Where it is not known what holds the rotor, relative to the response to the load that moves its
+    interfaces most: the flexible modes need not move them under every load.
+    """
+    own, whole = (_responses(one, request, plan).whole for one in (given, given.attached))
+    worst = 0.0
+    for part, complete in zip(own, whole, strict=True):
+        sizes = np.linalg.norm(complete, axis=0)
+        if not given.supported:
+            sizes[:] = sizes.max(initial=0.0)
+        moved = sizes > 0.0
+        change = np.linalg.norm(complete - part, axis=0)[moved] / sizes[moved]
+        worst = max(worst, change.max(initial=0.0))
+    return float(worst)
 
 
 def _alike(frequencies: np.ndarray) -> list[np.ndarray]:
@@ -132,9 +158,12 @@ def _alike(frequencies: np.ndarray) -> list[np.ndarray]:
     return np.split(np.arange(frequencies.size), np.flatnonzero(gaps) + 1)
 
 
-def _responses(given: Candidate, request: Request) -> Responses:
+def _plan(given: Candidate, request: Request) -> _Plan:
     plan = [(speed, list(band(given, request, speed))) for speed in request.speeds]
-    plan += [(speed, [0.0]) for speed in critical(given, request)]
+    return plan + [(speed, [0.0]) for speed in critical(given, request)]
+
+
+def _responses(given: Candidate, request: Request, plan: _Plan) -> Responses:
     points, places = [], np.zeros((given.frequencies.size, 0), dtype=int)
     for speed, frequencies in plan:
         M, D, K, count = given.hill(speed)

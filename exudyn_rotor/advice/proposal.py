@@ -198,7 +198,7 @@ def propose(
     chosen = choose_modes(given, request)
     level = choose_level(given, request, chosen.kept)
     translation, why, step = _translation(given, request, spin)
-    for message in _failing(request, level, tilt):
+    for message in _failing(given, request, chosen, level, tilt):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
     hertz = given.frequencies / _HERTZ
     return Proposal(
@@ -276,7 +276,12 @@ def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> lis
         f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
         f"{held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
     ]
-    if chosen.top > request.allowed:
+    if chosen.missing is not None:
+        lines.append(
+            "modes: static responses to loads at the interfaces, which those given do not hold, "
+            f"change the largest of it by {chosen.missing:.2g}"
+        )
+    elif chosen.top > request.allowed:
         lines.append(
             f"modes: the highest fifth of those given adds {chosen.top:.2g}; with free modes, what "
             "lies beyond them is of that order: give more, or craig_bampton_modes"
@@ -305,8 +310,23 @@ def _step_reason(request: Request, step: Step) -> str:
     )
 
 
-def _failing(request: Request, level: Level, tilt: float | None) -> list[str]:
+def _failing(
+    given: Candidate, request: Request, chosen: Truncation, level: Level, tilt: float | None
+) -> list[str]:
     messages = []
+    missing = chosen.missing if given.supported else None
+    if missing is not None and missing > request.allowed:
+        messages.append(
+            f"the {given.frequencies.size} flexible modes given miss {missing:.2g} of the "
+            f"response, above half the accuracy {request.accuracy:g}: reduce the rotor with more "
+            "modes, or with craig_bampton_modes, and ask again"
+        )
+    if given.frequencies.size and given.frequencies.max() < request.highest:
+        messages.append(
+            f"all {given.frequencies.size} flexible modes given lie in the band up to "
+            f"{request.highest / _HERTZ:.4g} Hz of the rotor frame, and more may: reduce the rotor "
+            "with more modes and ask again"
+        )
     if tilt is not None and tilt**2 > request.accuracy:
         messages.append(
             f"a tilt of {tilt:.3g} rad makes an error of its square, {tilt**2:.2g}, above the "

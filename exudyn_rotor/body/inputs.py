@@ -104,7 +104,8 @@ def _finite(values: ArrayLike, name: str, unit: str, size: int | None) -> np.nda
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: needs {needed} [{unit}], got {values!r}") from error
-    if array.shape != (() if size is None else (size,)) or not np.all(np.isfinite(array)):
+    text = isinstance(values, (str, bytes))  # NumPy reads numbers out of it
+    if text or array.shape != (() if size is None else (size,)) or not np.all(np.isfinite(array)):
         raise ValueError(f"{name}: needs {needed} [{unit}], got {values!r}")
     return array
 
@@ -168,6 +169,11 @@ def marker_requests(
     kinds = "rigid" if markers is None else markers
     if isinstance(kinds, str):
         kinds = dict.fromkeys(reduced.interfaces, kinds)
+    if not isinstance(kinds, Mapping):
+        raise TypeError(
+            "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
+            f"{kinds!r}"
+        )
     for name in (*kinds, *offsets):
         if name not in reduced.interfaces:
             known = ", ".join(reduced.interfaces) or "none"

@@ -53,6 +53,8 @@ def recommended_settings(
         rotor with its frame in the centre of mass, and keeps iterations few where supports seen
         from the rotor turn.
     """
+    if not (settings is None or isinstance(settings, exudyn.SimulationSettings)):
+        raise TypeError(f"settings: needs exudyn.SimulationSettings, got {type(settings).__name__}")
     for value, name, unit in ((end_time, "end_time", "s"), (step, "step", "s")):
         if not number(value, name, unit) > 0.0:
             raise ValueError(f"{name}: must be positive [s], got {value!r}")

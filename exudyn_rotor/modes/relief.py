@@ -58,7 +58,7 @@ def relative_rounding(stiffness: sp.csr_array, rigid: np.ndarray) -> float:
 
     This is the machine precision, or more where the matrix lost digits in an export.
     """
-    terms = row_norm(stiffness) * np.abs(rigid).max(axis=0)
+    terms = np.maximum(row_norm(stiffness) * np.abs(rigid).max(axis=0), np.finfo(float).tiny)
     strains = np.abs(stiffness @ rigid).max(axis=0) / terms
     return max(np.finfo(float).eps, strains.max(initial=0.0))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
@@ -74,7 +75,7 @@ def select_modes(
         When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
     """
     _check_possible(reduced, formulation)
-    if not 0.0 <= negligible < 1.0:
+    if not (isinstance(negligible, Real) and 0.0 <= negligible < 1.0):
         raise ValueError(f"negligible: needs a share from 0 to below 1, got {negligible!r}")
     if formulation.translation_count:
         origin = reduced.center_of_mass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import exudyn
@@ -78,6 +78,10 @@ def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ..
     """Return supports as a tuple; TypeError for anything else."""
     if isinstance(supports, Support):
         return (supports,)
+    if isinstance(supports, Mapping) or not isinstance(supports, Iterable):
+        raise TypeError(
+            f"supports: expected Support objects in a list, got {type(supports).__name__}"
+        )
     found = tuple(supports)
     for support in found:
         if not isinstance(support, Support):

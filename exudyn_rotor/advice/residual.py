@@ -1,0 +1,95 @@
+"""What the modes of a run leave out: static response of the interfaces beyond the modes.
+
+The loads F of the interfaces follow from the equations of motion, ``(U T)ᵀ F = f``, in the sense of
+least squares. With R, the flexibility of the attachment modes beyond that of the modes, they deform
+the rotor at its interfaces by ``R F`` more than the run shows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.advice.lost import external_load, turned, weight
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.watch import Record
+from exudyn_rotor.reduced import ReducedRotor
+
+_MOST = 400  # instants that are looked at
+_SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
+
+
+def residual_deflection(body: RotorBody, record: Record, size: float) -> float | None:
+    """Return the deflection at interfaces that the modes leave out, over their displacement.
+
+    Stiff supports let the interfaces move less than the rotor bends; then over its bending there.
+    Loads elsewhere, and on the spin of the frame, do not count. `size` [m] makes forces and
+    moments comparable. None where it is not known what the modes leave out.
+    """
+    rotor = body.selection.source
+    if rotor.with_attachments is None or not rotor.interfaces or "shell" not in body.objects:
+        return None
+    count = len(rotor.interfaces)
+    if len(record.time) < 2:
+        return 0.0
+    scale = np.tile([1.0] * 3 + [size] * 3, count)
+    motion, flexible = _motion(rotor)
+    rest = (_flexibility(rotor.with_attachments) - _flexibility(rotor)) * scale
+    equations = _equations(body, motion) * scale
+    solve = np.linalg.pinv(equations, rcond=_SEEN)
+    steps = np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
+    missing, whole = 0.0, 0.0
+    shown = np.tile([True] * 3 + [False] * 3, count)
+    for index in steps:
+        loads, zeta, frame = _state(body, record, index)
+        columns = body.selection.T @ zeta
+        bent = motion @ np.where(flexible, columns, 0.0)
+        moved = motion @ columns + np.tile(np.append(frame, [0.0] * 3), count)
+        missing = max(missing, np.linalg.norm((rest @ (solve @ loads))[shown]))
+        whole = max(whole, np.linalg.norm(moved[shown]), np.linalg.norm(bent[shown]))
+    return float(missing / whole) if whole else 0.0
+
+
+def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion of all interfaces (6n, k), and which columns are flexible."""
+    flexible = np.arange(rotor.size) >= len(rotor.rigid)
+    return np.vstack([one.motion for one in rotor.interfaces.values()]), flexible
+
+
+def _flexibility(rotor: ReducedRotor) -> np.ndarray:
+    """Return ``Σ φ φᵀ/ω²`` of the flexible modes at the interfaces, (6n, 6n)."""
+    motion, flexible = _motion(rotor)
+    scaled = motion[:, flexible] / rotor.frequencies[flexible]
+    return scaled @ scaled.T
+
+
+def _equations(body: RotorBody, motion: np.ndarray) -> np.ndarray:
+    """Return what loads at the interfaces (6n) do: on the modes, and pushing the frame."""
+    felt = (motion @ body.selection.T).T
+    push = np.tile(np.hstack([np.eye(3), np.zeros((3, 3))]), len(motion) // 6)
+    e = body.motion.invariants.direction
+    free = {0: np.zeros((3, 3)), 2: np.eye(3) - np.outer(e, e), 3: np.eye(3)}
+    frame = free[body.formulation.translation_count] @ push
+    return np.vstack([felt, frame / np.sqrt(body.motion.invariants.mass)])
+
+
+def _state(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, ...]:
+    """Return loads on modes and frame as in :func:`_equations`, modal coordinates, and how
+    far the frame's axis has moved, in its own axes."""
+    motion = body.motion
+    mass = motion.invariants.mass
+    external = external_load(body, record, index)[1]
+    q = record.q[index]
+    turn = turned(body, q)
+    own = q[body.layout.unknowns]
+    weighing = turn.T @ weight(body)
+    along = turn.T @ motion.free_directions
+    felt = external[motion.modes] - motion.invariants.S.T @ weighing / mass
+    push = along @ (external[motion.translations] - motion.free_directions.T @ weight(body))
+    # the frame may stand in a centre of mass off the axis, and that circles about it
+    arm = body.selection.origin - body.axis.project(body.selection.origin)
+    circled = turn.T @ motion.orientation @ arm - arm
+    return (
+        np.concatenate([felt, push / np.sqrt(mass)]),
+        own[motion.modes],
+        along @ own[motion.translations] + circled,
+    )

@@ -1,0 +1,140 @@
+"""What modes leave out: attachment modes against a pseudo-inverse, and estimates against runs."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scipy.linalg as la
+from models import STEEL, block_beam, disc_on_shaft
+from run_scenes import scene, solve
+
+from exudyn_rotor import (
+    AssumptionWarning,
+    ReducedRotor,
+    SolidRotor,
+    Support,
+    check_run,
+    craig_bampton_modes,
+    keep_modes,
+    propose,
+)
+from exudyn_rotor.modes.attachment import attachment_modes
+
+
+@pytest.fixture(scope="module")
+def beam():
+    return SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
+
+
+@pytest.fixture(scope="module")
+def rotor():
+    return SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z").center_interfaces()
+
+
+def flexibility(reduced: ReducedRotor) -> np.ndarray:
+    """Return the flexibility of the flexible modes at the interfaces, (6n, 6n)."""
+    flexible = slice(len(reduced.rigid), None)
+    motion = np.vstack([one.motion[:, flexible] for one in reduced.interfaces.values()])
+    return (motion / reduced.frequencies[flexible] ** 2) @ motion.T
+
+
+def exact_flexibility(rotor: SolidRotor) -> np.ndarray:
+    """Return the same of all flexible modes, by dense eigenvectors."""
+    values, modes = la.eigh(rotor.stiffness.toarray(), rotor.mass.toarray())
+    operators = [one.mean_motion(rotor.node_count) for one in rotor.interfaces.values()]
+    motion = np.vstack([each @ modes[:, 6:] for each in operators])
+    return (motion / values[6:]) @ motion.T
+
+
+@pytest.mark.parametrize("count", [0, 2, 6])
+def test_flexibility_is_complete_with_attachment_modes(beam, count):
+    exact, reduced = exact_flexibility(beam), beam.reduce(count)
+    error = np.abs(flexibility(reduced.with_attachments) - exact).max() / np.abs(exact).max()
+    assert error < 1e-8
+    assert np.abs(flexibility(reduced) - exact).max() > 0.01 * np.abs(exact).max()
+
+
+def test_held_rotor_has_responses_to_acceleration(beam):
+    """A rod clamped at one end, hanging: the far end moves by ``ρ g L²/(2E)``, cross strain 0."""
+    material = STEEL | {"poissonsRatio": 0.0}
+    rod = SolidRotor.from_ngsolve(block_beam(0.1), material, "z").clamped("left")
+    reduced = rod.reduce(1).with_attachments
+    along = np.argmax([abs(axis) for axis in rod.axis.direction])
+    load = reduced.invariants.S[along]
+    moved = reduced.interfaces["right"].motion @ (load / reduced.frequencies**2)
+    length = np.ptp(rod.nodes[:, along])
+    expected = STEEL["density"] * length**2 / (2.0 * STEEL["youngsModulus"])
+    assert moved[along] == pytest.approx(expected, rel=1e-9)
+
+
+def test_modes_that_keep_an_interface_rigid_are_complete(rotor):
+    rigid = craig_bampton_modes(rotor, 3)
+    assert attachment_modes(rotor, rigid.matrix).matrix.shape[1] == 0
+    mean = craig_bampton_modes(rotor, 3, coupling="RBE3")
+    assert attachment_modes(rotor, mean.matrix).matrix.shape[1] == 12
+    without = attachment_modes(rotor, np.zeros((rotor.nodes.size, 0)))
+    assert without.labels[0] == "attachment mode 1"
+
+
+def test_truncation_and_files_keep_them(rotor, tmp_path):
+    reduced = rotor.reduce(6)
+    assert keep_modes(reduced, [0, 1]).with_attachments is reduced.with_attachments
+    reduced.save(tmp_path / "rotor.npz")
+    loaded = ReducedRotor.load(tmp_path / "rotor.npz").with_attachments
+    given = reduced.with_attachments
+    assert np.array_equal(flexibility(loaded), flexibility(given))
+    assert loaded.rigid == given.rigid
+    assert loaded.with_attachments is None
+
+
+# ------------------------------------------------------------------ advice
+
+
+def displacements(reduced: ReducedRotor, **options):
+    """Return the body after a run under its weight and unbalance, and its interfaces' motion."""
+    mbs, body = scene(reduced, gravity=[0.0, -9.81, 0.0], **options)
+    kind = exu.OutputVariableType.Displacement
+    sensors = [body.add_interface_sensor(name, kind) for name in ("left", "right")]
+    body.watch()
+    mbs.Assemble()
+    solve(mbs, 400, 0.04)
+    return body, np.hstack([mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors])
+
+
+@pytest.mark.parametrize("count", [0, 4, 8])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"translation": "none", "spin": 200.0},
+        {"translation": "free", "initial_speed": 200.0},
+        {"translation": "in-plane", "initial_speed": 200.0},
+    ],
+    ids=lambda options: options["translation"],
+)
+def test_estimate_after_a_run_is_the_change_by_attachment_modes(rotor, count, options):
+    """Static response only, so of the same size as the change in a run that also vibrates."""
+    lopsided = rotor.add_point_mass([0.15, 0, 0.215], 0.005)
+    reduced = lopsided.reduce(count)
+    body, found = displacements(reduced, **options)
+    _, better = displacements(reduced.with_attachments, **options)
+    change = np.linalg.norm(found - better, axis=1).max() / np.linalg.norm(better, axis=1).max()
+    row = check_run(body, warn=False)["residual"]
+    assert row.value == pytest.approx(change, rel=0.5)
+    assert row.ok == (change < 1e-3)
+
+
+def test_modes_that_are_missing_are_told_before_a_run(rotor):
+    supports = [Support(name, 1e7, 100.0) for name in ("left", "right")]
+    given = {"speeds": 100.0, "supports": supports}
+    for reduced, missed in ((rotor.reduce(0), "the 0"), (rotor.reduce(4), "the 4")):
+        with pytest.warns(AssumptionWarning, match=f"{missed} flexible modes given miss"):
+            propose(reduced, **given)
+    proposal = propose(rotor.reduce(craig_bampton_modes(rotor, 8)), **given)
+    assert any("do not hold" in reason for reason in proposal.reasons)
+
+
+def test_band_beyond_all_modes_is_told(rotor):
+    supports = [Support(name, 1e7, 100.0) for name in ("left", "right")]
+    reduced = rotor.reduce(craig_bampton_modes(rotor, 0))
+    highest = reduced.frequencies.max()
+    with pytest.warns(AssumptionWarning, match="lie in the band up to"):
+        propose(reduced, speeds=1.0, load_frequencies=1.1 * highest, supports=supports)

@@ -1,0 +1,111 @@
+"""Bad input of the calls that scripts use most: at once, with the name and what to give."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from models import STEEL, block_beam
+
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    add_rotor,
+    check_run,
+    propose,
+    recommended_settings,
+)
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1)
+
+
+@pytest.fixture(scope="module")
+def reduced(solid):
+    return solid.reduce(2)
+
+
+@pytest.fixture(scope="module")
+def body(reduced):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=10.0, translation="none")
+    mbs.Assemble()
+    return body
+
+
+PROPOSALS = [
+    ({"accuracy": [1e-3, 1e-2]}, ValueError, "accuracy: needs a number between 0 and 1"),
+    ({"accuracy": -1}, ValueError, "accuracy: .* got -1"),
+    ({"accuracy": "a"}, ValueError, "accuracy: .* got 'a'"),
+    ({"interfaces": 3}, TypeError, "interfaces: needs a list of names, got 3"),
+    ({"interfaces": [3]}, ValueError, r"interfaces \[3\]: .* left, right"),
+    ({"supports": {"left": 1e6}}, TypeError, "supports: expected Support objects in a list"),
+    ({"supports": 3}, TypeError, "supports: expected Support objects in a list, got int"),
+    ({"supports": [3]}, TypeError, "supports: expected Support objects, got int"),
+    ({"axial": "no"}, TypeError, "axial: needs True, False or None, got 'no'"),
+    ({"speeds": 1e300}, ValueError, r"speeds: .* below 1e\+15 \[rad/s\], got 1e\+300"),
+    ({"speeds": True}, ValueError, "speeds: .* got True"),
+    ({"speeds": np.nan}, ValueError, "speeds: .* got nan"),
+    ({"tilt": [0.1, 0.2]}, ValueError, "tilt: needs a number between 0 and 1"),
+    ({"spin": 3, "speeds": (0.0, 9.0)}, TypeError, "spin=: needs a PrescribedMotion"),
+]
+
+
+@pytest.mark.parametrize(("options", "kind", "message"), PROPOSALS)
+def test_propose_refuses(reduced, options, kind, message):
+    given = {"speeds": 100.0, "supports": [Support("left", 1e6), Support("right", 1e6)]}
+    with pytest.raises(kind, match=message):
+        propose(reduced, **(given | options))
+
+
+CHECKS = [
+    ({"limits": [1.0]}, TypeError, "limits: needs a mapping"),
+    ({"limits": {"tilt": "a"}}, ValueError, "limits: 'tilt' needs a number ≥ 0, got 'a'"),
+    ({"limits": {"tilt": np.nan}}, ValueError, "limits: 'tilt' needs a number ≥ 0, got nan"),
+    ({"limits": {"wobble": 1.0}}, ValueError, "limits: no check 'wobble'"),
+    ({"accuracy": [0.1, 0.2]}, ValueError, "accuracy: needs a number between 0 and 1"),
+]
+
+
+@pytest.mark.parametrize(("options", "kind", "message"), CHECKS)
+def test_check_run_refuses(body, options, kind, message):
+    with pytest.raises(kind, match=message):
+        check_run(body, **options)
+
+
+def test_check_run_refuses_another_rotor(solid, body):
+    check_run(body, reduced=solid.reduce(3), warn=False)
+    other = solid.add_point_mass([0, 0, 0.1], 0.1).reduce(2)
+    with pytest.raises(ValueError, match=r"reduced=: .* is another rotor than the body's"):
+        check_run(body, reduced=other)
+
+
+BODIES = [
+    ({"markers": ["rigid"]}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
+    ({"markers": 3}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
+    ({"negligible": "a"}, ValueError, "negligible: .* got 'a'"),
+    ({"negligible": np.nan}, ValueError, "negligible: .* got nan"),
+    ({"initial_speed": "1"}, ValueError, "initial_speed: needs a finite number .* got '1'"),
+]
+
+
+@pytest.mark.parametrize(("options", "kind", "message"), BODIES)
+def test_add_rotor_refuses_and_adds_nothing(reduced, options, kind, message):
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(kind, match=message):
+        add_rotor(mbs, reduced, **options)
+    assert mbs.systemData.NumberOfObjects() == 0
+    assert mbs.systemData.NumberOfNodes() == 0
+
+
+SETTINGS = [
+    (("1", 1e-3), {}, ValueError, "end_time: needs a finite number .* got '1'"),
+    ((1.0, 0.0), {}, ValueError, "step: must be positive"),
+    ((1.0, 1e-3), {"settings": 3}, TypeError, "settings: needs exudyn.SimulationSettings"),
+]
+
+
+@pytest.mark.parametrize(("given", "options", "kind", "message"), SETTINGS)
+def test_recommended_settings_refuses(given, options, kind, message):
+    with pytest.raises(kind, match=message):
+        recommended_settings(*given, **options)
