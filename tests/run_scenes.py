@@ -20,12 +20,12 @@ def scene(reduced, translation, stiffness=(2e6, 2e6, 2e6), **options):
     return mbs, body
 
 
-def solve(mbs, steps, end_time, **options):
-    """Run the implicit solver, or that of `options`."""
+def solve(mbs, steps, end_time, period=None, **options):
+    """Run the implicit solver, or that of `options`; `period` is that of sensors, every step."""
     settings = exu.SimulationSettings()
     settings.timeIntegration.numberOfSteps = steps
     settings.timeIntegration.endTime = end_time
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = end_time / steps
+    settings.solution.sensors.writePeriod = period or end_time / steps
     mbs.SolveDynamic(settings, **options)

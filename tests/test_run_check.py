@@ -81,9 +81,23 @@ def test_quiet_run_passes_and_says_so(run, recwarn):
 
 def test_without_watch_only_the_end_is_known(reduced):
     body = _finished(reduced, "none", watch=False, spin=200.0)
-    check = check_run(body, warn=False)
+    with pytest.warns(AssumptionWarning, match="only the end state is known"):
+        check = check_run(body, limits={"stiffening": 1.0})
     assert not check.complete
     assert "only the end state is known" in str(check)
+
+
+def test_run_of_few_instants_is_told(reduced):
+    mbs, body = scene(reduced, "none", spin=200.0)
+    body.watch()
+    mbs.Assemble()
+    check_run(body)  # before a run there is nothing to miss
+    solve(mbs, 400, 0.04, period=0.01)
+    with pytest.warns(AssumptionWarning, match=r"only 5 instants are known: lower solution"):
+        check = check_run(body, limits={"residual": 1.0})
+    assert check.instants == 5
+    assert not check.complete
+    assert check.ok
 
 
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])

@@ -19,6 +19,7 @@ from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.solid.prestress import von_mises
 
+_ENOUGH = 20  # instants
 _SAME = 1e-6  # relative difference of masses and moments of one rotor
 
 
@@ -60,12 +61,18 @@ class RunCheck:
     Attributes
     ----------
     rows : tuple of CheckRow
-    complete : bool
-        False if ``body.watch()`` was not called before the run: then only the end state is known.
+    instants : int
+        How many instants were looked at; 1 if ``body.watch()`` was not called before the run, so
+        that only the end state is known.
     """
 
     rows: tuple[CheckRow, ...]
-    complete: bool
+    instants: int
+
+    @property
+    def complete(self) -> bool:
+        """True if enough instants are known to see the largest motion of a run."""
+        return self.instants >= _ENOUGH
 
     @property
     def ok(self) -> bool:
@@ -84,12 +91,21 @@ class RunCheck:
                 return row
         raise KeyError(f"no check {name!r} here; there are: {', '.join(r.name for r in self.rows)}")
 
+    def gap(self) -> str:
+        """Return what a record of few instants lacks."""
+        if self.instants == 1:
+            return "only the end state is known: call body.watch() before mbs.Assemble()"
+        return (
+            f"only {self.instants} instants are known: lower solution.sensors.writePeriod of the "
+            "simulation settings"
+        )
+
     def __str__(self) -> str:
         lines = ["check            value      limit  verdict"]
         lines += [str(row) for row in self.rows]
         lines += [f"  {row.name}: {row.advice}" for row in self.failed]
         if not self.complete:
-            lines.append("  only the end state is known: call body.watch() before mbs.Assemble()")
+            lines.append(f"  {self.gap()}")
         return "\n".join(lines)
 
 
@@ -141,7 +157,8 @@ def check_run(
     limits : mapping of str to float, optional
         Limits by name of a check in place of the defaults.
     warn : bool
-        Whether every row that fails gives an :class:`AssumptionWarning`.
+        Whether there is an :class:`AssumptionWarning` for every row that fails, and for a run that
+        was recorded at less than 20 instants.
 
     Returns
     -------
@@ -203,16 +220,17 @@ def check_run(
     else:
         made = [("finite", "coordinates that are not finite", np.inf, "the solution failed")]
     rows = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
-    result = RunCheck(rows, record.complete)
-    if warn:
-        for row in result.failed:
-            warnings.warn(
-                f"rotor {body.name!r}: {row.name} {row.value:.3g} exceeds {row.limit:.3g} "
-                f"({row.meaning}): {row.advice}",
-                AssumptionWarning,
-                stacklevel=2,
-            )
+    result = RunCheck(rows, len(record.time))
+    for message in _messages(result, ran=record.time[-1] > 0.0) if warn else ():
+        warnings.warn(f"rotor {body.name!r}: {message}", AssumptionWarning, stacklevel=2)
     return result
+
+
+def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
+    if ran and not result.complete:
+        yield result.gap()
+    for row in result.failed:
+        yield (f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}")
 
 
 def _check_kinds(reduced: object, proposal: object) -> None:

@@ -23,6 +23,7 @@ from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.truncation import keep_modes
 
 _HERTZ = 2.0 * np.pi
+_NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
 _GAIN = 1.3  # in step size from which a frame that follows pays: its steps cost a tenth more
 
 
@@ -165,8 +166,8 @@ def propose(
     Warns
     -----
     AssumptionWarning
-        Where no proposal meets the accuracy: the tilt is too large, or flexible modes stiffen
-        with the speed and the rotor was reduced without a prestress.
+        Where no proposal meets the accuracy: the tilt is too large, modes are missing, or flexible
+        modes stiffen with the speed and the rotor was reduced without a prestress.
 
     Notes
     -----
@@ -180,7 +181,8 @@ def propose(
     response of the interfaces by less than half the accuracy leave, see
     :mod:`exudyn_rotor.advice.modes`. Without known supports the flexibility of the flexible modes
     alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
-    relative to the modes given; the reasons say how much the highest of them still add.
+    relative to the modes given. What static responses to loads at the interfaces add to those is
+    in the reasons; above half the accuracy, or with all modes in the band, that warns.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
@@ -239,7 +241,8 @@ def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
         return spin
     if request.low == request.high:
         return request.high
-    if given.grounded or ("spin" not in given.rigid and given.source.size == given.own.size):
+    inv = given.invariants
+    if given.grounded or inv.Theta <= _NO_INERTIA * np.trace(inv.J):
         raise ValueError(
             "propose: this rotor's spin cannot be free (its stiffness holds it, or it has no "
             "moment of inertia); give spin=PrescribedMotion.run_up(…), or one speed"
