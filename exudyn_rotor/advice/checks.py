@@ -325,12 +325,6 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "stay below that speed, or use stiffening='full'; without it the growth may be false",
     ),
     (
-        "step",
-        Measures.step_error,
-        "relative error of the motion's period",
-        "take smaller steps; the error falls with their square",
-    ),
-    (
         "spin step",
         Measures.spin_step,
         "spin angle per step [rad]",
@@ -344,6 +338,13 @@ def _rows(
 ) -> Iterator[_Row]:
     for name, measure, meaning, advice in _ALWAYS:
         yield name, meaning, float(measure(measures)), advice
+    yield (
+        "step",
+        "relative error of the motion's period",
+        measures.step_error(),
+        f"the motion has {measures.frequency:.4g} rad/s on average, in its own coordinates; take "
+        "smaller steps, whose square the error follows, or start without a jump if it rings",
+    )
     missing = residual_deflection(measures.body, measures.record, measures.size)
     if missing is not None:
         yield (

@@ -203,21 +203,23 @@ class Measures:
     def step_error(self) -> float:
         """Return the relative period error of the recorded motion, ``κ(ωh)²`` with κ = 0.0844.
 
-        ω is the mean frequency of the coordinates, weighted with their amplitudes squared. Motion
-        of the rigid rotor that is slow in space, ``ω_s``, errs by ``κ(ωh)² ω/ω_s`` where it is
-        integrated in the rotor frame.
+        ω is :attr:`frequency`. Motion of the rigid rotor that is slow in space, ``ω_s``, errs by
+        ``κ(ωh)² ω/ω_s`` where it is integrated in the rotor frame.
         """
         solver = last_solver(self.body)
         if solver is None or solver.explicit or len(self.record.time) < 3:
             return 0.0
+        return float(PERIOD_ERROR * solver.step**2 * max(self.frequency**2, self._slow()))
+
+    @cached_property
+    def frequency(self) -> float:
+        """Mean frequency of the coordinates, weighted with their amplitudes squared [rad/s]."""
         kept = np.ones(self.body.motion.size, dtype=bool)
         if self.body.formulation.has_spin:
             kept[self.body.motion.formulation.translation_count] = False
         weight = np.ones(kept.sum())
         weight[: self.body.motion.formulation.translation_count] = np.sqrt(self.invariants.mass)
-        own = _frequency(weight * self._q[:, kept], weight * self._q_t[:, kept])
-        amplified = max(own**2, self._slow())
-        return float(PERIOD_ERROR * solver.step**2 * amplified)
+        return _frequency(weight * self._q[:, kept], weight * self._q_t[:, kept])
 
     def _slow(self) -> float:
         """Return ``ω³/ω_s`` of the rigid rotor's lateral motion [rad²/s²], by its share of it."""
