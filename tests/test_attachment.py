@@ -1,5 +1,7 @@
 """What modes leave out: attachment modes against a pseudo-inverse, and estimates against runs."""
 
+import gc
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from exudyn_rotor import (
     keep_modes,
     propose,
 )
+from exudyn_rotor.modes import relief
 from exudyn_rotor.modes.attachment import attachment_modes
 
 
@@ -84,6 +87,24 @@ def test_truncation_and_files_keep_them(rotor, tmp_path):
     assert np.array_equal(flexibility(loaded), flexibility(given))
     assert loaded.rigid == given.rigid
     assert loaded.with_attachments is None
+
+
+def test_stiffness_is_factorised_once(monkeypatch):
+    """Modes, prestress and attachment modes share it; another mass makes another relief."""
+    made, own = [], relief.SparseCholesky
+    monkeypatch.setattr(relief, "SparseCholesky", lambda matrix: made.append(1) or own(matrix))
+    mesh = disc_on_shaft(0.2)
+    fresh = SolidRotor.from_ngsolve(mesh, STEEL, "z")
+    fresh.reduce(3, prestress=True)
+    fresh.reduce(5)
+    assert len(made) == 1
+    heavier = fresh.add_point_mass([0.15, 0, 0.215], 0.1)
+    heavier.reduce(3)
+    assert len(made) == 2
+    known = len(relief._known)
+    del fresh, heavier
+    gc.collect()
+    assert len(relief._known) == known - 1
 
 
 # ------------------------------------------------------------------ advice

@@ -12,7 +12,7 @@ import numpy as np
 
 from exudyn_rotor.modes.basis import rigid_columns
 from exudyn_rotor.modes.component import ModeBasis
-from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions
+from exudyn_rotor.modes.relief import inertia_relief
 from exudyn_rotor.nodal import rotations, translations
 
 if TYPE_CHECKING:
@@ -49,8 +49,7 @@ def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
         loads.append(rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass))
     columns = np.hstack([np.zeros((rotor.nodes.size, 0)), *loads])
     if columns.shape[1]:
-        free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
-        columns = InertiaRelief(rotor.stiffness, rotor.mass, free).solve(columns)
+        columns = inertia_relief(rotor).solve(columns)
         norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
         columns = columns[:, norms > 0.0] / norms[norms > 0.0]
     labels = tuple(f"attachment mode {i + 1}" for i in range(columns.shape[1]))

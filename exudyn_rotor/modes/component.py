@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_rotor.axis import read_only
 from exudyn_rotor.modes import eigen
-from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions, relative_rounding
+from exudyn_rotor.modes.relief import free_rigid_motions, inertia_relief, relative_rounding
 
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
@@ -139,7 +139,7 @@ def free_modes(rotor: SolidRotor, count: int, *, tolerance: float = 1e-10) -> Mo
             stiffness.toarray(), mass.toarray(), count, skip=rigid_count
         )
     else:
-        inverse = InertiaRelief(stiffness, mass, rigid).solve
+        inverse = inertia_relief(rotor).solve
         values, modes = eigen.lanczos_modes(stiffness, mass, inverse, count, tolerance)
     precision = relative_rounding(stiffness, rigid)
     eigen.check_modes(stiffness, mass, values, modes, precision=precision)

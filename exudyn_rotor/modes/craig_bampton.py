@@ -16,7 +16,7 @@ from exudyn_rotor.modes import eigen
 from exudyn_rotor.modes.component import ModeBasis, check_count, eigenmode_labels
 from exudyn_rotor.modes.constrained import ConstrainedInverse
 from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
-from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions, relative_rounding
+from exudyn_rotor.modes.relief import free_rigid_motions, inertia_relief, relative_rounding
 from exudyn_rotor.nodal import rotations, translations
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def _mean_coupling(
     constraints = sp.csr_array(sp.vstack(rows))
     check_count(count, mass.shape[0] - constraints.shape[0], smallest=0)
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
-    inverse = ConstrainedInverse(InertiaRelief(stiffness, mass, rigid), constraints)
+    inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
     static = inverse.prescribe(np.eye(constraints.shape[0]))
     _check_mean_motion(constraints, static)
     precision = relative_rounding(stiffness, rigid)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import weakref
+from typing import TYPE_CHECKING
+
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
 from exudyn_rotor.modes.factor import NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.nodal import rotations, translations
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
 
 # Largest |K r| of a free motion r, as a share of ‖K‖∞ ‖r‖∞. Full precision leaves 1e-16, rounding
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
@@ -124,3 +130,27 @@ def _pins(rigid: np.ndarray) -> np.ndarray:
     # column pivoting picks the rows of R that form the best conditioned square matrix
     _, order = la.qr(rigid.T, mode="r", pivoting=True)
     return order[: rigid.shape[1]]
+
+
+# by the id of a living stiffness matrix: modes, attachment modes and prestress share the factor
+_known: dict[int, tuple[weakref.ref[sp.csr_array], int, InertiaRelief]] = {}
+
+
+def inertia_relief(rotor: SolidRotor) -> InertiaRelief:
+    """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
+
+    Raises
+    ------
+    ValueError
+        If the stiffness resists a motion that should be free, or leaves others free.
+    """
+    stiffness, mass = rotor.stiffness, rotor.mass
+    known = _known.get(id(stiffness))
+    if known is not None and known[0]() is mass and known[1] == rotor.rigid_motions:
+        return known[2]
+    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
+    made = InertiaRelief(stiffness, mass, rigid)
+    if known is None:
+        weakref.finalize(stiffness, _known.pop, id(stiffness), None)
+    _known[id(stiffness)] = weakref.ref(mass), rotor.rigid_motions, made
+    return made

@@ -24,7 +24,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.axis import read_only
-from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions
+from exudyn_rotor.modes.relief import inertia_relief
 from exudyn_rotor.nodal import skew
 from exudyn_rotor.solid import checks
 from exudyn_rotor.solid.interface import Interface
@@ -208,10 +208,7 @@ def euler_load(rotor: SolidRotor) -> np.ndarray:
 def _support(rotor: SolidRotor, clamped: Sequence[str]) -> tuple[np.ndarray, _Solve]:
     """Return the nodes that a hub holds, and the static solution with them held."""
     supported = rotor.clamped(clamped) if clamped else rotor
-    rigid = free_rigid_motions(
-        supported.nodes, supported.mass, supported.stiffness, supported.rigid_motions
-    )
-    relief = InertiaRelief(supported.stiffness, supported.mass, rigid)
+    relief = inertia_relief(supported)
     held = supported.elements.held
 
     def solve(load: np.ndarray) -> np.ndarray:
