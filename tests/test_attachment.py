@@ -30,7 +30,7 @@ def beam():
 
 @pytest.fixture(scope="module")
 def rotor():
-    return SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z").center_interfaces()
+    return SolidRotor.from_ngsolve(disc_on_shaft(0.2), STEEL, "z").center_interfaces()
 
 
 def flexibility(reduced: ReducedRotor) -> np.ndarray:
