@@ -277,13 +277,24 @@ def test_steps_too_long_are_found(reduced):
     assert not check["step"].ok
 
 
-def test_unstable_step_of_an_explicit_solver_is_found(reduced):
+# |R(iωh)| = 1 for the first three; the others grow by e in 3 steps
+EXPLICIT = {
+    "RK44": np.sqrt(8.0),
+    "RK33": np.sqrt(3.0),
+    "VelocityVerlet": 2.0,
+    "ExplicitEuler": np.sqrt(2.0 / 3.0),
+    "ExplicitMidpoint": (8.0 / 3.0) ** 0.25,
+}
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+def test_unstable_step_of_an_explicit_solver_is_found(reduced, method):
     mbs, body = scene(reduced, "none", spin=200.0)
     mbs.Assemble()
     highest = reduced.frequencies.max() + 200.0
     for factor, ok in ((0.5, True), (1.05, False)):
-        step = factor * np.sqrt(8.0) / highest
-        solve(mbs, 3, 3 * step, solverType=exu.DynamicSolverType.RK44)
+        step = factor * EXPLICIT[method] / highest
+        solve(mbs, 3, 3 * step, solverType=getattr(exu.DynamicSolverType, method))
         check = check_run(body, warn=False)
         assert check["explicit"].value == pytest.approx(factor, rel=1e-6)
         assert check["explicit"].ok == ok

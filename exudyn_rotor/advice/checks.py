@@ -197,7 +197,8 @@ def check_run(
                              slow motion in space that is integrated in the rotor frame; next to a
                              resonance amplitudes err by more, by the amplification
     ``spin step``   √(a/…)   spin angle per step [rad]: the same error at the spin speed
-    ``explicit``    1        explicit solvers: step over the stable one
+    ``explicit``    1        explicit solvers: step over that at which undamped motion grows (by e
+                             in the run, with Euler's method and the midpoint rule)
     ``yield``       1        static von Mises stress, by rotation and at rest, over the yield
                              stress; the larger of those at rest and at the highest speed
     ``speed``       1 + a    highest speed over that of the proposal

@@ -10,7 +10,7 @@ import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record, last_solver
+from exudyn_rotor.body.watch import Record, Solver, last_solver
 from exudyn_rotor.modes.basis import RIGID
 from exudyn_rotor.stiffening import stiffening, tilt_factors
 
@@ -18,7 +18,8 @@ _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies be
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
 _SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
 _HALVES = (slice(0, 3), slice(3, 6))  # translation, and tilt times the size
-_EXPLICIT_LIMIT = np.sqrt(8.0)  # ωh that RK44 bears without damping; RK33 bears √3
+_EXPLICIT = {"RK33": np.sqrt(3.0), "VelocityVerlet": 2.0}  # ωh that undamped motion bears
+_RK44 = np.sqrt(8.0)  # likewise; those with step control keep below it themselves
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,7 +255,20 @@ class Measures:
         if solver is None or not solver.explicit or self.flexible.size == 0:
             return 0.0
         highest = np.sqrt(np.diag(self.invariants.K)[self.flexible].max()) + self.fastest
-        return float(solver.step * highest / _EXPLICIT_LIMIT)
+        return float(solver.step * highest / _explicit_limit(solver))
+
+
+def _explicit_limit(solver: Solver) -> float:
+    """Return the ωh up to which undamped motion stays, or grows by e in the whole run at most.
+
+    Euler's method multiplies it by ``√(1 + (ωh)²)`` a step, the midpoint rule by
+    ``√(1 + (ωh)⁴/4)``.
+    """
+    if solver.method == "ExplicitEuler":
+        return (2.0 / solver.steps) ** 0.5
+    if solver.method == "ExplicitMidpoint":
+        return (8.0 / solver.steps) ** 0.25
+    return _EXPLICIT.get(solver.method, _RK44)
 
 
 def _frequency(values: np.ndarray, rates: np.ndarray) -> float:

@@ -27,10 +27,16 @@ class Solver:
     step : float
         Step size [s]; the last one where it is controlled.
     explicit : bool
+    method : str
+        Name of the explicit method, as in ``exudyn.DynamicSolverType``; empty for an implicit one.
+    steps : int
+        Nominal number of steps.
     """
 
     step: float
     explicit: bool
+    method: str = ""
+    steps: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +122,9 @@ def last_solver(body: RotorBody) -> Solver | None:
     if "Explicit" not in type(solver).__name__:
         return Solver(step, explicit=False)
     # solvers with step control take shorter steps than the nominal one
-    return Solver(min(step, solver.it.currentStepSize), explicit=True)
+    method = solver.GetSolverName().partition("(")[2].rstrip(")")
+    step = min(step, solver.it.currentStepSize)
+    return Solver(step, explicit=True, method=method, steps=integration.numberOfSteps)
 
 
 def newton_tolerance(body: RotorBody) -> float:

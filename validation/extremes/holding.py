@@ -102,7 +102,8 @@ def supports_unresolved(quick: bool = False) -> Row:
         200 * EPS * 1e14 / MASS * 1e-3**2 / 4.0,
         "ωh > 1: the frequency is that of the step, not of the support",
         "numerics",
-        "nothing; it stays stable (explicit solvers do not, see the steps)",
+        "by Exudyn nothing: it stays stable (explicit solvers do not, see the steps); check_run: "
+        "'step'",
     )
 
 

@@ -66,7 +66,8 @@ def explicit_row(solver: str, quick: bool = False) -> Row:
         spread + 3e-4,
         f"hω = {found[-1]:.4g}, ω the highest frequency plus the spin",
         "numerics",
-        f"nothing: the run goes on and ends at {end:g} times the start",
+        f"by Exudyn nothing: the run goes on and ends at {end:g} times the start; check_run: "
+        "'explicit'",
     )
 
 
@@ -88,7 +89,7 @@ def unstable_row(solver: str, quick: bool = False) -> Row:
         1e-6,
         "every step: an undamped motion grows",
         "numerics",
-        f"nothing: grown by {size:.3g} here",
+        f"by Exudyn nothing: grown by {size:.3g} here; check_run: 'explicit'",
     )
 
 
@@ -138,7 +139,7 @@ def implicit_row(solver: str, quick: bool = False) -> Row:
         1e-12 / ratios[0] ** 2,
         f"hω = {one_percent:.3g}: frequency wrong by 1 %; never unstable ({grown:.2g} at 10⁴)",
         "numerics",
-        "nothing: it stays bounded and gets inaccurate",
+        "by Exudyn nothing: it stays bounded and gets inaccurate; check_run: 'step'",
     )
 
 
@@ -164,7 +165,7 @@ def adaptive_row(quick: bool = False) -> Row:
         "displacement after ten periods; limit: the tolerance 1e-8 in each of the steps taken",
         max(error / taken for error, taken in found),
         tolerance,
-        told=f"nothing: it takes {found[-1][1]} steps of its own, also with "
+        told=f"need not be: it takes {found[-1][1]} steps of its own, also with "
         "automaticStepSize=False",
     )
 

@@ -95,7 +95,7 @@ def free_phase(quick: bool = False) -> Row:
         2.0 * np.pi * 1e6 * EPS * steps,
         "an unbalanced or flexible rotor: 20 steps a revolution",
         "numerics",
-        "nothing; only the balanced rigid rotor allows steps of many turns",
+        "check_run: 'spin step'; only the balanced rigid rotor allows steps of many turns",
     )
 
 

@@ -61,5 +61,5 @@ def limit_of_small_tilts(quick: bool = False) -> Row:
         10.0 * tilts[-1] ** 2,
         f"1 % at {exact_tilt(largest):.3g} rad",
         "physics",
-        "README: small tilts; nothing at run time",
+        "README: small tilts; check_run: 'tilt'",
     )
