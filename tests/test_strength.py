@@ -76,6 +76,19 @@ def test_static_stress_is_that_of_a_rotating_disc(ring):
     assert stress == pytest.approx(ring.static_stress(SPEED), abs=1e-9 * hoop)
 
 
+def test_stress_at_rest_is_in_the_field_once():
+    """A bar between clamped ends under uniform tension, which is in equilibrium as it is."""
+    bar = SolidRotor.from_ngsolve(block_beam(), STEEL, "z").clamped(["left", "right"])
+    tension = np.zeros((bar.node_count, 6))
+    tension[:, 2] = 5e7
+    reduced = bar.reduce(3, stress=True, prestress=bar.prestress(stress=tension))
+    field, zeta = steady_state(reduced, 300.0)
+    assert field.at(0.0 * zeta, 0.0) == pytest.approx(tension, abs=1.0)
+    assert field.at(zeta, 300.0) == pytest.approx(reduced.static_stress(300.0), abs=1.0)
+    history = stress_history(field, [0.0], [zeta], 300.0)
+    assert history.peak.max() == pytest.approx(von_mises(reduced.static_stress(300.0)).max())
+
+
 def test_history_is_the_superposition_and_finds_the_peak(beam):
     field, zeta = steady_state(beam, 300.0)
     time = np.linspace(0.0, 1.0, 41)

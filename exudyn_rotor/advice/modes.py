@@ -22,6 +22,7 @@ from exudyn_rotor.advice.request import Request
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9
 _CRITICAL = 6  # speeds
+_UNMOVED = 1e-6  # share of the largest response; the load is at a place that is held
 _Plan = list[tuple[float, list[float]]]  # speeds, each with frequencies of the rotor frame
 _ALIKE = 0.01  # relative distance of frequencies of a pair: both planes of bending go together
 
@@ -146,7 +147,7 @@ def _missing(given: Candidate, request: Request, plan: _Plan) -> float:
         sizes = np.linalg.norm(complete, axis=0)
         if not given.supported:
             sizes[:] = sizes.max(initial=0.0)
-        moved = sizes > 0.0
+        moved = sizes > _UNMOVED * sizes.max(initial=0.0)
         change = np.linalg.norm(complete - part, axis=0)[moved] / sizes[moved]
         worst = max(worst, change.max(initial=0.0))
     return float(worst)

@@ -12,6 +12,7 @@ import numpy as np
 
 from exudyn_rotor.modes.basis import rigid_columns
 from exudyn_rotor.modes.component import ModeBasis
+from exudyn_rotor.modes.factor import SparseCholesky
 from exudyn_rotor.modes.relief import inertia_relief
 from exudyn_rotor.nodal import rotations, translations
 
@@ -26,39 +27,62 @@ _RIGID = 1e-6
 def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
     """Return static responses to unit forces and moments at the interfaces, with inertia relief.
 
-    A rotor that its own stiffness holds gets those to uniform accelerations, too.
-
     Parameters
     ----------
     rotor : SolidRotor
     others : ndarray, shape (3n, k)
-        Modes that these are to go with. Interfaces that they keep rigid are left out: such modes
-        hold all that rigid interfaces can do.
+        Modes that these are to go with. Interfaces that they keep rigid on purpose, or that are
+        clamped, get no loads of their own. Where there are such, or the rotor's own stiffness holds
+        it, responses to uniform linear and angular accelerations are among them, with these
+        interfaces held: with the rigid motions of interfaces that ``craig_bampton_modes`` has, that
+        is the same as inertia relief.
 
     Raises
     ------
     ValueError
         If the rotor has loose parts.
     """
+    interfaces = rotor.interfaces.values()
+    rigid = [one for one in interfaces if _kept_rigid(one, others)]
     loads = [
-        interface.mean_motion(rotor.node_count).T.toarray()
-        for interface in rotor.interfaces.values()
-        if not _kept_rigid(interface, others)
+        one.mean_motion(rotor.node_count).T.toarray()
+        for one in interfaces
+        if one not in rigid and not _clamped(one, rotor)
     ]
+    inertia = rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
+    found = [np.zeros((rotor.nodes.size, 0))]
     if rotor.grounded:
-        loads.append(rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass))
-    columns = np.hstack([np.zeros((rotor.nodes.size, 0)), *loads])
-    if columns.shape[1]:
-        columns = inertia_relief(rotor).solve(columns)
-        norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
-        columns = columns[:, norms > 0.0] / norms[norms > 0.0]
+        loads.append(inertia)
+    if loads:
+        found.append(inertia_relief(rotor).solve(np.hstack(loads)))
+    if rigid and not rotor.grounded:
+        found.append(_held_at(rotor, rigid, inertia))
+    columns = np.hstack(found)
+    norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
+    columns = columns[:, norms > 0.0] / norms[norms > 0.0]
     labels = tuple(f"attachment mode {i + 1}" for i in range(columns.shape[1]))
     return ModeBasis(columns, labels, rotor.nodes)
 
 
+def _held_at(rotor: SolidRotor, interfaces: list[Interface], loads: np.ndarray) -> np.ndarray:
+    """Return static responses (3n, k) to loads with the nodes of interfaces held."""
+    held = np.concatenate([one.nodes for one in interfaces])
+    inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * held[:, None] + np.arange(3)).ravel())
+    columns = np.zeros_like(loads)
+    columns[inner] = SparseCholesky(rotor.stiffness[inner][:, inner]).solve(loads[inner])
+    return columns
+
+
+def _clamped(interface: Interface, rotor: SolidRotor) -> bool:
+    """Return True if stiff springs hold all nodes of the interface, coupled with nothing."""
+    rows = (3 * interface.nodes[:, None] + np.arange(3)).ravel()
+    part = rotor.stiffness[rows]
+    return bool(rotor.grounded and np.all(abs(part).sum(axis=1) == part[:, rows].diagonal()))
+
+
 def _kept_rigid(interface: Interface, modes: np.ndarray) -> bool:
     """Return True if no mode deforms the interface."""
-    if modes.shape[1] == 0 or len(interface.nodes) == 1:
+    if modes.shape[1] == 0 or len(interface.nodes) < 3:
         return False
     motion = modes.reshape(-1, 3, modes.shape[1])[interface.nodes].reshape(-1, modes.shape[1])
     turns = rotations(interface.positions, interface.center)

@@ -99,10 +99,11 @@ def _sparse(matrix: sp.csr_array) -> Solve:
     with ngsolve.TaskManager():
         assembled = SparseMatrixd.CreateFromCOO(rows, columns, lower.data, *lower.shape)
         inverse = assembled.Inverse(inverse="sparsecholesky")
-    right, solution = ngsolve.BaseVector(lower.shape[0]), ngsolve.BaseVector(lower.shape[0])
     threads = ngsolve.TaskManager if lower.shape[0] > _THREADED_SIZE else nullcontext
 
     def solve(vector: np.ndarray) -> np.ndarray:
+        # new ones each time: several threads may share a factor
+        right, solution = ngsolve.BaseVector(len(vector)), ngsolve.BaseVector(len(vector))
         right.FV().NumPy()[:] = vector
         with threads():
             solution.data = inverse * right

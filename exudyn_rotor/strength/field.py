@@ -3,9 +3,9 @@
 The modal coordinates of a running rotor hold the part of the static centrifugal deformation that
 the modes can show, ``ζ₀ = K⁻¹h`` per ω². What they cannot show is added from the static solution:
 
-    σ = Σ σ_k ζ_k + ω² (σ⁰ − Σ σ_k ζ₀_k)
+    σ = σ_r + Σ σ_k ζ_k + ω² (σ⁰ − Σ σ_k ζ₀_k)
 
-with the stress σ_k of every mode and σ⁰ of the static centrifugal solution per ω².
+with the stress σ_k of every mode, σ⁰ of the static centrifugal solution per ω², and σ_r at rest.
 """
 
 from __future__ import annotations
@@ -45,6 +45,8 @@ class StressField:
         Static stress per ω² that the modes do not show [Pa s²]; zero without a prestress.
     has_static : bool
         Whether the rotor was reduced with a prestress, so that the static stress is complete.
+    constant : ndarray, shape (n, 6)
+        Stress at rest [Pa]; zero unless the prestress was given one.
     """
 
     positions: np.ndarray
@@ -52,6 +54,7 @@ class StressField:
     modes: np.ndarray
     rest: np.ndarray
     has_static: bool
+    constant: np.ndarray
 
     @classmethod
     def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
@@ -83,12 +86,14 @@ class StressField:
         rest = np.zeros(columns.shape[:2])
         if static is not None:
             rest = static - columns @ _static_share(reduced)
+        constant = getattr(reduced.centrifugal, "constant_stress", None)
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
             modes=columns @ selection.T,
             rest=rest,
             has_static=static is not None,
+            constant=np.zeros(columns.shape[:2]) if constant is None else constant,
         )
 
     def at(self, zeta: np.ndarray, speed: float, nodes: Nodes = slice(None)) -> np.ndarray:
@@ -99,12 +104,12 @@ class StressField:
                 f"zeta: needs {count} modal coordinates, shape ({count},), got the shape "
                 f"{zeta.shape}; rows over time go to stress_history"
             )
-        return self.modes[nodes] @ zeta + speed**2 * self.rest[nodes]
+        return self.constant[nodes] + speed**2 * self.rest[nodes] + self.modes[nodes] @ zeta
 
     def history(self, zeta: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
         """Return the stress of (s, m) coordinates at s speeds, shape (s, n, 6) [Pa]."""
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], zeta, optimize=True)
-        return dynamic + (speed**2)[:, None, None] * self.rest[nodes]
+        return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
 
     def plot(self, zeta: np.ndarray, speed: float) -> Figure:
         """Return a picture of the von Mises stress on the surface [MPa]."""
