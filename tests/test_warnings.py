@@ -126,11 +126,7 @@ def test_warning_fires(place, beam):
     assert len([w for w in caught if issubclass(w.category, kind)]) == 1
 
 
-# reached through a varying number of calls
-DEEP = {"linear/equations/system.py:warn_of_eccentricity"}
-
-
-@pytest.mark.parametrize("place", sorted(set(PLACES) - DEEP))
+@pytest.mark.parametrize("place", sorted(PLACES))
 def test_warning_points_at_the_caller(place, beam):
     """The line that a user sees is that of the call, not of the package."""
     with warnings.catch_warnings(record=True) as caught:

@@ -71,7 +71,7 @@ def _of_solid(
 def _stiffness(
     supports: Sequence[Support], motions: Sequence[np.ndarray], names: tuple[str, ...], apart: bool
 ) -> np.ndarray:
-    if apart:
+    if apart and "spin" in names:  # else it moves nothing but rounding
         for U in motions:
             U[:3, names.index("spin")] = 0.0
     parts = (

@@ -78,7 +78,7 @@ class FullRotor:
         V and W of the centrifugal stiffening ``K2 + VᵀWV`` per Ω².
     rotor : SolidRotor
     spin : Spin, optional
-        The spin as a coordinate that unbalance does not couple; see :meth:`with_spin`.
+        The spin as a coordinate; see :meth:`with_spin`.
     """
 
     axis: SpinAxis
@@ -126,6 +126,11 @@ class FullRotor:
         """Load of the rotor's own eccentricity per Ω², ``h`` (83), shape (3n,), rotor frame."""
         return self.invariants.h
 
+    @property
+    def free_spin(self) -> Spin | None:
+        """The spin where nothing holds it, else None."""
+        return self.spin if self.spin is not None and self.spin.free else None
+
     def with_spin(self) -> FullRotor:
         """Return the same with the spin as a coordinate, as all analyses need it."""
         own = spin_of(self.rotor)
@@ -159,12 +164,13 @@ class FullRotor:
         values: np.ndarray,
         stack: dict[int, np.ndarray],
         strained: dict[int, np.ndarray] | None = None,
+        torsion: float = 0.0,
     ) -> dict[int, np.ndarray]:
         """Return what modes leave of the equations, per harmonic (3n, k) [N].
 
         ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C)) X_n + supports`` with ``s = λ + inΩ``. K
         is applied to `strained`, the stack itself by default; without free rigid motions in it,
-        rounding does not make forces of them.
+        rounding does not make forces of them. `torsion` is that of :meth:`Subspace.torsion`.
         """
         inv, left = self.invariants, {}
         strained = stack if strained is None else strained
@@ -172,10 +178,12 @@ class FullRotor:
             rate = values + 1j * n * speed
             left[n] = (
                 inv.M @ (X * rate**2)
-                + (inv.D @ X + 2.0 * speed * self._coriolis(X)) * rate
+                + (inv.D @ X + 2.0 * speed * (inv.G @ X)) * rate
                 + inv.K @ strained[n]
                 + speed**2 * self._centrifugal(X)
             )
+            if torsion:
+                left[n] += torsion * np.outer(self.spin.momentum, self.spin.amount(X))
         for index, support in enumerate(self.supports):
             damping, stiffness = support.terms(speed)
             if speed == 0.0:  # θ stands still: all harmonics are one
@@ -203,11 +211,6 @@ class FullRotor:
             rigid = V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
             return rigid if self.invariants.K2 is None else rigid + self.invariants.K2 @ Y
 
-        return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
-
-    def _coriolis(self, X: np.ndarray) -> np.ndarray:
-        """Return ``G X``, shape (3n, k)."""
-        apply = self.invariants.G.__matmul__
         return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
 
     def _moved(self, index: int, X: np.ndarray) -> np.ndarray:
@@ -339,7 +342,12 @@ class Subspace:
 
     def left(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
         """Return what modes leave of the full equations; see :meth:`FullRotor.residual`."""
-        return self.full.residual(speed, values, stack)
+        return self.full.residual(speed, values, stack, torsion=self.torsion(speed))
+
+    def torsion(self, speed: float) -> float:
+        """Return the stiffness of a coupled spin by steady forces, see :class:`LinearRotor`."""
+        spin = self.full.spin
+        return self.projected.steady_torsion(speed) if spin is not None and spin.coupled else 0.0
 
     def trial(self, speed: float, count: int) -> FloquetModes:
         """Return the lowest modes in the present subspace."""

@@ -1,12 +1,20 @@
-"""The spin of a rotor as a coordinate of its own, which unbalance does not couple with the rest.
+"""The spin of a rotor as a coordinate, free or held by its supports.
 
 A displacement x holds the spin ``a = sᵀMx``, with s the unit rotation about the axis through the
-centre of mass, ``sᵀMs = 1``. When the whole steady state turns about the axis, the potentials of
-the centrifugal field and of isotropic supports stay as they are, so the spin has no stiffness.
-Linear terms feign one by first order in the eccentricity; the static forces of the steady state,
-which are not part of these equations, cancel it. Its Coriolis forces change by as much with the
-steady deflection. So G, ``K2 − C`` and the supports' translations act on the rest of x only, at all
-levels of stiffening: lateral motion is that of a rotor driven at constant speed.
+centre of mass, ``sᵀMs = 1``. The centrifugal field does not resist it, at any level of stiffening:
+a rotation of the whole keeps its potential, so ``K2 − C`` acts on the rest of x only.
+
+*Apart*: nothing else resists the spin either when the whole steady state turns about the axis.
+Linear terms of supports feign a stiffness by first order in the eccentricity, which the forces of
+the steady state cancel. The translations of supports then act on the rest of x only: lateral motion
+is that of a rotor driven at constant speed, and the spin is neutral, or on a torsion spring of its
+own.
+
+*Coupled*: springs at an arm off the axis, or a torsion spring that turns with the rotor, hold the
+spin. All of their forces act on it, and so does their steady force F under the rotor's own
+unbalance: by the displacement of second order ``−½φ²ρ`` at the arm ρ from the centre of mass it has
+the stiffness ``F·ρ``. This is complete for a rigid rotor without products of inertia on supports
+that look alike from the rotor.
 """
 
 from __future__ import annotations
@@ -24,9 +32,12 @@ from exudyn_rotor.modes.basis import RIGID, rigid_columns
 from exudyn_rotor.solid.rotor import SolidRotor
 
 # of the largest rigid motion: nodes on one line are not displaced by a rotation about it
-_NO_MOTION = 1e-9
-# arm of a spring that turns with the rotor, squared and in radii of gyration, that holds the spin
+_NO_MOTION = 1e-6
+# arm off the axis, squared and in radii of gyration, from which springs that turn hold the spin
 _ARM = 1e-4
+# the same of springs that stand still, from their centre: bearings are off it by the mesh alone
+_APART = 1e-2
+_PROBED = (0.0, 1.0, 10.0, 100.0, 1e3, 1e4)  # rad/s, for supports that depend on the speed
 
 
 def seeds(rotor: SolidRotor) -> tuple[np.ndarray, np.ndarray]:
@@ -57,11 +68,20 @@ class Spin:
         Ms.
     shifts : tuple of ndarray, each (6,)
         What takes the displacement by the spin away at each support, along (n1, n2, e).
+    bends : tuple of ndarray, each (3,)
+        Displacement of second order at each support, per a²/2.
+    coupled : bool
+        Whether supports hold it so that it is coupled with the rest.
+    free : bool
+        Whether nothing holds it.
     """
 
     motion: np.ndarray
     momentum: np.ndarray
     shifts: tuple[np.ndarray, ...]
+    bends: tuple[np.ndarray, ...]
+    coupled: bool
+    free: bool
 
     @classmethod
     def of(
@@ -72,22 +92,18 @@ class Spin:
         motions: Sequence[np.ndarray | sp.csr_array],
         invariants: Invariants,
         axis: SpinAxis,
-    ) -> Spin | None:
-        """Return the spin; None where a spring that turns with the rotor holds it off the axis.
-
-        Such a spin is an elastic motion like others, and its equations are complete.
-        """
+    ) -> Spin:
+        """Return the spin on its supports."""
         turned = [U @ motion for U in motions]
         offset = axes_of(axis).T @ invariants.center
-        for support, u in zip(supports, turned, strict=True):
-            about_axis = u[:3] + np.cross(u[3:], offset)
-            stiffness = support.matrices(0.0)[0][:3, :3]
-            held = about_axis @ stiffness @ about_axis
-            limit = _ARM * np.abs(stiffness).max() / invariants.mass
-            if support.frame == "rotor" and held > limit:
-                return None
-        shifts = tuple(np.concatenate([-u[:3], np.zeros(3)]) for u in turned)
-        return cls(motion, momentum, shifts)
+        at_arm = [u[:3] + np.cross(u[3:], offset) for u in turned]  # by rotation about the axis
+        coupled = any(map(_couples, supports, at_arm, [invariants.mass] * len(turned)))
+        coupled = coupled or _held_apart(supports, turned, invariants.mass)
+        twisted = any(np.any(K[5]) for support in supports for K in _stiffnesses(support))
+        unmoved = np.zeros(6)
+        shifts = tuple(unmoved if coupled else np.r_[-u[:3], 0.0, 0.0, 0.0] for u in turned)
+        bends = tuple(u[5] * np.cross([0.0, 0.0, 1.0], u[:3]) for u in turned)
+        return cls(motion, momentum, shifts, bends, coupled, not (coupled or twisted))
 
     def amount(self, X: np.ndarray) -> np.ndarray:
         """Return the spin a of the columns of X, shape (k,)."""
@@ -115,3 +131,36 @@ def spin_of(rotor: SolidRotor) -> tuple[np.ndarray, np.ndarray] | None:
     """Return s and Ms of a solid rotor, each (3n,); None where it has no spin."""
     spin, _ = seeds(rotor)
     return (spin[:, 0], rotor.mass @ spin[:, 0]) if spin.shape[1] else None
+
+
+def _couples(support: Support, about_axis: np.ndarray, mass: float) -> bool:
+    """Return True if springs that turn with the rotor act on the spin about the axis."""
+    if support.frame != "rotor":
+        return False
+    arm = np.abs(about_axis[:2]).max() ** 2 * mass > _ARM
+    return any(
+        np.any(K[5]) or (arm and about_axis @ K[:3, :3] @ about_axis != 0.0)
+        for K in _stiffnesses(support)
+    )
+
+
+def _held_apart(supports: Sequence[Support], turned: Sequence[np.ndarray], mass: float) -> bool:
+    """Return True if springs that stand still hold the spin by their distance from each other."""
+    still = [(_stiffnesses(s), u[:2]) for s, u in zip(supports, turned, strict=True)]
+    still = [pair for s, pair in zip(supports, still, strict=True) if s.frame == "inertial"]
+    for index in range(len(_PROBED)):
+        k = np.array([0.5 * np.trace(K[index][:2, :2]) for K, _ in still])
+        if np.any(k > 0.0):
+            moved = np.array([u for _, u in still])
+            apart = moved - k @ moved / k.sum()
+            if k @ (apart**2).sum(axis=1) > _APART * k.sum() / mass:
+                return True
+    return False
+
+
+def _stiffnesses(support: Support) -> list[np.ndarray]:
+    """Return the stiffness (6, 6) at some speeds."""
+    speeds = list(_PROBED)
+    for value in (support.stiffness, support.tilt_stiffness):
+        speeds += list(np.ravel(value[0])) if isinstance(value, tuple) else []
+    return [support.matrices(float(speed))[0] for speed in speeds]

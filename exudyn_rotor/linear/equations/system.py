@@ -9,6 +9,7 @@ included: Eqs. (105) and (109) with centrifugal stiffening.
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,6 +26,7 @@ from exudyn_rotor.stiffening import stiffening as second_order
 Terms = Mapping[int, np.ndarray]
 
 _ECCENTRIC = 1e-3  # relative error of frequencies that is worth a warning
+_SINGULAR = 1e-12  # of a stiffness that leaves motions free
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ class LinearRotor:
     K2 : ndarray, shape (k, k)
         Centrifugal stiffening per Ω².
     spin : Spin, optional
-        The spin as a coordinate that unbalance does not couple.
+        The spin as a coordinate.
     """
 
     rotor: ReducedRotor
@@ -139,21 +141,20 @@ class LinearRotor:
         turn = np.kron(np.eye(2), axes_of(self.rotor.axis).T)
         return turn @ self.rotor.interfaces[name].motion
 
-    @cached_property
-    def _coriolis(self) -> np.ndarray:
-        return self._without_spin(self.invariants.G)
+    @property
+    def free_spin(self) -> Spin | None:
+        """The spin where nothing holds it, else None."""
+        return self.spin if self.spin is not None and self.spin.free else None
 
     @cached_property
     def _centrifugal(self) -> np.ndarray:
-        return self._without_spin(self.K2 - self.invariants.C)
-
-    def _without_spin(self, matrix: np.ndarray) -> np.ndarray:
+        matrix = self.K2 - self.invariants.C
         if self.spin is None:
             return matrix
         return self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
 
     def _supported_motion(self, index: int) -> np.ndarray:
-        """Return the motion (6, k) at a support, which the spin does not displace."""
+        """Return the motion (6, k) at a support, which a free spin does not displace."""
         motion = self.interface_motion(self.supports[index].interface)
         if self.spin is None:
             return motion
@@ -163,31 +164,67 @@ class LinearRotor:
         """Return the equations at a spin speed [rad/s]."""
         inv = self.invariants
         M = {0: inv.M}
-        D = {0: inv.D + 2.0 * speed * self._coriolis}
+        D = {0: inv.D + 2.0 * speed * inv.G}
         K = {0: inv.K + speed**2 * self._centrifugal}
         for index, support in enumerate(self.supports):
             U = self._supported_motion(index)
             damping, stiffness = support.terms(speed)
             _add(D, damping, U)
             _add(K, stiffness, U)
+        if self.spin is not None and self.spin.coupled:
+            own = self.steady_torsion(speed)
+            K[0] = K[0] + own * np.outer(self.spin.momentum, self.spin.momentum)
         return PeriodicSystem(float(speed), M, D, K)
 
+    def steady_torsion(self, speed: float) -> float:
+        """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].
 
-def warn_of_eccentricity(invariants: Invariants, spin: Spin | None) -> None:
+        ``F·ρ``, see :mod:`exudyn_rotor.linear.equations.spin`; F is the mean over a revolution of
+        what the rotor's own unbalance causes.
+        """
+        motions = [self._supported_motion(index) for index in range(len(self.supports))]
+        pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
+        K = self.invariants.K + speed**2 * self._centrifugal
+        for U, pull in zip(motions, pulls, strict=True):
+            K = K + U.T @ pull @ U
+        rest = self.spin.rest()
+        load = speed**2 * (rest.T @ self.unit_unbalance)
+        steady = rest @ np.linalg.lstsq(rest.T @ K @ rest, load, rcond=_SINGULAR)[0]
+        forces = [(pull @ (U @ steady))[:3] for U, pull in zip(motions, pulls, strict=True)]
+        return float(sum(f @ bend for f, bend in zip(forces, self.spin.bends, strict=True)))
+
+
+def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
     """Tell that spin and lateral motion are coupled where they are taken apart."""
     distance = float(np.linalg.norm(invariants.center))
     error, band = without_drive(invariants)
-    if spin is None or error <= _ECCENTRIC:
+    if error <= _ECCENTRIC:
         return
-    warnings.warn(
-        f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this as "
+    what = (
         "a load and keep spin and lateral motion apart, as for a rotor driven at constant speed. "
         f"Without a drive, frequencies differ by about {error:.1%} at rest, near a critical speed "
         "by m r²/Θ with the whirl radius r of the centre of mass, and the rotor is unstable up to "
-        f"about {band:.0%} above it; balance the rotor",
-        UserWarning,
-        stacklevel=4,
+        f"about {band:.0%} above it; balance the rotor"
     )
+    if spin.coupled:
+        what = (
+            "a load. Its spin on springs is complete, but tilts lack the stiffness by the springs' "
+            "steady forces; hold a blade by rotor.clamped(…) instead"
+        )
+    warnings.warn(
+        f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this as "
+        + what,
+        UserWarning,
+        stacklevel=_user_level(),
+    )
+
+
+def _user_level() -> int:
+    """Return the stack level of the first caller outside the package."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith("exudyn_rotor."):
+        frame, level = frame.f_back, level + 1
+    return level
 
 
 def without_drive(invariants: Invariants) -> tuple[float, float]:

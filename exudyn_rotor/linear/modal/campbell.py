@@ -197,13 +197,19 @@ def campbell(
     Notes
     -----
     A spin that no support holds has the frequency 0 and no growth, at every speed and level of
-    stiffening, and no other motion is coupled with it: the others are those of a rotor driven at
-    constant speed, like in :func:`stability` and the responses. Without a drive an eccentric
-    centre of mass couples them. A Jeffcott rotor (mass m, eccentricity e, inertia Θ about the axis,
-    critical speed ω) then has frequencies that differ, relative to ω, by ``½ m e²/Θ`` at rest and
-    ``m r²/Θ`` near ω, with the whirl radius r of the centre of mass, and is unstable from ω to
-    ``ω(1 + (½ m e²/Θ)^⅓)``. From 0.1 % at rest on, a warning tells. A spin that springs in the
-    frame of the rotor hold off its axis, as of a blade on its root, is coupled in full.
+    stiffening. Rigid lateral motion is not coupled with it but is that of a rotor driven at
+    constant speed, as in :func:`stability` and the responses; elastic motion is by its Coriolis
+    force alone, as a disc that breathes. Without a drive an eccentric centre of mass couples all. A
+    Jeffcott rotor (mass m, eccentricity e, inertia Θ about the axis, critical speed ω) then has
+    frequencies that differ, relative to ω, by ``½ m e²/Θ`` at rest and ``m r²/Θ`` near ω, with the
+    whirl radius r of the centre of mass, and is unstable from ω to ``ω(1 + (½ m e²/Θ)^⅓)``. From
+    0.1 % at rest on, a warning tells. In a scene with ``translation='none'`` and a prescribed spin
+    the frame turns with the mean of the mass about the axis; frequencies of an eccentric rotor then
+    differ by the order of ``m e²/Θ`` as well.
+
+    Springs in the frame of the rotor that hold its spin, by torsion or off the axis, and springs
+    that stand still with a distance between them, are complete, with the stiffness of the spin by
+    their steady forces; tilts lack that stiffness.
     """
     values = _checked_speeds(speeds, allow_negative)
     source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
@@ -216,7 +222,7 @@ def campbell(
         solver, mass = _Task(light(source), count, content), source.at(0.0).M[0]
     solved = sweep(solver, values, executor=executor, progress=progress, label="Campbell")
     order = track([entry[0] for entry in solved], values, mass.__matmul__)
-    apart = getattr(source, "spin", None) is not None
+    apart = getattr(source, "free_spin", None) is not None
     free = free_motions(target, getattr(source, "supports", ()), apart)
     return _collected(values, solved, order, free)
 

@@ -266,10 +266,9 @@ def _driven(source: Source) -> tuple[int, ...]:
 
     If the spin were free, a constant torque however small would turn it on and on.
     """
-    if not isinstance(source, LinearRotor) or source.spin is None:
+    if not isinstance(source, LinearRotor) or source.free_spin is None:
         return ()
-    held = any(support.matrices(0.0)[0][5, 5] for support in source.supports)
-    return () if held else (int(np.argmax(source.spin.momentum)),)
+    return (int(np.argmax(source.spin.momentum)),)
 
 
 def _length(source: Source) -> float:

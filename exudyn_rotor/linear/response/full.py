@@ -93,10 +93,7 @@ class FullSteady:
 
     def _driven(self) -> tuple[int, ...]:
         """Return the column of the spin where no support resists it: the drive does."""
-        full = self.subspace.full
-        if full.spin is None or any(one.matrices(0.0)[0][5, 5] for one in full.supports):
-            return ()
-        return (0,)
+        return () if self.subspace.full.free_spin is None else (0,)
 
     def _size(self, forces: Iterable[np.ndarray]) -> float:
         """Return the norm of forces, the root of ``Σ fᴴ(K + αM)⁻¹f``."""
@@ -116,7 +113,9 @@ class FullSteady:
         stack = {n: (basis @ x)[:, None] for n, x in motion.items()}
         free = self.subspace.rigid
         strained = {n: (basis[:, free:] @ x[free:])[:, None] for n, x in motion.items()}
-        left = full.residual(speed, np.array([1j * rate]), stack, strained)
+        left = full.residual(
+            speed, np.array([1j * rate]), stack, strained, self.subspace.torsion(speed)
+        )
         columns = []
         for n, force in left.items():
             force = force[:, 0] - loads.get(n, 0.0)

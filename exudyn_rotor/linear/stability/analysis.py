@@ -334,9 +334,7 @@ def source_of(target: object, supports: Sequence[Support], body: object, stiffen
         source = target
     else:
         source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    if not isinstance(source, LinearRotor) or source.spin is None:
-        return source
-    if any(support.matrices(0.0)[0][5].any() for support in source.supports):
+    if not isinstance(source, LinearRotor) or source.free_spin is None:
         return source
     return _HeldSpin(source, source.spin.rest())
 

@@ -13,9 +13,7 @@ MODES = 10
 
 def held(full: FullRotor) -> bool:
     """Return whether the spin follows θ = Ωt because no support resists it."""
-    if full.spin is None:
-        return False
-    return not any(support.matrices(0.0)[0][5].any() for support in full.supports)
+    return full.free_spin is not None
 
 
 def projected(system: PeriodicSystem, basis: np.ndarray) -> PeriodicSystem:
