@@ -3,6 +3,7 @@
 The centrifugal load per ω², ``f_c = M x_⊥``, deforms the rotor statically by u⁰ and stresses it by
 σ⁰; vibrations about this state have the stiffness ``K + ω² K_G``,
 ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV``. Inertia relief balances the load where nothing holds the rotor.
+A stress at rest has a K_G of its own, part of the K that the centrifugal load deforms.
 
 Nodes held by a massless rigid hub feel its forces R, which turn with the hub. K_G takes them for
 dead loads; by equilibrium ``K_G (a×x) = a×(f_c + R)``, a false stiffness of rotations. With the
@@ -15,8 +16,8 @@ rotor then feel f_c alone, as at the level 'tilt'; a net force of the hub does n
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +25,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.axis import read_only
-from exudyn_rotor.modes.relief import inertia_relief
+from exudyn_rotor.modes.relief import InertiaRelief, inertia_relief
 from exudyn_rotor.nodal import skew
 from exudyn_rotor.solid import checks
 from exudyn_rotor.solid.interface import Interface
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
 _OUT_OF_BALANCE = 0.3
 # nodes that stand for the rotation of a hub
 _HUB_NODES = 100
-
-_Solve = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,22 +158,21 @@ def static_prestress(
     elements = rotor.elements
     own = None if stress is None else _numbers(stress)
     residual = None if own is None else elements.load_of_stress(own)
-    hub, solve = _support(rotor, clamped)
-
-    load = centrifugal_load(rotor)
-    displacement = solve(load)
-    matrix = elements.geometric_stiffness(displacement)
-    matrix = matrix + _hub_stiffness(rotor, hub, rotor.stiffness @ displacement - load)
-    if initial_displacement:
-        matrix = matrix + elements.initial_displacement_stiffness(displacement)
+    state = _support(rotor, clamped)
     constant = None
     if own is not None:
-        springback = solve(residual)
+        springback = state.solve(residual)
         constant = elements.geometric_stiffness_of_stress(own)
         constant = constant - elements.geometric_stiffness(springback)
         reactions = residual - rotor.stiffness @ springback
-        constant = constant + _hub_stiffness(rotor, hub, reactions)
+        constant = _symmetric(constant + _hub_stiffness(rotor, state.hub, reactions))
         own = _in_equilibrium(rotor, own, springback)
+        state = state.stressed(constant)
+
+    load = centrifugal_load(rotor)
+    displacement, matrix = state.stiffening(load)
+    if initial_displacement:
+        matrix = matrix + elements.initial_displacement_stiffness(displacement)
     by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
     if speed is not None:
         total = speed**2 * by_spin + (0.0 if own is None else own)
@@ -182,16 +180,16 @@ def static_prestress(
     return Prestress(
         matrix=_symmetric(matrix),
         nodes=rotor.nodes,
-        euler=_euler_stiffness(rotor, hub, solve) if euler else None,
+        euler=_symmetric(state.stiffening(euler_load(rotor))[1]) if euler else None,
         displacement=displacement,
         stress=by_spin,
-        constant=None if constant is None else _symmetric(constant),
+        constant=constant,
         initial_displacement=bool(initial_displacement),
         balanced=not clamped,
         yield_stress=yield_stress,
         constant_stress=own,
         load=load,
-        hub=hub,
+        hub=state.hub,
     )
 
 
@@ -205,18 +203,69 @@ def euler_load(rotor: SolidRotor) -> np.ndarray:
     return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
 
 
-def _support(rotor: SolidRotor, clamped: Sequence[str]) -> tuple[np.ndarray, _Solve]:
-    """Return the nodes that a hub holds, and the static solution with them held."""
-    supported = rotor.clamped(clamped) if clamped else rotor
-    relief = inertia_relief(supported)
-    held = supported.elements.held
+def relief_under_stress(
+    stiffness: sp.csr_array, mass: sp.csr_array, free: np.ndarray
+) -> InertiaRelief:
+    """Return the elastic inverse of a stiffness with a stress at rest in it.
 
-    def solve(load: np.ndarray) -> np.ndarray:
-        displacement = relief.solve(load)
-        displacement.reshape(-1, 3)[held] = 0.0  # the stiff springs of `clamped` give way a little
+    Raises
+    ------
+    ValueError
+        If it is not positive definite but for the `free` rigid motions: the rotor buckles.
+    """
+    try:
+        return InertiaRelief(stiffness, mass, free)
+    except ValueError as error:
+        raise ValueError(
+            "prestress: the rotor buckles under its stress at rest; check sign and unit of "
+            "prestress(stress=…) [Pa, tension positive]"
+        ) from error
+
+
+@dataclass(frozen=True, eq=False)
+class _StaticState:
+    """What takes up static loads: the rotor, with a hub, and with a stress at rest or none.
+
+    `supported` is the rotor with the hub's nodes held, `stiffness` that of the rotor itself.
+    """
+
+    rotor: SolidRotor
+    supported: SolidRotor
+    stiffness: sp.csr_array
+    relief: InertiaRelief
+
+    @property
+    def hub(self) -> np.ndarray:
+        """Nodes that the hub holds."""
+        return np.setdiff1d(self.supported.elements.held, self.rotor.elements.held)
+
+    def stressed(self, constant: sp.csr_array) -> _StaticState:
+        """Return the state with the stiffness of a stress at rest, which acts on every load."""
+        kept = np.ones((self.rotor.node_count, 3))
+        kept[self.supported.elements.held] = 0.0
+        mask = sp.diags_array(kept.ravel())
+        held = sp.csr_array(self.supported.stiffness + mask @ constant @ mask)
+        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid)
+        return replace(self, stiffness=self.stiffness + constant, relief=relief)
+
+    def solve(self, load: np.ndarray) -> np.ndarray:
+        """Return the static displacement (3n,)."""
+        displacement = self.relief.solve(load)
+        # the stiff springs of `clamped` give way a little
+        displacement.reshape(-1, 3)[self.supported.elements.held] = 0.0
         return displacement
 
-    return np.setdiff1d(held, rotor.elements.held), solve
+    def stiffening(self, load: np.ndarray) -> tuple[np.ndarray, sp.csr_array]:
+        """Return the displacement (3n,) of a load, and K_G with what the hub's forces add."""
+        displacement = self.solve(load)
+        matrix = self.rotor.elements.geometric_stiffness(displacement)
+        forces = self.stiffness @ displacement - load
+        return displacement, matrix + _hub_stiffness(self.rotor, self.hub, forces)
+
+
+def _support(rotor: SolidRotor, clamped: Sequence[str]) -> _StaticState:
+    supported = rotor.clamped(clamped) if clamped else rotor
+    return _StaticState(rotor, supported, rotor.stiffness, inertia_relief(supported))
 
 
 def _hub_stiffness(rotor: SolidRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:
@@ -238,13 +287,6 @@ def _hub_stiffness(rotor: SolidRotor, hub: np.ndarray, forces: np.ndarray) -> sp
     couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift
     mixed = turn.T @ couple
     return sp.csr_array(turn.T @ sp.csr_array(own) @ turn - mixed - mixed.T)
-
-
-def _euler_stiffness(rotor: SolidRotor, hub: np.ndarray, solve: _Solve) -> sp.csr_array:
-    load = euler_load(rotor)
-    displacement = solve(load)
-    matrix = rotor.elements.geometric_stiffness(displacement)
-    return _symmetric(matrix + _hub_stiffness(rotor, hub, rotor.stiffness @ displacement - load))
 
 
 def _symmetric(matrix: sp.csr_array) -> sp.csr_array:

@@ -17,8 +17,14 @@ FREE_BELOW = 1e-9
 HELD_ABOVE = 1e-5
 LOCALLY_HELD_ABOVE = 1e-12
 LOCAL_RATIO = 1e-3
-# the same ratio in the rows of one node, from which a support counts as acting there
+# the same ratio in the rows of one node, from which a support counts as acting there: for certain,
+# with full precision, and in terms of rounding, which is much the same at all nodes
 _SUPPORTED_ABOVE = 1e-6
+_SOFTLY_SUPPORTED_ABOVE = 1e-12
+_ABOVE_ROUNDING = 10.0
+# median cosine of forces with the motion that they resist: 0 of rounding, 1 of springs on all nodes
+# and 0.58 of springs along one direction
+_RESISTING = 0.3
 
 
 def rigid_basis(nodes: np.ndarray) -> np.ndarray:
@@ -57,12 +63,43 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
 def unsupported_nodes(nodes: np.ndarray, stiffness: sp.csr_array) -> np.ndarray:
     """Return at which nodes `stiffness` balances all rigid motions, shape (n,), bool.
 
-    The others are held, or next to held ones, or carry springs to the ground.
+    The others are held, or next to held ones, or carry springs to the ground: however soft, these
+    take up the whole net load.
+    """
+    residuals, cosines = _nodal_residuals(nodes, stiffness)
+    limit = max(_SOFTLY_SUPPORTED_ABOVE, _ABOVE_ROUNDING * _rounding(residuals, cosines))
+    return residuals <= min(_SUPPORTED_ABOVE, limit)
+
+
+def lost_digits(nodes: np.ndarray, stiffness: sp.csr_array) -> float:
+    """Return the relative rounding of a stiffness matrix.
+
+    This is 1e-16, or about 0.4·10⁻ᵈ where an export wrote d digits.
+    """
+    return _rounding(*_nodal_residuals(nodes, stiffness))
+
+
+def _nodal_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndarray, np.ndarray]:
+    """Return ‖K R‖ / ‖ |K| |R| ‖ at every node, R the rigid motions, and the cosine of K R and R.
+
+    Both have the shape (n,).
     """
     basis = rigid_basis(nodes)
-    forces = np.linalg.norm((stiffness @ basis).reshape(len(nodes), -1), axis=1)
-    terms = np.linalg.norm((abs(stiffness) @ np.abs(basis)).reshape(len(nodes), -1), axis=1)
-    return forces <= _SUPPORTED_ABOVE * terms
+    rows = len(nodes), -1
+    forces, motions = (stiffness @ basis).reshape(rows), basis.reshape(rows)
+    size = np.linalg.norm(forces, axis=1)
+    terms = np.linalg.norm((abs(stiffness) @ np.abs(basis)).reshape(rows), axis=1)
+    work = np.sum(forces * motions, axis=1)
+    return _ratio(size, terms), _ratio(work, size * np.linalg.norm(motions, axis=1))
+
+
+def _rounding(residuals: np.ndarray, cosines: np.ndarray) -> float:
+    """Return what rounding leaves at most nodes that are not held; there may be few of them."""
+    loose = residuals <= _SUPPORTED_ABOVE
+    # else springs act on most nodes, and rounding does not show
+    if not loose.any() or np.median(cosines[loose]) > _RESISTING:
+        return 0.0
+    return float(np.median(residuals[loose]))
 
 
 def count_rigid_motions(

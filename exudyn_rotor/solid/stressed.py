@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,11 +11,16 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.modes.component import check_same_mesh
-from exudyn_rotor.modes.relief import InertiaRelief, free_rigid_motions
+from exudyn_rotor.modes.relief import free_rigid_motions
 from exudyn_rotor.nodal import rotations
 from exudyn_rotor.solid import checks, prestress
-from exudyn_rotor.solid.prestress import Prestress
-from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis, unsupported_nodes
+from exudyn_rotor.solid.prestress import Prestress, relief_under_stress
+from exudyn_rotor.solid.rigid import (
+    count_rigid_motions,
+    lost_digits,
+    rigid_basis,
+    unsupported_nodes,
+)
 
 if TYPE_CHECKING:
     from exudyn_rotor.solid.rotor import SolidRotor
@@ -25,9 +30,11 @@ if TYPE_CHECKING:
 _CLAMP = 1e6
 # share of the load by which an imported matrix may miss it, on positions and on rotations
 _IMPORT_TOLERANCE = 0.01
-# the same of a computed prestress, and how far rounding of the elastic forces goes
+# the same of a computed prestress, and how far rounding of the elastic forces goes: with full
+# precision, and in terms of the digits that an export lost
 _SAME = 1e-6
 _ROUNDING = 1e-12
+_LOST = 10.0
 _COMPUTE = "compute the prestress with this rotor: rotor.prestress()"
 _ALONE = (
     "it must hold the geometric stiffness alone (no spin softening, no elastic stiffness), for "
@@ -68,7 +75,8 @@ class StressedRotor:
         stress : array_like, shape (n, 6), optional
             Stress at rest, from an interference fit or temperature: xx, yy, zz, yz, xz, xy at the
             nodes in mesh axes [Pa]. It must be in equilibrium without load; what averaging at
-            nodes lost of that is put right by one elastic solution.
+            nodes lost of that is put right by one elastic solution. Its stiffness takes part in
+            the static solution for the rotation.
         yield_stress : float, optional
             Yield stress [Pa].
         speed : float, optional
@@ -80,7 +88,8 @@ class StressedRotor:
             If `stress`, `yield_stress` or `speed` hold no numbers.
         ValueError
             If the rotor has no elements (not made by :meth:`from_ngsolve`) or carries a prestress
-            already, an interface is unknown, or `stress` belongs to another mesh.
+            already, an interface is unknown, or `stress` belongs to another mesh or makes the
+            rotor buckle.
 
         Warns
         -----
@@ -117,7 +126,8 @@ class StressedRotor:
         stiffness = self.stiffness
         if prestress.constant is not None:
             stiffness = checks.frozen(sp.csr_array(stiffness + prestress.constant))
-            _check_buckling(self, stiffness)
+            free = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
+            relief_under_stress(stiffness, self.mass, free)
         return replace(
             self, stiffness=stiffness, carried_prestress=replace(prestress, constant=None)
         )
@@ -199,18 +209,6 @@ def relief_rotations(rotor: SolidRotor) -> np.ndarray:
     return (np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum).T
 
 
-def _check_buckling(rotor: SolidRotor, stiffness: sp.csr_array) -> None:
-    """Refuse a stress at rest that makes the rotor buckle."""
-    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
-    try:
-        InertiaRelief(stiffness, rotor.mass, free)
-    except ValueError as error:
-        raise ValueError(
-            "prestress: the rotor buckles under its stress at rest; check sign and unit of "
-            "prestress(stress=…) [Pa, tension positive]"
-        ) from error
-
-
 def _check_static_state(rotor: SolidRotor, given: Prestress) -> None:
     """Refuse a prestress of another static state than the rotor's own."""
     if given.constant is None and given.constant_stress is not None:
@@ -222,8 +220,11 @@ def _check_static_state(rotor: SolidRotor, given: Prestress) -> None:
         _check_imported(rotor, given)
     else:
         _check_computed(rotor, given)
+    _check_loads(rotor, given)
     if not rotor.grounded:
         _check_rotations(rotor, given)
+        if given.hub is None or given.hub.size == 0:
+            _check_strains(rotor, given)
 
 
 def _check_computed(rotor: SolidRotor, given: Prestress) -> None:
@@ -238,22 +239,27 @@ def _check_computed(rotor: SolidRotor, given: Prestress) -> None:
         )
     if given.balanced:
         load = _balanced(rotor, load)
-    strength = abs(rotor.stiffness)
+    stiffness, strength = rotor.stiffness, abs(rotor.stiffness)
     kept = (strength.sum(axis=1) > strength.diagonal()).reshape(-1, 3)
     if given.hub is not None:
         kept[given.hub] = False
-    left = np.linalg.norm((rotor.stiffness @ given.displacement - load)[kept.ravel()])
-    rounding = np.linalg.norm(strength @ np.abs(given.displacement))
-    if left > _SAME * np.linalg.norm(load) + _ROUNDING * rounding:
+    if given.constant is not None:
+        stiffness = stiffness + given.constant
+    left = np.linalg.norm((stiffness @ given.displacement - load)[kept.ravel()])
+    precision = max(_ROUNDING, _LOST * lost_digits(rotor.nodes, rotor.stiffness))
+    rounding = precision * np.linalg.norm(strength @ np.abs(given.displacement))
+    size = np.linalg.norm(load)
+    if left > _SAME * size + rounding:
         raise ValueError(
             "prestress: its static displacement is none of this rotor, the elastic forces differ "
-            f"from its load by {left / max(np.linalg.norm(load), 1e-300):.3g} of it: another "
-            f"elastic modulus, other clamped nodes, or other springs to the ground; {_COMPUTE}"
+            f"from its load by {left / max(size, 1e-300):.3g} of it (rounding of an exported "
+            f"matrix explains {rounding / max(size, 1e-300):.1g}): another elastic modulus, other "
+            f"clamped nodes, or other springs to the ground; {_COMPUTE}"
         )
 
 
 def _check_imported(rotor: SolidRotor, given: Prestress) -> None:
-    """Check ``K_G x = f``, which holds by ``∇x = I`` at nodes that no support touches."""
+    """Refuse reactions of held nodes where the rotor can move."""
     if not given.balanced and rotor.rigid_motions:
         raise ValueError(
             "prestress: balanced=False says that held nodes take up the load, but the stiffness "
@@ -261,28 +267,68 @@ def _check_imported(rotor: SolidRotor, given: Prestress) -> None:
             "would resist falsely; hold them with rotor.clamped(...), or use a matrix computed "
             "with inertia relief"
         )
+
+
+def _check_loads(rotor: SolidRotor, given: Prestress) -> None:
+    """Check ``K_G x = f``, which holds by ``∇x = I`` at nodes that no support or hub touches."""
     away = np.ones(rotor.node_count, dtype=bool)
     if rotor.grounded:
         away = unsupported_nodes(rotor.nodes, rotor.stiffness)
-        if not given.initial_displacement:
-            load = prestress.centrifugal_load(rotor)
-            _check_load(rotor, "matrix", given.matrix, load, away)
-    if given.euler is not None:
-        _check_load(rotor, "Euler matrix", given.euler, prestress.euler_load(rotor), away)
+    if given.hub is not None:
+        away[given.hub] = False
+    positions = (rotor.nodes - rotor.center_of_mass).ravel()
+    for name, matrix, load, resisted in _known_loads(rotor, given):
+        expected = (_balanced(rotor, load) if given.balanced else load) - resisted
+        left = (matrix @ positions - expected).reshape(-1, 3)[away]
+        error, size = np.linalg.norm(left), np.linalg.norm(expected.reshape(-1, 3)[away])
+        if error > _IMPORT_TOLERANCE * size + _SAME * np.linalg.norm(load):
+            raise ValueError(
+                f"prestress: the {name} times the nodal positions gives the load of its stress, "
+                f"which is {error / max(size, 1e-300):.3g} times this rotor's own load off it at "
+                f"nodes away from supports; {_ALONE}, with this rotor's axis, density, point "
+                "masses and held nodes"
+            )
 
 
-def _check_load(
-    rotor: SolidRotor, name: str, matrix: sp.csr_array, load: np.ndarray, away: np.ndarray
-) -> None:
-    found = (matrix @ (rotor.nodes - rotor.center_of_mass).ravel()).reshape(-1, 3)[away]
-    expected = _balanced(rotor, load).reshape(-1, 3)[away]
-    error, size = np.linalg.norm(found - expected), np.linalg.norm(expected)
-    if error > _IMPORT_TOLERANCE * size + _SAME * np.linalg.norm(load):
+def _known_loads(
+    rotor: SolidRotor, given: Prestress
+) -> Iterator[tuple[str, sp.csr_array, np.ndarray, np.ndarray | float]]:
+    """Yield name and matrix, the load behind it, and what a stress at rest resists of that.
+
+    Of a free rotor the centrifugal load is left to :func:`_check_strains`: elements of other
+    programs may balance it as a whole, and not at every node.
+    """
+    resists, displacement = given.constant, given.displacement
+    if rotor.grounded and not given.initial_displacement:
+        load = prestress.centrifugal_load(rotor)
+        if resists is None:
+            yield "matrix", given.matrix, load, 0.0
+        elif displacement is not None:
+            yield "matrix", given.matrix, load, resists @ displacement
+    if given.euler is not None and resists is None:
+        yield "Euler matrix", given.euler, prestress.euler_load(rotor), 0.0
+
+
+def _check_strains(rotor: SolidRotor, given: Prestress) -> None:
+    """Refuse a matrix that resists uniform strains of a free rotor otherwise than its load does.
+
+    K_G acts on each direction alike and ``K_G x = f``, so that ``(A x)ᵀ K_G (B x) = (A x) · (B f)``
+    for all A and B; rotations are the part of this that the elastic stiffness does not resist.
+    """
+    if given.initial_displacement:
+        return
+    positions = rotor.nodes - rotor.center_of_mass
+    virial = positions.T @ _balanced(rotor, prestress.centrifugal_load(rotor)).reshape(-1, 3)
+    fields = np.kron(positions, np.eye(3))
+    found, expected = fields.T @ (given.matrix @ fields), np.kron(virial, np.eye(3))
+    e = rotor.axis.direction
+    error = np.abs(found - expected)
+    worst = np.unravel_index(np.argmax(error), error.shape)
+    if error[worst] > _IMPORT_TOLERANCE * abs(np.trace(virial) - e @ virial @ e):
         raise ValueError(
-            f"prestress: the {name} times the nodal positions gives the load of its stress, which "
-            f"is {error / max(size, 1e-300):.3g} times this rotor's own load off it at nodes away "
-            f"from supports; {_ALONE}, with this rotor's axis, density, point masses and held "
-            "nodes"
+            "prestress: the matrix resists uniform strains of the whole rotor with "
+            f"{found[worst]:.6g} kg m², and its centrifugal load per (rad/s)² with "
+            f"{expected[worst]:.6g}; {_ALONE}, and no initial-displacement stiffness"
         )
 
 
