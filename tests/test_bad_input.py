@@ -62,7 +62,9 @@ CHECKS = [
     ({"limits": [1.0]}, TypeError, "limits: needs a mapping"),
     ({"limits": {"tilt": "a"}}, ValueError, "limits: 'tilt' needs a number ≥ 0, got 'a'"),
     ({"limits": {"tilt": np.nan}}, ValueError, "limits: 'tilt' needs a number ≥ 0, got nan"),
+    ({"limits": {"tilt": -1.0}}, ValueError, "limits: 'tilt' needs a number ≥ 0, got -1.0"),
     ({"limits": {"wobble": 1.0}}, ValueError, "limits: no check 'wobble'"),
+    ({"accuracy": 0.0}, ValueError, "accuracy: needs a number between 0 and 1"),
     ({"accuracy": [0.1, 0.2]}, ValueError, "accuracy: needs a number between 0 and 1"),
 ]
 
@@ -71,6 +73,20 @@ CHECKS = [
 def test_check_run_refuses(body, options, kind, message):
     with pytest.raises(kind, match=message):
         check_run(body, **options)
+
+
+def test_check_run_refuses_other_objects(body, reduced):
+    with pytest.raises(TypeError, match="needs a RotorBody"):
+        check_run(reduced)
+    with pytest.raises(TypeError, match="reduced="):
+        check_run(body, reduced=body)
+    with pytest.raises(TypeError, match="proposal="):
+        check_run(body, proposal=reduced)
+    with pytest.raises(KeyError, match="there are: tilt"):
+        check_run(body)["wobble"]
+    early = add_rotor(exu.SystemContainer().AddSystem(), reduced, spin=1.0)
+    with pytest.raises(ValueError, match="not assembled"):
+        check_run(early)
 
 
 def test_check_run_refuses_another_rotor(solid, body):

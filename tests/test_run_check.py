@@ -378,32 +378,3 @@ def test_rotors_of_every_kind_are_checked():
     assert check_run(_at_rest(rings.reduce(0), native_shell=False)).ok
     assert check_run(_at_rest(rings.reduce(3), translation="none", spin=run_up)).ok
     assert check_run(_at_rest(rings.reduce(0), spin=0.0)).ok
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"limits": {"wobble": 1.0}}, "no check 'wobble'"),
-        ({"limits": {"tilt": np.nan}}, "'tilt' needs a number"),
-        ({"limits": {"tilt": -1.0}}, "'tilt' needs a number"),
-        ({"accuracy": 0.0}, "accuracy: "),
-    ],
-)
-def test_bad_limits_are_refused(run, options, message):
-    with pytest.raises(ValueError, match=message):
-        check_run(run, **options)
-
-
-def test_other_objects_are_refused(run, reduced):
-    with pytest.raises(TypeError, match="needs a RotorBody"):
-        check_run(reduced)
-    with pytest.raises(TypeError, match="reduced="):
-        check_run(run, reduced=run)
-    with pytest.raises(TypeError, match="proposal="):
-        check_run(run, proposal=reduced)
-    with pytest.raises(KeyError, match="there are: tilt"):
-        check_run(run)["wobble"]
-    mbs, body = scene(reduced, "none", spin=1.0)
-    with pytest.raises(ValueError, match="not assembled"):
-        check_run(body)
-    assert mbs is body.mbs

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from exudyn_rotor.axis import SpinAxis
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.spin import Spin, seeds, spin_of
-from exudyn_rotor.linear.equations.supports import Support, axes_of
+from exudyn_rotor.linear.equations.supports import Support, axes_of, check_interfaces
 from exudyn_rotor.linear.equations.system import LinearRotor, warn_of_eccentricity
 from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
@@ -101,12 +101,7 @@ class FullRotor:
         ValueError
             For an unknown interface or level of stiffening.
         """
-        for support in supports:
-            if support.interface not in rotor.interfaces:
-                known = ", ".join(rotor.interfaces) or "none"
-                raise ValueError(
-                    f"support at {support.interface!r}: no such interface; the rotor has: {known}"
-                )
+        check_interfaces(supports, rotor.interfaces)
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants, tilt = _second_order(rotor, _invariants(rotor, origin), stiffening)
         turn = np.kron(np.eye(2), axes_of(rotor.axis).T)

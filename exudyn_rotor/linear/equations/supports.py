@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,6 +100,21 @@ class Support:
         if not np.all(np.isfinite(full)):
             raise ValueError(f"support at {self.interface!r}: {name} {value!r} is not finite")
         return full
+
+
+def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
+    """Refuse a support at an interface that the rotor does not have.
+
+    Raises
+    ------
+    ValueError
+    """
+    for support in supports:
+        if support.interface not in known:
+            raise ValueError(
+                f"support at {support.interface!r}: no such interface; the rotor has: "
+                f"{', '.join(known) or 'none'}"
+            )
 
 
 def _interpolate(speeds: ArrayLike, values: ArrayLike, speed: float) -> np.ndarray:

@@ -19,7 +19,7 @@ import numpy as np
 
 from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.spin import Spin
-from exudyn_rotor.linear.equations.supports import Support, axes_of
+from exudyn_rotor.linear.equations.supports import Support, axes_of, check_interfaces
 from exudyn_rotor.reduced import ReducedRotor
 from exudyn_rotor.stiffening import stiffening as second_order
 
@@ -107,12 +107,7 @@ class LinearRotor:
         ValueError
             If a support is at an unknown interface; the message lists the known ones.
         """
-        for support in supports:
-            if support.interface not in rotor.interfaces:
-                known = ", ".join(rotor.interfaces) or "none"
-                raise ValueError(
-                    f"support at {support.interface!r}: no such interface; the rotor has: {known}"
-                )
+        check_interfaces(supports, rotor.interfaces)
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
         K2 = second_order(invariants, stiffening).K2
