@@ -47,3 +47,9 @@ def tilde(nodal: Array) -> Array:
 def tilde_basis(modes: Array) -> Array:
     """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30)."""
     return np.hstack([tilde(column) for column in np.asarray(modes, float).T])
+
+
+def coupled(matrix: sp.csr_array) -> np.ndarray:
+    """Return which coordinates have entries off the diagonal, (3n,); clamped nodes have none."""
+    strength = abs(matrix)
+    return strength.sum(axis=1) > strength.diagonal()

@@ -96,24 +96,6 @@ def test_check_run_refuses_another_rotor(solid, body):
         check_run(body, reduced=other)
 
 
-BODIES = [
-    ({"markers": ["rigid"]}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
-    ({"markers": 3}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
-    ({"negligible": "a"}, ValueError, "negligible: .* got 'a'"),
-    ({"negligible": np.nan}, ValueError, "negligible: .* got nan"),
-    ({"initial_speed": "1"}, ValueError, "initial_speed: needs a finite number .* got '1'"),
-]
-
-
-@pytest.mark.parametrize(("options", "kind", "message"), BODIES)
-def test_add_rotor_refuses_and_adds_nothing(reduced, options, kind, message):
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(kind, match=message):
-        add_rotor(mbs, reduced, **options)
-    assert mbs.systemData.NumberOfObjects() == 0
-    assert mbs.systemData.NumberOfNodes() == 0
-
-
 SETTINGS = [
     (("1", 1e-3), {}, ValueError, "end_time: needs a finite number .* got '1'"),
     ((1.0, 0.0), {}, ValueError, "step: must be positive"),

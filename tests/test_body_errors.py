@@ -139,6 +139,23 @@ def test_bad_input_adds_nothing(reduced, case):
     assert counts(mbs) == before
 
 
+KINDS = [
+    ({"markers": ["rigid"]}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
+    ({"markers": 3}, TypeError, "markers: needs 'rigid', 'position' or a mapping"),
+    ({"negligible": "a"}, ValueError, "negligible: .* got 'a'"),
+    ({"negligible": NAN}, ValueError, "negligible: .* got nan"),
+    ({"initial_speed": "1"}, ValueError, "initial_speed: needs a finite number .* got '1'"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "kind", "message"), KINDS)
+def test_wrong_kinds_add_nothing(reduced, arguments, kind, message):
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(kind, match=message):
+        add_rotor(mbs, reduced, **arguments)
+    assert counts(mbs) == [0] * 5
+
+
 def test_rotors_that_cannot_move_so(grounded, needle):
     mbs = exu.SystemContainer().AddSystem()
     with pytest.raises(ValueError, match="use translation='none' and a prescribed spin"):

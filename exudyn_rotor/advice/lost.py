@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.advice.loads import external_load, instants, turned, weight
 from exudyn_rotor.body.locking import SPIN, TILTS
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.watch import Record, newton_tolerance
 from exudyn_rotor.nodal import skew
 
-_MOST = 400  # instants that are looked at
 _SINGULAR = 1e-3  # of the node's axes, where its second angle is near a right one
 
 
@@ -28,9 +27,8 @@ def lost_load(body: RotorBody, record: Record, size: float) -> float:
     """
     if "shell" not in body.objects or len(record.time) < 2:
         return 0.0
-    steps = np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
     lost, whole = 0.0, 0.0
-    for index in steps:
+    for index in instants(record):
         force, torque, missing, unbalanced = _balance(body, record, index)
         whole = max(whole, size * np.linalg.norm(force), np.linalg.norm(torque))
         beyond = max(size * np.linalg.norm(missing[:3]), np.linalg.norm(missing[3:]))
@@ -76,29 +74,6 @@ def _balance(
     missing[3:] = min(lost, lost - (lever - e * (e @ lever)), key=np.linalg.norm)
     residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
     return force, torque, missing, float(residual * np.sqrt(motion.invariants.mass))
-
-
-def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the inertia forces and the external load at an instant, each per coordinate."""
-    motion, place = body.motion, body.layout
-    t = float(record.time[index])
-    q, q_t, q_tt = (part[index][place.unknowns] for part in (record.q, record.q_t, record.q_tt))
-    inertia = motion.mass_matrix(t, q) @ q_tt
-    return inertia, inertia - motion.forces(t, q, q_t)
-
-
-def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
-    """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
-    motion = body.motion
-    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
-
-
-def weight(body: RotorBody) -> np.ndarray:
-    """Return the weight that Exudyn applies, inertial axes [N]."""
-    if body.gravity_load is None:
-        return np.zeros(3)
-    gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
-    return body.motion.invariants.mass * np.asarray(gravity)
 
 
 def _levers(body: RotorBody) -> np.ndarray:

@@ -94,11 +94,8 @@ class Responses:
         ):
             inner = np.linalg.solve(H[np.ix_(places, places)], H[places] @ loads)
             change = rows @ (H[:, places] @ inner)
-            sizes = np.linalg.norm(all_of_it, axis=0)
-            moved = sizes > 0.0
-            relative = np.linalg.norm(change, axis=0)[moved] / sizes[moved]
-            worst = max(worst, relative.max(initial=0.0))
-        return float(worst)
+            worst = max(worst, largest_share(change, np.linalg.norm(all_of_it, axis=0)))
+        return worst
 
 
 def choose_modes(given: Candidate, request: Request) -> Truncation:
@@ -109,10 +106,12 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     """
     frequencies = given.frequencies
     plan = _plan(given, request)
-    missing = None if given.attached is None else _missing(given, request, plan)
+    responses = _responses(given, request, plan)
+    missing = None
+    if given.attached is not None:
+        missing = _missing(responses, _responses(given.attached, request, plan), given.supported)
     if frequencies.size == 0:
         return Truncation(np.zeros(0, dtype=int), 0.0, 0, 0.0, missing)
-    responses = _responses(given, request, plan)
     groups = [g for g in _alike(frequencies) if frequencies[g].min() > request.highest]
     scores = [responses.error_without(group) for group in groups]
     ranked = [groups[i] for i in np.argsort(scores, kind="stable")]
@@ -135,22 +134,29 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     )
 
 
-def _missing(given: Candidate, request: Request, plan: _Plan) -> float:
+def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> float:
+    """Return the largest change of a column over its size; not where that is next to nothing.
+
+    Columns smaller than the share `least` of the largest do not count.
+    """
+    moved = sizes > least * sizes.max(initial=0.0)
+    shares = np.linalg.norm(change, axis=0)[moved] / sizes[moved]
+    return float(shares.max(initial=0.0))
+
+
+def _missing(own: Responses, attached: Responses, supported: bool) -> float:
     """Return the largest relative change of the response to any load by attachment modes.
 
     Where it is not known what holds the rotor, relative to the response to the load that moves its
     interfaces most: the flexible modes need not move them under every load.
     """
-    own, whole = (_responses(one, request, plan).whole for one in (given, given.attached))
     worst = 0.0
-    for part, complete in zip(own, whole, strict=True):
+    for part, complete in zip(own.whole, attached.whole, strict=True):
         sizes = np.linalg.norm(complete, axis=0)
-        if not given.supported:
+        if not supported:
             sizes[:] = sizes.max(initial=0.0)
-        moved = sizes > _UNMOVED * sizes.max(initial=0.0)
-        change = np.linalg.norm(complete - part, axis=0)[moved] / sizes[moved]
-        worst = max(worst, change.max(initial=0.0))
-    return float(worst)
+        worst = max(worst, largest_share(complete - part, sizes, _UNMOVED))
+    return worst
 
 
 def _alike(frequencies: np.ndarray) -> list[np.ndarray]:

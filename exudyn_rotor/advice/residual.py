@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.advice.lost import external_load, turned, weight
+from exudyn_rotor.advice.loads import external_load, instants, turned, weight
 from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.body.watch import Record
 from exudyn_rotor.reduced import ReducedRotor
 
-_MOST = 400  # instants that are looked at
 _SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 
 
@@ -36,10 +35,9 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     rest = (_flexibility(rotor.with_attachments) - _flexibility(rotor)) * scale
     equations = _equations(body, motion) * scale
     solve = np.linalg.pinv(equations, rcond=_SEEN)
-    steps = np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
     missing, whole = 0.0, 0.0
     shown = np.tile([True] * 3 + [False] * 3, count)
-    for index in steps:
+    for index in instants(record):
         loads, zeta, frame = _state(body, record, index)
         columns = body.selection.T @ zeta
         bent = motion @ np.where(flexible, columns, 0.0)

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor.advice.candidate import Candidate
-from exudyn_rotor.advice.modes import GROWTH, band, critical, ends
+from exudyn_rotor.advice.modes import GROWTH, band, critical, ends, largest_share
 from exudyn_rotor.advice.request import PERIOD_ERROR, Request
 
 _TRIAL = 1e-2  # ωh of the trial step at the end of the band; the error grows with its square
+_UNMOVED = 1e-9  # share of the largest response
 _STEADY = 1e-3  # growth per radian at one speed, where motion is steady: undamped resonances
 
 
@@ -89,9 +90,7 @@ def _change(
         seen = seen + _of_frame(given, speed, s, step)
     whole = rows @ np.linalg.solve(exact, loads)
     changed = rows @ np.linalg.solve(seen, loads) - whole
-    sizes = np.linalg.norm(whole, axis=0)
-    moved = sizes > 1e-9 * sizes.max(initial=0.0)
-    return float((np.linalg.norm(changed, axis=0)[moved] / sizes[moved]).max(initial=0.0))
+    return largest_share(changed, np.linalg.norm(whole, axis=0), _UNMOVED)
 
 
 def _of_step(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:

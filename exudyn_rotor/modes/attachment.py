@@ -14,7 +14,7 @@ from exudyn_rotor.modes.basis import rigid_columns
 from exudyn_rotor.modes.component import ModeBasis
 from exudyn_rotor.modes.factor import SparseCholesky
 from exudyn_rotor.modes.relief import inertia_relief
-from exudyn_rotor.nodal import rotations, translations
+from exudyn_rotor.nodal import coupled, rotations, translations
 
 if TYPE_CHECKING:
     from exudyn_rotor.solid.interface import Interface
@@ -42,12 +42,12 @@ def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
     ValueError
         If the rotor has loose parts.
     """
-    interfaces = rotor.interfaces.values()
+    interfaces, moving = rotor.interfaces.values(), coupled(rotor.stiffness).reshape(-1, 3)
     rigid = [one for one in interfaces if _kept_rigid(one, others)]
     loads = [
         one.mean_motion(rotor.node_count).T.toarray()
         for one in interfaces
-        if one not in rigid and not _clamped(one, rotor)
+        if one not in rigid and (moving[one.nodes].any() or not rotor.grounded)
     ]
     inertia = rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
     found = [np.zeros((rotor.nodes.size, 0))]
@@ -71,13 +71,6 @@ def _held_at(rotor: SolidRotor, interfaces: list[Interface], loads: np.ndarray) 
     columns = np.zeros_like(loads)
     columns[inner] = SparseCholesky(rotor.stiffness[inner][:, inner]).solve(loads[inner])
     return columns
-
-
-def _clamped(interface: Interface, rotor: SolidRotor) -> bool:
-    """Return True if stiff springs hold all nodes of the interface, coupled with nothing."""
-    rows = (3 * interface.nodes[:, None] + np.arange(3)).ravel()
-    part = rotor.stiffness[rows]
-    return bool(rotor.grounded and np.all(abs(part).sum(axis=1) == part[:, rows].diagonal()))
 
 
 def _kept_rigid(interface: Interface, modes: np.ndarray) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor.modes.component import check_same_mesh
 from exudyn_rotor.modes.relief import free_rigid_motions
-from exudyn_rotor.nodal import rotations
+from exudyn_rotor.nodal import coupled, rotations
 from exudyn_rotor.solid import checks, prestress
 from exudyn_rotor.solid.prestress import Prestress, relief_under_stress
 from exudyn_rotor.solid.rigid import (
@@ -240,7 +240,7 @@ def _check_computed(rotor: SolidRotor, given: Prestress) -> None:
     if given.balanced:
         load = _balanced(rotor, load)
     stiffness, strength = rotor.stiffness, abs(rotor.stiffness)
-    kept = (strength.sum(axis=1) > strength.diagonal()).reshape(-1, 3)
+    kept = coupled(stiffness).reshape(-1, 3)
     if given.hub is not None:
         kept[given.hub] = False
     if given.constant is not None:

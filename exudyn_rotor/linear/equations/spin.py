@@ -97,9 +97,17 @@ class Spin:
         turned = [U @ motion for U in motions]
         offset = axes_of(axis).T @ invariants.center
         at_arm = [u[:3] + np.cross(u[3:], offset) for u in turned]  # by rotation about the axis
-        coupled = any(map(_couples, supports, at_arm, [invariants.mass] * len(turned)))
-        coupled = coupled or _held_apart(supports, turned, invariants.mass)
-        twisted = any(np.any(K[5]) for support in supports for K in _stiffnesses(support))
+        probed = [_stiffnesses(support) for support in supports]
+        turning = [support.frame == "rotor" for support in supports]
+        coupled = _held_apart(
+            [each for each, turns in zip(probed, turning, strict=True) if not turns],
+            [u[:2] for u, turns in zip(turned, turning, strict=True) if not turns],
+            invariants.mass,
+        ) or any(
+            turns and _couples(each, u, invariants.mass)
+            for each, turns, u in zip(probed, turning, at_arm, strict=True)
+        )
+        twisted = any(np.any(K[5]) for each in probed for K in each)
         unmoved = np.zeros(6)
         shifts = tuple(unmoved if coupled else np.r_[-u[:3], 0.0, 0.0, 0.0] for u in turned)
         bends = tuple(u[5] * np.cross([0.0, 0.0, 1.0], u[:3]) for u in turned)
@@ -133,25 +141,22 @@ def spin_of(rotor: SolidRotor) -> tuple[np.ndarray, np.ndarray] | None:
     return (spin[:, 0], rotor.mass @ spin[:, 0]) if spin.shape[1] else None
 
 
-def _couples(support: Support, about_axis: np.ndarray, mass: float) -> bool:
+def _couples(stiffnesses: Sequence[np.ndarray], about_axis: np.ndarray, mass: float) -> bool:
     """Return True if springs that turn with the rotor act on the spin about the axis."""
-    if support.frame != "rotor":
-        return False
     arm = np.abs(about_axis[:2]).max() ** 2 * mass > _ARM
     return any(
-        np.any(K[5]) or (arm and about_axis @ K[:3, :3] @ about_axis != 0.0)
-        for K in _stiffnesses(support)
+        np.any(K[5]) or (arm and about_axis @ K[:3, :3] @ about_axis != 0.0) for K in stiffnesses
     )
 
 
-def _held_apart(supports: Sequence[Support], turned: Sequence[np.ndarray], mass: float) -> bool:
+def _held_apart(
+    stiffnesses: Sequence[Sequence[np.ndarray]], turned: Sequence[np.ndarray], mass: float
+) -> bool:
     """Return True if springs that stand still hold the spin by their distance from each other."""
-    still = [(_stiffnesses(s), u[:2]) for s, u in zip(supports, turned, strict=True)]
-    still = [pair for s, pair in zip(supports, still, strict=True) if s.frame == "inertial"]
+    moved = np.array(turned)
     for index in range(len(_PROBED)):
-        k = np.array([0.5 * np.trace(K[index][:2, :2]) for K, _ in still])
+        k = np.array([0.5 * np.trace(each[index][:2, :2]) for each in stiffnesses])
         if np.any(k > 0.0):
-            moved = np.array([u for _, u in still])
             apart = moved - k @ moved / k.sum()
             if k @ (apart**2).sum(axis=1) > _APART * k.sum() / mass:
                 return True

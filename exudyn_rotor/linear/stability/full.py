@@ -11,11 +11,6 @@ from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 MODES = 10
 
 
-def held(full: FullRotor) -> bool:
-    """Return whether the spin follows θ = Ωt because no support resists it."""
-    return full.free_spin is not None
-
-
 def projected(system: PeriodicSystem, basis: np.ndarray) -> PeriodicSystem:
     """Return the equations of motions in a basis (k, r)."""
 
@@ -43,7 +38,7 @@ class HeldSubspace(Subspace):
     def small(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
         """Return the projected equations at a speed, and the basis (3n, k) they are in."""
         system = self.projected.at(speed)
-        if not held(self.full):
+        if self.full.free_spin is None:
             return system, self.V
         return projected(system, np.eye(system.size)[:, 1:]), self.V[:, 1:]
 
@@ -61,7 +56,7 @@ class HeldSubspace(Subspace):
     def left(self, speed: float, values: np.ndarray, stack: dict[int, np.ndarray]) -> dict:
         """Return what modes leave of the full equations but for the torque of the drive."""
         left = super().left(speed, values, stack)
-        if not held(self.full):
+        if self.full.free_spin is None:
             return left
         return {n: self.full.spin.without_torque(force) for n, force in left.items()}
 

@@ -1,0 +1,40 @@
+"""Loads of a run, from the record of its motion and the equations of the rotor."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.axis import SpinAxis
+from exudyn_rotor.body.locking import SPIN
+from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.body.watch import Record
+
+_MOST = 400
+
+
+def instants(record: Record) -> np.ndarray:
+    """Return which instants to look at, 400 at most; the first has no accelerations."""
+    return np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
+
+
+def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the inertia forces and the external load at an instant, each per coordinate."""
+    motion, place = body.motion, body.layout
+    t = float(record.time[index])
+    q, q_t, q_tt = (part[index][place.unknowns] for part in (record.q, record.q_t, record.q_tt))
+    inertia = motion.mass_matrix(t, q) @ q_tt
+    return inertia, inertia - motion.forces(t, q, q_t)
+
+
+def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
+    """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
+    motion = body.motion
+    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
+
+
+def weight(body: RotorBody) -> np.ndarray:
+    """Return the weight that Exudyn applies, inertial axes [N]."""
+    if body.gravity_load is None:
+        return np.zeros(3)
+    gravity = body.mbs.GetLoadParameter(body.gravity_load, "loadVector")
+    return body.motion.invariants.mass * np.asarray(gravity)
