@@ -6,8 +6,8 @@ Elements", SSRN 4830498, Eqs. (116–129) and Fig. 2.
 
 import numpy as np
 
-from exudyn_rotor import SolidRotor, campbell, plots
-from exudyn_rotor.nodal import block_diagonal, tilde, translations
+from exudyn_rotor import SolidRotor, campbell, plotting
+from exudyn_rotor.theory.nodal import block_diagonal, tilde, translations
 
 nodes = [[1.0, 0.0, 0.0], [1.75, 0.0, 0.0]]
 mass = np.eye(6)
@@ -32,6 +32,6 @@ expected = [whirl[0], whirl[0], 1200.0, whirl[1], whirl[1], 2000.0]
 assert np.allclose(at_300, expected, rtol=1e-12)
 assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotating[0], expected, rtol=1e-12)
 
-made, axes = plots.figure()
-plots.plot_campbell(axes, campbell(rotor, np.linspace(0.0, 900.0, 91)))
-plots.save(made, "appendix_b.png")
+made, axes = plotting.figure()
+plotting.plot_campbell(axes, campbell(rotor, np.linspace(0.0, 900.0, 91)))
+plotting.save(made, "appendix_b.png")

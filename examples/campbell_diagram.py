@@ -9,7 +9,7 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, campbell, plots
+from exudyn_rotor import SolidRotor, campbell, plotting
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
 
@@ -54,18 +54,18 @@ uneven_diagram = campbell(reduced, speeds[::2], supports=uneven, modes=8)
 critical = critical_speeds(reduced, supports=bearings, max_speed=HERTZ * 500.0)
 print(critical.table())
 
-made, axes = plots.figure(1, 2, size=(12.0, 4.8))
+made, axes = plotting.figure(1, 2, size=(12.0, 4.8))
 for ax, frame in zip(axes, ("inertial", "rotating"), strict=True):
     even_diagram.plot(ax, frame)
     ax.set_ylim(0.0, 800.0)
-plots.save(made, "campbell_diagram.png")
-made, ax = plots.figure()
+plotting.save(made, "campbell_diagram.png")
+made, ax = plotting.figure()
 uneven_diagram.plot(ax).set_ylim(0.0, 500.0)
-plots.save(made, "campbell_uneven_bearings.png")
-made, ax = plots.figure()
+plotting.save(made, "campbell_uneven_bearings.png")
+made, ax = plotting.figure()
 stiffnesses = np.geomspace(1e5, 1e10, 31)
 critical_speed_map(reduced, ["left", "right"], stiffnesses, max_speed=HERTZ * 2000.0).plot(ax)
-plots.save(made, "critical_speed_map.png")
+plotting.save(made, "critical_speed_map.png")
 
 # ------------------------------------------------------------------ reduced against full
 few_speeds = HERTZ * np.array([0.0, 100.0, 200.0])

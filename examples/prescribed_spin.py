@@ -9,7 +9,7 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import PrescribedMotion, SolidRotor, add_rotor, plots
+from exudyn_rotor import PrescribedMotion, SolidRotor, add_rotor, plotting
 
 END_SPEED, DURATION = 250.0, 0.2  # rad/s, s
 STEP = 1e-4
@@ -50,12 +50,12 @@ momentum = body.motion.invariants.Theta * END_SPEED
 impulse = np.trapezoid(moment, time)
 print(f"impulse {impulse:.6f} N m s, gain of angular momentum {momentum:.6f} N m s")
 
-made, (above, below) = plots.figure(2, 1, size=(6.5, 5.0), sharex=True)
+made, (above, below) = plotting.figure(2, 1, size=(6.5, 5.0), sharex=True)
 above.plot(time, speed)
 above.set_ylabel("spin speed [rad/s]")
 below.plot(time, moment)
 below.set_ylabel("drive torque [N m]")
 below.set_xlabel("time [s]")
-plots.save(made, "prescribed_spin.png")
+plotting.save(made, "prescribed_spin.png")
 
 assert abs(impulse / momentum - 1.0) < 1e-4

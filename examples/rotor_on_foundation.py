@@ -11,7 +11,7 @@ import numpy as np
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, add_rotor, plots
+from exudyn_rotor import SolidRotor, add_rotor, plotting
 
 BEARING, FOUNDATION = 2e5, 1e6  # stiffness of a bearing and of a foundation spring [N/m]
 BEARING_DAMPING, FOUNDATION_DAMPING = 200.0, 2000.0  # [N s/m]
@@ -96,7 +96,7 @@ for speed, ours, theirs in zip(speeds, measured, expected, strict=True):
         f" foundation {1e6 * ours[1]:6.2f} µm ({1e6 * theirs[1]:6.2f} rigid)"
     )
 
-made, axes = plots.figure(size=(6.5, 4.0))
+made, axes = plotting.figure(size=(6.5, 4.0))
 fine = np.linspace(60.0, 420.0, 400)
 axes.semilogy(fine, 1e6 * np.array([closed_form(speed) for speed in fine]))
 axes.set_prop_cycle(None)
@@ -104,6 +104,6 @@ axes.semilogy(speeds, 1e6 * measured, "o")
 axes.set_xlabel("spin speed [rad/s]")
 axes.set_ylabel("vertical amplitude [µm]")
 axes.legend(["rotor, closed form", "foundation, closed form", "rotor", "foundation"])
-plots.save(made, "rotor_on_foundation.png")
+plotting.save(made, "rotor_on_foundation.png")
 
 assert np.all(np.abs(measured / expected - 1.0) < 0.02)

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, plots
+from exudyn_rotor import SolidRotor, plotting
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.linear.stability.analysis import unstable_ranges
@@ -65,10 +65,10 @@ result = stability_map(
     labels=("spin speed [rad/s]", "damping of a bearing [N s/m]"),
     tolerance=1e-6,
 )
-made, axes = plots.figure(size=(7.0, 4.5))
+made, axes = plotting.figure(size=(7.0, 4.5))
 result.plot(axes)
 axes.set_title("shaft with two flats on bearings softer sideways; black: limit of stability")
-plots.save(made, "stability_map.png")
+plotting.save(made, "stability_map.png")
 
 assert np.allclose(found[0], expected, rtol=1e-6)
 assert len(ranges) == 0  # with the largest damping

@@ -10,7 +10,7 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, plots
+from exudyn_rotor import SolidRotor, plotting
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
@@ -60,13 +60,13 @@ between = 0.5 * (np.sqrt(2 * SIDEWAYS / mass) + np.sqrt(2 * UPWARDS / mass))
 print(f"backward whirl from {backward[0] * 30 / np.pi:.0f} to {backward[-1] * 30 / np.pi:.0f} rpm")
 assert backward[0] < between < backward[-1]
 
-figure, (size, phase) = plots.figure(2, 1, size=(7.0, 5.5), sharex=True)
+figure, (size, phase) = plotting.figure(2, 1, size=(7.0, 5.5), sharex=True)
 response.plot("left", axes=(size, phase))
-plots.save(figure, "unbalance_bode.png")
-figure, panels = plots.figure(1, 3, size=(11.0, 4.2))
+plotting.save(figure, "unbalance_bode.png")
+figure, panels = plotting.figure(1, 3, size=(11.0, 4.2))
 for axes, speed in zip(panels, (0.6 * between, between, 1.7 * between), strict=True):
     response.plot_orbit(speed, axes=axes, places=["left"])
-plots.save(figure, "unbalance_orbits.png")
+plotting.save(figure, "unbalance_orbits.png")
 
 # at service speed: a shaker pushes the left journal sideways, over frequency; close steps where
 # the resonance is sharp
@@ -74,9 +74,9 @@ sweep = np.union1d(np.linspace(5.0, 800.0, 200), np.linspace(150.0, 230.0, 80))
 shaken = harmonic_response(
     rotor, sweep, HarmonicForce("left", (1.0, 0.0)), speed=SERVICE, supports=bearings
 )
-figure, axes = plots.figure(2, 1, size=(7.0, 5.5), sharex=True)
+figure, axes = plotting.figure(2, 1, size=(7.0, 5.5), sharex=True)
 shaken.plot("left", directions=("forward", "backward"), axes=tuple(axes))
-plots.save(figure, "shaker_bode.png")
-figure, axes = plots.figure(size=(5.5, 5.5))
+plotting.save(figure, "shaker_bode.png")
+figure, axes = plotting.figure(size=(5.5, 5.5))
 shaken.plot_polar("left", axes=axes)
-plots.save(figure, "shaker_polar.png")
+plotting.save(figure, "shaker_polar.png")

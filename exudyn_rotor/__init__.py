@@ -6,13 +6,6 @@ Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exud
 from exudyn_rotor.advice.checks import RunCheck, check_run
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.body.adding import add_rotor
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.settings import recommended_settings
-from exudyn_rotor.body.twin import MainSystemCreateFixedAxisFFRFReducedOrderObject
-from exudyn_rotor.formulation import ConstantSpeed, Formulation, PrescribedMotion
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical import (
@@ -25,7 +18,6 @@ from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_r
 from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
 from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.results import load_result
 from exudyn_rotor.linear.stability.analysis import (
     Stability,
     stability,
@@ -33,15 +25,28 @@ from exudyn_rotor.linear.stability.analysis import (
     unstable_ranges,
 )
 from exudyn_rotor.linear.stability.maps import StabilityMap, stability_map
-from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, free_modes, spinning_modes
-from exudyn_rotor.modes.selection import select_modes
-from exudyn_rotor.motion import Motion
-from exudyn_rotor.reduced import ReducedRotor
-from exudyn_rotor.solid import Interface, PointMass, Prestress, SolidRotor
-from exudyn_rotor.stiffening import Stiffening
+from exudyn_rotor.multibody.add_rotor import add_rotor
+from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.solver_settings import recommended_settings
+from exudyn_rotor.prestress.prestress import Prestress
+from exudyn_rotor.reduction.component import ModeBasis, free_modes
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.selection import select_modes
+from exudyn_rotor.reduction.spinning import spinning_modes
+from exudyn_rotor.reduction.truncation import keep_modes
+from exudyn_rotor.results import load_result
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.rotor import SolidRotor
 from exudyn_rotor.strength.field import StressField
 from exudyn_rotor.strength.history import StressHistory, stress_history
-from exudyn_rotor.truncation import keep_modes
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.stiffening import Stiffening
 
 __all__ = [
     "AssumptionWarning",

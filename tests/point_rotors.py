@@ -4,9 +4,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.nodal import rotations, translations
-from exudyn_rotor.solid import SolidRotor
+from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import rotations, translations
 
 SKEW_AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 

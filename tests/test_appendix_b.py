@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import Invariants, SolidRotor, campbell, free_modes
-from exudyn_rotor.nodal import block_diagonal, tilde, tilde_basis, translations
+from exudyn_rotor.theory.nodal import block_diagonal, tilde, tilde_basis, translations
 
 STIFFNESS = 1e4 * np.array(
     [  # (123)

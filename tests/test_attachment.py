@@ -22,8 +22,8 @@ from exudyn_rotor import (
     keep_modes,
     propose,
 )
-from exudyn_rotor.modes import relief
-from exudyn_rotor.modes.attachment import attachment_modes
+from exudyn_rotor.reduction.attachment import attachment_modes
+from exudyn_rotor.solvers import inertia_relief
 
 
 @pytest.fixture(scope="module")
@@ -113,8 +113,10 @@ def test_truncation_and_files_keep_them(rotor, tmp_path):
 
 def test_stiffness_is_factorised_once(monkeypatch):
     """Modes, prestress and attachment modes share it; another mass makes another relief."""
-    made, own = [], relief.SparseCholesky
-    monkeypatch.setattr(relief, "SparseCholesky", lambda matrix: made.append(1) or own(matrix))
+    made, own = [], inertia_relief.SparseCholesky
+    monkeypatch.setattr(
+        inertia_relief, "SparseCholesky", lambda matrix: made.append(1) or own(matrix)
+    )
     mesh = disc_on_shaft(0.2)
     fresh = SolidRotor.from_ngsolve(mesh, STEEL, "z")
     fresh.reduce(3, prestress=True)
@@ -123,10 +125,10 @@ def test_stiffness_is_factorised_once(monkeypatch):
     heavier = fresh.add_point_mass([0.15, 0, 0.215], 0.1)
     heavier.reduce(3)
     assert len(made) == 2
-    known = len(relief._known)
+    known = len(inertia_relief._known)
     del fresh, heavier
     gc.collect()
-    assert len(relief._known) == known - 1
+    assert len(inertia_relief._known) == known - 1
 
 
 # ------------------------------------------------------------------ advice

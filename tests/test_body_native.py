@@ -17,7 +17,7 @@ from matplotlib.image import imread
 from models import STEEL, block_beam
 
 from exudyn_rotor import SolidRotor, add_rotor
-from exudyn_rotor.body.drawing import draw_scene
+from exudyn_rotor.multibody.drawing import draw_scene
 
 KINDS = exu.OutputVariableType
 

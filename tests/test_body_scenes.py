@@ -16,7 +16,7 @@ from exudyn_rotor import (
     add_rotor,
     select_modes,
 )
-from exudyn_rotor.kernel import Kernel
+from exudyn_rotor.theory.kernel import Kernel
 
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 TO_Y = Rotation.from_euler("x", -np.pi / 2).as_matrix()

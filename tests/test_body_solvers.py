@@ -10,7 +10,7 @@ from models import STEEL, disc_on_shaft, two_masses
 from scipy.integrate import simpson
 
 from exudyn_rotor import Motion, PrescribedMotion, SolidRotor, SpinAxis, add_rotor
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = (SOLVERS.GeneralizedAlpha, SOLVERS.TrapezoidalIndex2)

@@ -12,7 +12,7 @@ from exudyn_rotor.linear.equations.full import FullRotor, Subspace
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.campbell import Campbell
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.results import load_result
 
 HERTZ = 2.0 * np.pi
 MASS = 12.0

@@ -10,10 +10,12 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
 
-from exudyn_rotor.modes import ModeBasis, craig_bampton_modes, fem_interface_modes, free_modes
-from exudyn_rotor.modes.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
-from exudyn_rotor.nodal import rotations, translations
+from exudyn_rotor.reduction.component import ModeBasis, free_modes
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solvers.factor import DENSE_SIZE, NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.theory.nodal import rotations, translations
 
 STEEL = {"density": 7800.0, "youngsModulus": 2.1e11, "poissonsRatio": 0.3}
 

@@ -12,7 +12,7 @@ from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
 from exudyn_rotor.linear.modal.resonance import full_resonances
-from exudyn_rotor.linear.results import load_result
+from exudyn_rotor.results import load_result
 
 KY, KZ = 196e4, 100e4  # Appendix B, unit masses
 

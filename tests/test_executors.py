@@ -11,7 +11,7 @@ from point_rotors import ring_rotor
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.response.analysis import unbalance_response
 from exudyn_rotor.linear.response.balance import Unbalance
-from exudyn_rotor.linear.sweep import sweep
+from exudyn_rotor.sweep import sweep
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from exudyn_rotor.linear.response import full
 from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.balance import Unbalance
 from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
-from exudyn_rotor.modes import craig_bampton_modes
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 SPEEDS = np.array([0.0, 100.0, 1000.0, 3000.0])
 AXIAL = np.diag([1e7, 1e7, 1e6])

@@ -20,10 +20,10 @@ from exudyn_rotor import (
     critical_speeds,
     free_modes,
 )
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.nodal import rotations
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import rotations
+from exudyn_rotor.theory.stiffening import stiffening
 
 
 @pytest.fixture(scope="module")

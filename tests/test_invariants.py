@@ -12,7 +12,7 @@ from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Formulation, Invariants, select_modes
-from exudyn_rotor.nodal import rotations
+from exudyn_rotor.theory.nodal import rotations
 
 EXACT = 1e-12  # sums of some hundred products of order 1
 MATRICES = ("M", "K", "D", "G", "C")

@@ -18,10 +18,10 @@ from exudyn_rotor import (
     add_rotor,
     select_modes,
 )
-from exudyn_rotor.body.settings import recommended_settings
-from exudyn_rotor.formulation import ConstantSpeed
-from exudyn_rotor.kernel import Kernel, constant_part
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.multibody.solver_settings import recommended_settings
+from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.kernel import Kernel, constant_part
+from exudyn_rotor.theory.stiffening import stiffening
 
 ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
 SHAKE = PrescribedMotion(

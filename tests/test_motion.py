@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion, SpinAxis, select_modes
-from exudyn_rotor.formulation import ConstantSpeed
-from exudyn_rotor.nodal import skew
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.stiffening import stiffening
 
 AXIS = SpinAxis(SKEW_AXIS)
 ORIENTATION = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()

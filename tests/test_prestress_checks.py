@@ -16,9 +16,9 @@ from exudyn_rotor import (
     check_run,
     free_modes,
 )
-from exudyn_rotor.nodal import rotations
 from exudyn_rotor.solid.tensor import von_mises
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.nodal import rotations
+from exudyn_rotor.theory.stiffening import stiffening
 
 OUTER, BORE, THICKNESS = 0.2, 0.1, 0.02
 TENSION = 5e7

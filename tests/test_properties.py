@@ -17,7 +17,7 @@ from exudyn_rotor import (
     select_modes,
     stability,
 )
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 EXACT = 1e-11  # sums of some hundred products of order 1, over gaps between eigenvalues
 FLEXIBLE = 3

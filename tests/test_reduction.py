@@ -18,8 +18,8 @@ from exudyn_rotor import (
     free_modes,
     select_modes,
 )
-from exudyn_rotor.modes.basis import RIGID
-from exudyn_rotor.nodal import block_diagonal, rotations, translations
+from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.theory.nodal import block_diagonal, rotations, translations
 
 EXACT = 1e-12  # sums over six nodes with entries of order 1
 OFF_ORIGIN = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])

@@ -11,7 +11,7 @@ from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_r
 from exudyn_rotor.linear.response.balance import Unbalance
 from exudyn_rotor.linear.response.loads import HarmonicForce
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.results import Result, load_result, save_result, storable
+from exudyn_rotor.results import Result, load_result, save_result, storable
 
 
 @storable

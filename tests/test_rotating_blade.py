@@ -11,7 +11,7 @@ from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
 from exudyn_rotor import ModeBasis, SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 LENGTH, WIDTH, HEIGHT = 1.0, 0.06, 0.02
 

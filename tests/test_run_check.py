@@ -20,7 +20,7 @@ from exudyn_rotor import (
     keep_modes,
     propose,
 )
-from exudyn_rotor.nodal import rotations, translations
+from exudyn_rotor.theory.nodal import rotations, translations
 
 
 @pytest.fixture(scope="module")

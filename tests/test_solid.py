@@ -6,11 +6,12 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import ALUMINIUM, STEEL, block_beam, disc_on_shaft, two_masses, two_material_cylinder
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.nodal import rotations, translations
-from exudyn_rotor.solid import PointMass, SolidRotor
+from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid import rigid_residuals
+from exudyn_rotor.solid.rotor import SolidRotor
 from exudyn_rotor.solid.surface import area_weights
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import rotations, translations
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
 

@@ -10,7 +10,6 @@ from scipy.special import mathieu_a, mathieu_b
 
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.results import load_result
 from exudyn_rotor.linear.stability.analysis import (
     Stability,
     exponents,
@@ -27,6 +26,7 @@ from exudyn_rotor.linear.stability.floquet import (
     monodromy,
 )
 from exudyn_rotor.linear.stability.maps import stability_map
+from exudyn_rotor.results import load_result
 
 STIFFNESS, OUTER, INNER, MASS = 2e5, 60.0, 40.0, 5.0
 BEARING, BEARING_DAMPING = np.diag([3e5, 5e5]), np.diag([20.0, 30.0])

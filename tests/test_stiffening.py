@@ -9,9 +9,9 @@ import scipy.sparse as sp
 from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
 
 from exudyn_rotor import Formulation, Motion, campbell, select_modes
-from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.nodal import rotations, skew, translations
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import rotations, skew, translations
+from exudyn_rotor.theory.stiffening import stiffening
 
 MASS = 12.0
 DISC, SHAFT = (0.3, 0.02), (0.1, 0.4)  # radius, half length of two rings

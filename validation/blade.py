@@ -33,7 +33,7 @@ from netgen.occ import Box, OCCGeometry, Pnt, X
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
-from exudyn_rotor.plots import COLORS, LINES, figure, legend_above, save
+from exudyn_rotor.plotting import COLORS, LINES, figure, legend_above, save
 
 LENGTH, WIDTH, HEIGHT = 0.5, 0.02, 0.01  # along x, in the plane of rotation, across it [m]
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}

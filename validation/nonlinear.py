@@ -26,10 +26,10 @@ from netgen.occ import Box, OCCGeometry, Pnt, X
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.modes.factor import SparseCholesky
-from exudyn_rotor.nodal import block_diagonal
-from exudyn_rotor.solid.geometric import nodal_space, node_by_node
+from exudyn_rotor.solid.elements import nodal_space, node_by_node
 from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solvers.factor import SparseCholesky
+from exudyn_rotor.theory.nodal import block_diagonal
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 LEVELS = ("none", "full", "full, initial displacement")

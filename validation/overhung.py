@@ -28,7 +28,7 @@ from nonlinear import LEVELS, STEEL, ClampedSolid
 from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, ReducedRotor, free_modes, select_modes
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 SPEEDS, QUICK_SPEEDS = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0), (0.0, 60.0)  # rad/s
 MODES = 12

@@ -24,8 +24,8 @@ from netgen.occ import Box, OCCGeometry, Pnt, X
 from nonlinear import ClampedSolid
 from tqdm import tqdm
 
-from exudyn_rotor import Formulation, Motion, PrescribedMotion, plots, select_modes
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor import Formulation, Motion, PrescribedMotion, plotting, select_modes
+from exudyn_rotor.theory.stiffening import stiffening
 
 HUB, LENGTH = 0.05, 0.4  # m
 END_SPEED, SPIN_UP, DURATION = 500.0, 0.4, 0.45  # rad/s, s, s
@@ -149,15 +149,17 @@ def summary(tracks: dict[str, np.ndarray], step: float) -> list[dict]:
 
 def draw(tracks: dict[str, np.ndarray], step: float, path: Path) -> None:
     """Draw the deflections over time."""
-    made, axes = plots.figure()
+    made, axes = plotting.figure()
     limit = 2.0 * np.abs(tracks["nonlinear solid"]).max()
-    for (name, track), color, line in zip(tracks.items(), plots.COLORS, plots.LINES, strict=False):
+    for (name, track), color, line in zip(
+        tracks.items(), plotting.COLORS, plotting.LINES, strict=False
+    ):
         axes.plot(step * np.arange(len(track)), 1e3 * track, line, color=color, label=name)
     axes.set(xlabel="time [s]", ylabel="lag deflection of the tip [mm]")
     axes.set_ylim(-1e3 * limit, 0.1e3 * limit)
     axes.grid(alpha=0.3)
-    plots.legend_above(axes, columns=4)
-    plots.save(made, path)
+    plotting.legend_above(axes, columns=4)
+    plotting.save(made, path)
 
 
 def main(argv: list[str] | None = None) -> None:

@@ -11,7 +11,7 @@ from trade_error import Row, cheapest, front
 from trade_run import AXES, USERS
 from trade_scene import CONSTANT_SPEED, CRAIG_BAMPTON, FREE, FREE_FRAME, STANDARD, VIRTUAL
 
-from exudyn_rotor.plots import COLORS, save
+from exudyn_rotor.plotting import COLORS, save
 
 GREY = "#666666"
 STYLES = {  # colour, marker

@@ -30,7 +30,7 @@ from exudyn_rotor.demo.scene import (
     add_3d_rotor_with_virtual_nodes,
     disc_on_shaft,
 )
-from exudyn_rotor.reduction import ModeSource
+from exudyn_rotor.reduction.reduce import ModeSource
 
 DISC = 0.05  # m, place of the disc's middle on the x axis
 RIM = (DISC, 0.0, 0.12)  # m

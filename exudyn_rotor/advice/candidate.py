@@ -9,15 +9,15 @@ from dataclasses import dataclass, field
 import exudyn
 import numpy as np
 
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.linear.equations.system import PeriodicSystem
 from exudyn_rotor.linear.response.places import Source
-from exudyn_rotor.modes.basis import RIGID
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.invariants import Invariants
 
 _BALANCED = 1e-5  # share of the rotor's size by which a mesh may be off the axis
 _ORDER = 2  # harmonics of the speed by which turning coefficients couple: bearings, foundations

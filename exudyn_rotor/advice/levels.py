@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.modes import resonances
 from exudyn_rotor.advice.request import Request
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 SOUTHWELL = 1.0  # stiffness by rotation per Ω² and modal mass, where it is not known
 _DEFECTIVE = 1e-3  # a motion that nothing holds has no frequency to change

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.body.locking import SPIN
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record
+from exudyn_rotor.multibody.locking import SPIN
+from exudyn_rotor.multibody.record import Record
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.axis import SpinAxis
 
 _MOST = 400
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.advice.loads import external_load, instants, turned, weight
-from exudyn_rotor.body.locking import SPIN, TILTS
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record, newton_tolerance
-from exudyn_rotor.nodal import skew
+from exudyn_rotor.multibody.locking import SPIN, TILTS
+from exudyn_rotor.multibody.record import Record, newton_tolerance
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.nodal import skew
 
 _SINGULAR = 1e-3  # of the node's axes, where its second angle is near a right one
 

@@ -9,10 +9,10 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record, Solver, last_solver
-from exudyn_rotor.modes.basis import RIGID
-from exudyn_rotor.stiffening import stiffening, tilt_factors
+from exudyn_rotor.multibody.record import Record, Solver, last_solver
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin

@@ -16,11 +16,11 @@ from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request, share
 from exudyn_rotor.advice.steps import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.formulation import ConstantSpeed, PrescribedMotion
 from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.reduced import ReducedRotor
-from exudyn_rotor.truncation import keep_modes
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.truncation import keep_modes
+from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
 
 _HERTZ = 2.0 * np.pi
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone

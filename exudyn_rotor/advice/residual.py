@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.advice.loads import external_load, instants, turned, weight
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.watch import Record
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.record import Record
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 _SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exudyn_rotor import plots
+from exudyn_rotor import plotting
 from exudyn_rotor.demo import scene
 from exudyn_rotor.demo.simulation import Run, simulate
 
@@ -81,19 +81,19 @@ def table(runs: list[Run]) -> str:
 def draw_comparison(runs: list[Run], folder: Path) -> None:
     """Write orbits and time histories of the 3D body and the fixed-axis rotor."""
     reference, fixed = runs[0], runs[2]
-    made, axes = plots.figure(size=(6.0, 5.5))
-    plots.plot_orbits(axes, {run.label: run.orbit for run in (reference, fixed)})
-    plots.save(made, folder / "orbits.png")
+    made, axes = plotting.figure(size=(6.0, 5.5))
+    plotting.plot_orbits(axes, {run.label: run.orbit for run in (reference, fixed)})
+    plotting.save(made, folder / "orbits.png")
 
-    made, (above, below) = plots.figure(2, 1, size=(9.0, 6.0), sharex=True)
-    plots.plot_histories(
+    made, (above, below) = plotting.figure(2, 1, size=(9.0, 6.0), sharex=True)
+    plotting.plot_histories(
         above, reference.time, {run.label: run.orbit[:, 1] for run in (reference, fixed)}
     )
     above.set_ylabel("right journal, vertical [µm]")
     after_start = slice(1, None)  # all runs start from the same state
-    plots.plot_deviation(
+    plotting.plot_deviation(
         below,
         reference.time[after_start],
         {run.label: run.deviation(reference)[after_start] for run in runs[2:]},
     )
-    plots.save(made, folder / "displacement.png")
+    plotting.save(made, folder / "displacement.png")

@@ -17,7 +17,7 @@ from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementR
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
-from exudyn_rotor.body.shell import virtual_nodes
+from exudyn_rotor.multibody.marker_body import virtual_nodes
 from exudyn_rotor.solid.rotor import SolidRotor
 
 AddRotor = Callable[[exudyn.MainSystem, FEMinterface], dict]

@@ -13,8 +13,8 @@ from exudyn.itemInterface import SensorMarker, SensorNode
 from exudyn.rigidBodyUtilities import RotationMatrixX, RotationMatrixZ
 from tqdm import tqdm
 
-from exudyn_rotor.body.drawing import draw_scene
 from exudyn_rotor.demo.scene import AddRotor, add_foundation
+from exudyn_rotor.multibody.drawing import draw_scene
 
 MAGNIFICATION = 300.0
 

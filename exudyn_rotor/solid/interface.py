@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.axis import read_only
-from exudyn_rotor.nodal import skew
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.theory.nodal import skew
 
 
 @dataclass(frozen=True, eq=False)

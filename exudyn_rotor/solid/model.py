@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from exudyn_rotor.solid.geometric import NgsolveElements
+    from exudyn_rotor.solid.elements import NgsolveElements
 
 StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]

@@ -11,9 +11,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solid import units
-from exudyn_rotor.solid.geometric import NgsolveElements, assembled, nodal_space, node_by_node
+from exudyn_rotor.solid.elements import NgsolveElements, assembled, nodal_space, node_by_node
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
-from exudyn_rotor.solid.stress import TetrahedronStress
+from exudyn_rotor.solid.stress_recovery import TetrahedronStress
 from exudyn_rotor.solid.surface import area_weights
 
 # Face names that Netgen invents for faces without a name.

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_rotor.axis import read_only
+from exudyn_rotor.checks import read_only
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.nodal import rotations, translations
+from exudyn_rotor.theory.nodal import rotations, translations
 
 # Limits of the relative residual ‖K r‖ / ‖ |K| |r| ‖ of a rigid motion r. Measured on meshes from
 # 15 000 to 108 000 coordinates, the same in SI and in mm and tonnes: a free motion leaves 1e-16;

@@ -11,23 +11,24 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.axis import SpinAxis, read_only
-from exudyn_rotor.solid import checks, fem_import, ngsolve_model, units
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.prestress.stressed import StressedRotor, check_unstressed
+from exudyn_rotor.solid import fem_interface, matrices, ngsolve_model, units
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet, StressRecovery
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions
-from exudyn_rotor.solid.stressed import StressedRotor, check_unstressed
 from exudyn_rotor.solid.summary import summary
+from exudyn_rotor.theory.axis import SpinAxis
 
 if TYPE_CHECKING:
     import ngsolve
     from exudyn.FEM import FEMinterface
 
-    from exudyn_rotor.reduced import ReducedRotor
-    from exudyn_rotor.reduction import ModeSource
-    from exudyn_rotor.solid.geometric import NgsolveElements
-    from exudyn_rotor.solid.prestress import Prestress
+    from exudyn_rotor.prestress.prestress import Prestress
+    from exudyn_rotor.reduction.reduce import ModeSource
+    from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+    from exudyn_rotor.solid.elements import NgsolveElements
 
 AxisLike = SpinAxis | str | ArrayLike
 
@@ -154,7 +155,7 @@ class SolidRotor(StressedRotor):
         ValueError
             If nodes carry rotations, something is missing, or a check of the matrices fails.
         """
-        return cls._checked(fem_import.import_model(fem), axis, check_units, grounded)
+        return cls._checked(fem_interface.import_model(fem), axis, check_units, grounded)
 
     @classmethod
     def from_matrices(
@@ -210,16 +211,16 @@ class SolidRotor(StressedRotor):
         check_units: bool,
         grounded: bool | None = None,
     ) -> SolidRotor:
-        nodes = checks.as_nodes(model.nodes)
-        mass = checks.as_matrix("mass matrix", model.mass, len(nodes))
-        checks.check_mass(mass)
+        nodes = matrices.as_nodes(model.nodes)
+        mass = matrices.as_matrix("mass matrix", model.mass, len(nodes))
+        matrices.check_mass(mass)
         if check_units:
             units.check_model_units(nodes, float(mass[::3, ::3].sum()))
-        stiffness = checks.as_matrix("stiffness matrix", model.stiffness, len(nodes))
-        checks.check_stiffness(stiffness)
+        stiffness = matrices.as_matrix("stiffness matrix", model.stiffness, len(nodes))
+        matrices.check_stiffness(stiffness)
         damping = model.damping
         if damping is not None:
-            damping = checks.as_matrix("damping matrix", damping, len(nodes))
+            damping = matrices.as_matrix("damping matrix", damping, len(nodes))
         return cls(
             nodes=nodes,
             mass=mass,
@@ -230,7 +231,7 @@ class SolidRotor(StressedRotor):
                 name: _interface(name, nodes, *node_set)
                 for name, node_set in model.node_sets.items()
             },
-            triangles=checks.as_triangles(model.triangles, len(nodes)),
+            triangles=matrices.as_triangles(model.triangles, len(nodes)),
             stress_recovery=model.stress_recovery,
             rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
             elements=model.elements,
@@ -282,7 +283,7 @@ class SolidRotor(StressedRotor):
         """
         check_unstressed(self)
         node = self.nearest_node(position)
-        matrix = checks.frozen(add_nodal_mass(self.mass, node, mass))
+        matrix = matrices.frozen(add_nodal_mass(self.mass, node, mass))
         distance = float(np.linalg.norm(self.nodes[node] - np.asarray(position, dtype=float)))
         placed = PointMass(position, node, float(mass), distance)
         return replace(self, mass=matrix, point_masses=(*self.point_masses, placed))
@@ -343,9 +344,9 @@ class SolidRotor(StressedRotor):
         Parameters
         ----------
         modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
-            A number of free eigenmodes (0 for a rigid rotor), modes of :mod:`exudyn_rotor.modes`,
-            a FEMinterface whose modes have been computed, or displacement columns in mesh axes
-            [m].
+            A number of free eigenmodes (0 for a rigid rotor), a basis made by a function of
+            :mod:`exudyn_rotor.reduction`, a FEMinterface whose modes have been computed, or
+            displacement columns in mesh axes [m].
         stress : bool, optional
             Also recover stress modes, for stress sensors and contour pictures.
         keep_shapes : bool, optional
@@ -361,7 +362,7 @@ class SolidRotor(StressedRotor):
         TypeError, ValueError
             If the modes are of another kind or of another mesh, or nothing is left of them.
         """
-        from exudyn_rotor.reduction import reduce_rotor
+        from exudyn_rotor.reduction.reduce import reduce_rotor
 
         return reduce_rotor(
             self,
@@ -386,8 +387,8 @@ class SolidRotor(StressedRotor):
 def _interface(
     name: str, nodes: np.ndarray, numbers: Sequence[int], weights: Sequence[float] | None
 ) -> Interface:
-    numbers = checks.as_node_numbers(name, numbers, len(nodes))
-    shares = checks.as_weights(name, weights, numbers.size)
+    numbers = matrices.as_node_numbers(name, numbers, len(nodes))
+    shares = matrices.as_weights(name, weights, numbers.size)
     return Interface(name, numbers, shares, nodes[numbers])
 
 

@@ -18,13 +18,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.modes.selection import Selection
-from exudyn_rotor.plots import draw_surface
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.plotting import draw_surface
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.solid.tensor import von_mises
 
 if TYPE_CHECKING:
-    from exudyn_rotor.body.rotor_body import RotorBody
+    from exudyn_rotor.multibody.rotor_body import RotorBody
 
 Nodes = slice | np.ndarray
 

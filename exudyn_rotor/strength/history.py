@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
-from exudyn_rotor import plots
-from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor import plotting
+from exudyn_rotor.results import Result, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
 from exudyn_rotor.strength.field import StressField, warn_without_static
 
@@ -84,21 +84,21 @@ class StressHistory(Result):
         """Draw the von Mises stress of the first `count` nodes over time [MPa]."""
         made = None
         if axes is None:
-            made, axes = plots.figure()
+            made, axes = plotting.figure()
         values = 1e-6 * self.von_mises
-        for index, color in zip(range(min(count, len(self.nodes))), plots.COLORS, strict=False):
+        for index, color in zip(range(min(count, len(self.nodes))), plotting.COLORS, strict=False):
             label = f"node {self.nodes[index]}"
             axes.plot(self.time, values[:, index], color=color, lw=1.0, label=label)
         axes.set_xlabel("time [s]")
         axes.set_ylabel("von Mises stress [MPa]")
         axes.grid(alpha=0.3)
-        plots.legend_above(axes, columns=3)
+        plotting.legend_above(axes, columns=3)
         return made or axes.figure
 
     def plot_peak(self) -> Figure:
         """Draw the peak of the run on the surface [MPa]."""
         label = "largest von Mises stress [MPa]"
-        return plots.draw_surface(self.positions, self.triangles, 1e-6 * self.peak, label)
+        return plotting.draw_surface(self.positions, self.triangles, 1e-6 * self.peak, label)
 
 
 def stress_history(

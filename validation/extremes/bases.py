@@ -12,7 +12,7 @@ import numpy as np
 from extremes.rotors import cloud
 from extremes.rows import EPS, Row, message
 from exudyn_rotor import ReducedRotor, SolidRotor, free_modes
-from exudyn_rotor.modes.eigen import check_modes
+from exudyn_rotor.solvers.lanczos import check_modes
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 

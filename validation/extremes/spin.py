@@ -9,7 +9,7 @@ from extremes.rows import EPS, Row, breaking_point, message
 from extremes.runs import bare_rotor, run
 from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
 from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.stiffening import stiffening
+from exudyn_rotor.theory.stiffening import stiffening
 
 BEARING = 2e5  # N/m at each end of the shaft
 TILT = 2e3  # N m/rad of a rigid rotor's support

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.invariants import Invariants
-from exudyn_rotor.reduced import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.prestress.stressed import relief_rotations
+from exudyn_rotor.reduction.reduced_rotor import ModeShapes, ReducedInterface, ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
-from exudyn_rotor.solid.stressed import relief_rotations
-from exudyn_rotor.stiffening import with_prestress
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import with_prestress
 
 
 def as_reduced(rotor: SolidRotor) -> ReducedRotor:

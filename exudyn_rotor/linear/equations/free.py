@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_rotor.linear.equations.supports import Support, axes_of
-from exudyn_rotor.modes.basis import RIGID, rigid_columns
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.reduction.basis import RIGID, rigid_columns
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
 # share of the largest rigid-body stiffness, per unit mass, that counts as none

@@ -15,19 +15,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.spin import Spin, seeds, spin_of
 from exudyn_rotor.linear.equations.supports import Support, axes_of, check_interfaces
 from exudyn_rotor.linear.equations.system import LinearRotor, warn_of_eccentricity
 from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
-from exudyn_rotor.modes.eigen import lanczos_modes
-from exudyn_rotor.modes.factor import SparseCholesky
-from exudyn_rotor.reduced import ReducedInterface, ReducedRotor
+from exudyn_rotor.prestress.stressed import relief_rotations
+from exudyn_rotor.reduction.reduced_rotor import ReducedInterface, ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
-from exudyn_rotor.solid.stressed import relief_rotations
-from exudyn_rotor.stiffening import LEVELS, NO_PRESTRESS, relief_factors, tilt_factors
+from exudyn_rotor.solvers.factor import SparseCholesky
+from exudyn_rotor.solvers.lanczos import lanczos_modes
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import LEVELS, NO_PRESTRESS, relief_factors, tilt_factors
 
 _MOST_ROUNDS = 40
 _MOST_COLUMNS = 600

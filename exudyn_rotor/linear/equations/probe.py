@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import exudyn
 import numpy as np
 
-from exudyn_rotor.body.locking import SPIN
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.formulation import ConstantSpeed
-from exudyn_rotor.motion import Motion
-from exudyn_rotor.stiffening import stiffening as second_order
+from exudyn_rotor.multibody.locking import SPIN
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.equations.scene import LinearScene

@@ -19,15 +19,15 @@ import exudyn
 import numpy as np
 import scipy.linalg
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.body.rotor_body import RotorBody
-from exudyn_rotor.body.shell import around
 from exudyn_rotor.linear.equations.hill import hill_matrices
 from exudyn_rotor.linear.equations.probe import Probe, linearised, probing
 from exudyn_rotor.linear.equations.supports import axes_of
 from exudyn_rotor.linear.equations.system import PeriodicSystem, Terms
 from exudyn_rotor.linear.stability.floquet import UnconvergedError
-from exudyn_rotor.nodal import skew
+from exudyn_rotor.multibody.marker_body import around
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _MOST_ITERATIONS = 25

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import exudyn
 
-from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.linear.equations.dense import as_reduced
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.spin import spin_of
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
 
 if TYPE_CHECKING:

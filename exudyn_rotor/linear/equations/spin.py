@@ -25,11 +25,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.supports import Support, axes_of
-from exudyn_rotor.modes.basis import RIGID, rigid_columns
+from exudyn_rotor.reduction.basis import RIGID, rigid_columns
 from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.invariants import Invariants
 
 # of the largest rigid motion: nodes on one line are not displaced by a rotation about it
 _NO_MOTION = 1e-6

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.axis import SpinAxis
-from exudyn_rotor.nodal import skew
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
 
 FRAMES = ("inertial", "rotor")
 SpeedTable = tuple[ArrayLike, ArrayLike]

@@ -17,11 +17,11 @@ from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.invariants import Invariants
 from exudyn_rotor.linear.equations.spin import Spin
 from exudyn_rotor.linear.equations.supports import Support, axes_of, check_interfaces
-from exudyn_rotor.reduced import ReducedRotor
-from exudyn_rotor.stiffening import stiffening as second_order
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 Terms = Mapping[int, np.ndarray]
 

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.equations.free import free_motions
 from exudyn_rotor.linear.equations.full import FullRotor, Subspace
 from exudyn_rotor.linear.equations.source import linear_source
@@ -21,10 +21,11 @@ from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes, groups
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.response.places import Source
-from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.sweep import ascending, ascending_from_zero, sweep
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.results import Result, storable
 from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 FRAMES = ("inertial", "rotating")
 _FULL_MODES = 10
@@ -100,7 +101,7 @@ class Campbell(Result):
         return replace(self, **moved)
 
     def plot(self, ax: Axes | None = None, frame: str = "inertial") -> Axes:
-        """Draw the tracked modes [Hz] over the spin speed [Hz]; see :mod:`exudyn_rotor.plots`.
+        """Draw the tracked modes [Hz] over the spin speed [Hz]; see :mod:`exudyn_rotor.plotting`.
 
         Parameters
         ----------

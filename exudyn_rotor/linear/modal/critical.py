@@ -15,17 +15,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import plots
-from exudyn_rotor.body.rotor_body import RotorBody
+from exudyn_rotor import plotting
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import checked_supports, linear_source
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.resonance import Resonance, full_resonances, resonances
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
-from exudyn_rotor.linear.results import Result, storable
-from exudyn_rotor.linear.sweep import sweep
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.results import Result, storable
 from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.sweep import sweep
 
 Target = ReducedRotor | SolidRotor | exudyn.MainSystem
 
@@ -147,17 +147,17 @@ class CriticalSpeedMap(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
         if ax is None:
-            _, ax = plots.figure()
-        styles = {FORWARD: (plots.COLORS[0], "o"), BACKWARD: (plots.COLORS[1], "v")}
+            _, ax = plotting.figure()
+        styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
-            color, marker = styles.get(int(code), (plots.COLORS[2], "s"))
+            color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
             shown = np.where(self.whirl_codes == code, self.speeds, np.nan) / (2.0 * np.pi)
             lines = ax.loglog(self.stiffnesses, shown, marker, color=color, ms=3.5)
             lines[0].set_label(WHIRLS[code])
         ax.set_xlabel("support stiffness [N/m]")
         ax.set_ylabel(f"critical speed of order {self.order:g} [Hz]")
         ax.grid(alpha=0.3, which="both")
-        plots.legend_above(ax, 4)
+        plotting.legend_above(ax, 4)
         return ax
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from exudyn_rotor import plots
+from exudyn_rotor import plotting
 from exudyn_rotor.linear.modal import whirl
 
 if TYPE_CHECKING:
@@ -19,12 +19,12 @@ _HERTZ = 1.0 / (2.0 * np.pi)
 # rotor with an uneven mesh looks like that
 _UNSTABLE = 1e-4
 _STYLES = {  # colour, line
-    whirl.FORWARD: (plots.COLORS[0], "-"),
-    whirl.BACKWARD: (plots.COLORS[1], "--"),
-    whirl.MIXED: (plots.COLORS[2], "-."),
+    whirl.FORWARD: (plotting.COLORS[0], "-"),
+    whirl.BACKWARD: (plotting.COLORS[1], "--"),
+    whirl.MIXED: (plotting.COLORS[2], "-."),
     whirl.AXIAL: ("0.45", ":"),
-    whirl.TORSIONAL: (plots.COLORS[3], ":"),
-    whirl.RADIAL: (plots.COLORS[4], ":"),
+    whirl.TORSIONAL: (plotting.COLORS[3], ":"),
+    whirl.RADIAL: (plotting.COLORS[4], ":"),
     whirl.STATIC: ("0.7", ":"),
     whirl.UNKNOWN: ("0.2", "-"),
 }
@@ -33,7 +33,7 @@ _STYLES = {  # colour, line
 def draw_campbell(result: Campbell, ax: Axes | None, frame: str) -> Axes:
     """Draw tracked modes in Hz, coloured by whirl, with the line of the spin speed."""
     if ax is None:
-        _, ax = plots.figure()
+        _, ax = plotting.figure()
     tracked = result.tracked()
     values = tracked.frequencies_inertial if frame == "inertial" else tracked.frequencies_rotating
     speeds = _HERTZ * tracked.speeds
@@ -57,7 +57,7 @@ def draw_campbell(result: Campbell, ax: Axes | None, frame: str) -> Axes:
     ax.set_ylabel(f"frequency in the {'inertial' if frame == 'inertial' else 'rotor'} frame [Hz]")
     ax.set_ylim(bottom=0.0)
     ax.grid(alpha=0.3)
-    plots.legend_above(ax, 3, handles)
+    plotting.legend_above(ax, 3, handles)
     return ax
 
 

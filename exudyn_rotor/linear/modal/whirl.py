@@ -20,7 +20,7 @@ from exudyn_rotor.linear.response.places import Source
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.equations.scene import LinearScene
-    from exudyn_rotor.reduced import ReducedRotor
+    from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
 FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))

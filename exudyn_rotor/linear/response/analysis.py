@@ -13,7 +13,6 @@ import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.body.rotor_body import RotorBody
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import FRAMES, Support
@@ -29,9 +28,10 @@ from exudyn_rotor.linear.response.loads import (
 )
 from exudyn_rotor.linear.response.places import At, Place, Source, places
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.sweep import ascending_from_zero, sweep
-from exudyn_rotor.reduced import ReducedRotor
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 Target = ReducedRotor | SolidRotor | exudyn.MainSystem
 Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
@@ -86,7 +86,7 @@ def unbalance_response(
         Largest residual of the equations of a SolidRotor, relative to the loads in the norm of
         their static response.
     executor : concurrent.futures.Executor, optional
-        Computes the speeds; see :func:`exudyn_rotor.linear.sweep.sweep`. A SolidRotor does not use
+        Computes the speeds; see :func:`exudyn_rotor.sweep.sweep`. A SolidRotor does not use
         it: its speeds share one subspace.
     progress : bool, optional
         Show a progress bar.

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
-from exudyn_rotor.plots import COLORS, LINES, figure
+from exudyn_rotor.plotting import COLORS, LINES, figure
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.response.results import Response

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_rotor.linear.results import Result, storable
+from exudyn_rotor.results import Result, storable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

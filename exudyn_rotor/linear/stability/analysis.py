@@ -18,15 +18,15 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from exudyn_rotor import plots
+from exudyn_rotor import plotting
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability import floquet
 from exudyn_rotor.linear.stability.full import FullExponents, projected
-from exudyn_rotor.linear.sweep import ascending_from_zero, sweep
+from exudyn_rotor.results import Result, storable
+from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 METHODS = ("auto", "floquet", "hill", "eigen")
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
@@ -68,12 +68,12 @@ class Stability(Result):
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the growth over the spin speed; unstable speeds are shaded."""
-        axes = plots.figure()[1] if axes is None else axes
+        axes = plotting.figure()[1] if axes is None else axes
         hertz = self.speeds / (2.0 * np.pi)
-        axes.plot(hertz, self.growth, ".-", color=plots.COLORS[0], lw=1.3)
+        axes.plot(hertz, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
         low, high = axes.get_ylim()
         axes.fill_between(
-            hertz, low, high, where=~self.stable, color=plots.COLORS[1], alpha=0.2, lw=0.0
+            hertz, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
         )
         axes.set_ylim(low, high)
         axes.axhline(0.0, color="0.3", lw=0.8)
@@ -137,7 +137,7 @@ def stability(
     residual : float, optional
         Largest relative residual of those modes; see :meth:`Subspace.modes`.
     executor : concurrent.futures.Executor, optional
-        Where the exponents are computed; see :func:`exudyn_rotor.linear.sweep.sweep`. A large
+        Where the exponents are computed; see :func:`exudyn_rotor.sweep.sweep`. A large
         SolidRotor does not use it: its speeds share one subspace.
     progress : bool
 

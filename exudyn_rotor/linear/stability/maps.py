@@ -11,16 +11,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import plots
+from exudyn_rotor import plotting
+from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear.equations.system import PeriodicSystem
-from exudyn_rotor.linear.results import Result, storable
 from exudyn_rotor.linear.stability.analysis import (
     check_method,
     excess_growth,
     exponents,
     source_of,
 )
-from exudyn_rotor.linear.sweep import ascending, sweep
+from exudyn_rotor.results import Result, storable
+from exudyn_rotor.sweep import sweep
 
 
 @storable
@@ -46,7 +47,7 @@ class StabilityMap(Result):
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line."""
-        axes = plots.figure()[1] if axes is None else axes
+        axes = plotting.figure()[1] if axes is None else axes
         growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
         largest = np.abs(growth).max() or 1.0
         levels = np.linspace(-largest, largest, 21)

@@ -1,0 +1,1 @@
+"""Rotors in Exudyn scenes: the only folder that talks to ``mbs``."""

@@ -1,0 +1,332 @@
+"""Adding a reduced rotor to an Exudyn ``mbs``: checks first, then nodes, objects, markers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    LoadMassProportional,
+    MarkerBodyMass,
+    MarkerSuperElementPosition,
+    MarkerSuperElementRigid,
+    NodeGenericODE2,
+    NodeRigidBodyRxyz,
+    ObjectGenericODE2,
+    VNodeRigidBodyRxyz,
+)
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.multibody import inputs
+from exudyn_rotor.multibody.equations import (
+    Layout,
+    LockedForce,
+    constant_object,
+    user_function_object,
+)
+from exudyn_rotor.multibody.locking import (
+    SPIN,
+    ConstraintWatch,
+    add_constraints,
+    add_spin_guide,
+    guiding_force,
+)
+from exudyn_rotor.multibody.marker_body import ShellMesh, shell_mesh, shell_object
+from exudyn_rotor.multibody.plan import Plan, make_plan
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+
+DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
+
+
+def add_rotor(
+    mbs: exudyn.MainSystem,
+    reduced: ReducedRotor,
+    *,
+    name: str | None = "rotor",
+    translation: str | PrescribedMotion = "free",
+    spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+    drive: str = "rigid",
+    stiffening: str = "tilt",
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    rotation: ArrayLike | None = None,
+    initial_velocity: ArrayLike = (0.0, 0.0, 0.0),
+    initial_angle: float | None = None,
+    initial_speed: float | None = None,
+    modal_coordinates: ArrayLike | None = None,
+    modal_velocities: ArrayLike | None = None,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    mass_damping: float = 0.0,
+    stiffness_damping: float = 0.0,
+    markers: Mapping[str, str] | str | None = None,
+    marker_offsets: Mapping[str, ArrayLike] | None = None,
+    show_markers: bool = True,
+    locking: str = "auto",
+    native_shell: bool = True,
+    negligible: float = NEGLIGIBLE,
+    color: Sequence[float] = DEFAULT_COLOR,
+) -> RotorBody:
+    """Add a fixed-axis rotor to `mbs`.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    reduced : ReducedRotor
+    name : str or None
+        Unique name; items are called like those of Exudyn's own flexible body. None leaves them
+        without names; markers are then called like their interfaces.
+    translation, spin, drive
+        The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
+        speed [rad/s].
+    stiffening : {'tilt', 'none', 'full'}
+        Centrifugal stiffening; ``'none'`` gives the paper's own equations, ``'full'`` needs a
+        rotor reduced with a prestress.
+    position : array_like, shape (3,)
+        Place of the mesh origin, inertial axes [m].
+    rotation : array_like, shape (3, 3), optional
+        Mesh axes → inertial axes at θ = 0.
+    initial_velocity : array_like, shape (3,)
+        Of the frame origin (the centre of mass), inertial axes [m/s]; in the plane of rotation
+        where the translation is in-plane.
+    initial_angle, initial_speed : float, optional
+        Of a free spin [rad], [rad/s].
+    modal_coordinates, modal_velocities : array_like, optional
+        Initial values of the modes named by ``body.selection.labels`` (√kg m, √kg m/s).
+    gravity : array_like, shape (3,)
+        Inertial axes [m/s²].
+    mass_damping, stiffness_damping : float
+        Rayleigh factors of the component modes [1/s], [s], acting in the rotor frame.
+    markers : {'rigid', 'position'} or mapping of str to these, optional
+        Kind of the markers at all interfaces, or interfaces that get a marker; all of them, rigid,
+        by default. A position marker serves springs and forces at a fifth of the cost of a rigid
+        one.
+    marker_offsets : mapping of str to array_like, shape (3,), optional
+        Offset of a marker from the interface's reference point, mesh axes [m].
+    show_markers : bool
+        Whether markers are drawn.
+    locking : {'auto', 'mass', 'constraints'}
+        How coordinates of the shell that the formulation does not have are held; see the notes
+        and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for time-varying
+        prescribed motions and for in-plane translation in a plane skew to the inertial axes,
+        masses else.
+    native_shell : bool
+        False leaves out markers, mesh sensors and drawing, and with them every locked coordinate.
+    negligible : float
+        Share of their upper bound below which couplings are left out of a time step; see
+        :func:`exudyn_rotor.select_modes`.
+    color : sequence of 4 floats
+        RGBA.
+
+    Returns
+    -------
+    RotorBody
+
+    Raises
+    ------
+    ValueError, TypeError
+        For bad input; nothing has been added then.
+
+    Notes
+    -----
+    Locking and solvers:
+
+    ============================  =======================  =====================================
+    rotor                         implicit solvers         explicit solvers (RK44, DOPRI5, …)
+    ============================  =======================  =====================================
+    free or constant spin         any locking              ``'mass'``; with constraints they are
+                                                           of first order only
+    θ(t) or τ(t)                  any; ``'constraints'``   ``'mass'``; a run with constraints
+                                  is exact                 stops with an error
+    in-plane, plane skew to the   ``'constraints'``        none; use ``native_shell=False`` or
+    inertial axes                                          translation ``'free'``
+    ============================  =======================  =====================================
+
+    The static solver keeps the initial velocities, so the rotor spins in it. With a constant spin
+    and translation ``'none'`` its solution is the steady state in the rotating frame; a translation
+    that is an unknown stands still in the inertial frame instead. θ is that of the solver's load
+    time (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
+    """
+    inputs.check_mbs(mbs)
+    inputs.check_reduced(reduced)
+    formulation = Formulation(translation, spin, drive)
+    place = inputs.placement(
+        formulation,
+        reduced.axis.direction,
+        position,
+        rotation,
+        initial_velocity,
+        initial_angle,
+        initial_speed,
+    )
+    gravity = inputs.vector(gravity, "gravity", "m/s²")
+    requests = inputs.marker_requests(
+        reduced, markers if native_shell else markers or {}, marker_offsets or {}, show_markers
+    )
+    color = inputs.vector(color, "color", "RGBA", 4).tolist()
+    if requests and not native_shell:
+        raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
+    inputs.check_free_names(mbs, name, requests)
+    plan = make_plan(
+        reduced,
+        name,
+        formulation,
+        stiffening,
+        place,
+        gravity,
+        (
+            inputs.damping_factor(mass_damping, "mass_damping"),
+            inputs.damping_factor(stiffness_damping, "stiffness_damping"),
+        ),
+        (modal_coordinates, modal_velocities),
+        locking,
+        native_shell,
+        negligible,
+    )
+    if not native_shell:
+        return _add_bare(mbs, plan)
+    offsets = {interface: request.offset for interface, request in requests.items()}
+    mesh = shell_mesh(reduced, plan.selection, plan.frame, offsets)
+    return _add_with_shell(mbs, plan, mesh, requests, color)
+
+
+def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
+    """Add only the unknowns of the formulation, on one generic node."""
+    motion, spin = plan.motion, int(plan.formulation.has_spin)
+    translations = np.zeros(plan.formulation.translation_count)
+    start = [*translations, *([plan.placement.angle] * spin), *plan.modal[0]]
+    rate = [
+        *(motion.free_directions.T @ plan.placement.velocity),
+        *([plan.placement.speed] * spin),
+        *plan.modal[1],
+    ]
+    node = mbs.AddNode(_generic_node(plan.name, start, rate))
+    none = np.zeros(motion.size)
+    place = Layout(motion.size, np.arange(motion.size), none, none, none)
+    physics = mbs.AddObject(_physics(plan, place, [node], None))
+    return _body(mbs, plan, layout=place, nodes={"coordinates": node}, objects={"physics": physics})
+
+
+def _add_with_shell(
+    mbs: exudyn.MainSystem,
+    plan: Plan,
+    mesh: ShellMesh,
+    requests: dict[str, inputs.MarkerRequest],
+    color: list[float],
+) -> RotorBody:
+    """Add nodes, equations, native shell, markers, locks and gravity."""
+    rigid = mbs.AddNode(_rigid_node(plan))
+    modes = mbs.AddNode(_generic_node(plan.name, *plan.modal))
+    guide = guiding_force(plan.locks, plan.layout)
+    constraints = {}
+    if not plan.by_mass:
+        watch = ConstraintWatch(guide, plan.layout.size) if plan.locks.varying else None
+        constraints = add_constraints(mbs, plan.locks, rigid, watch)
+        guide = watch or guide
+    physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes], guide))
+    if plan.motion.is_constant:
+        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
+    shell = mbs.AddObject(
+        shell_object(
+            plan.name or "", [rigid, modes], mesh, plan.motion.invariants, plan.frame, color
+        )
+    )
+    load = None
+    if np.any(plan.shell_gravity):
+        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
+        load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=plan.shell_gravity))
+    return _body(
+        mbs,
+        plan,
+        nodes={"rigid": rigid, "modes": modes},
+        objects={"physics": physics, "shell": shell},
+        markers=_add_markers(mbs, plan, shell, mesh, requests),
+        constraints=constraints,
+        gravity_load=load,
+        mesh_node_count=mesh.mesh_node_count,
+    )
+
+
+def _physics(
+    plan: Plan, place: Layout, nodes: list, guide: LockedForce | None
+) -> ObjectGenericODE2:
+    if plan.motion.is_constant:
+        return constant_object(plan.motion, place, nodes)
+    return user_function_object(plan.motion, place, nodes, guide)
+
+
+def _rigid_node(plan: Plan) -> NodeRigidBodyRxyz:
+    start, rate = np.zeros(6), np.zeros(6)
+    start[SPIN], rate[SPIN] = plan.placement.angle, plan.placement.speed
+    rate[:3] = plan.placement.velocity
+    if plan.formulation.moves_origin:
+        start[:3] = plan.formulation.translation.value(0.0)
+    return NodeRigidBodyRxyz(
+        name=inputs.item_name("NodeRigidBody:", plan.name),
+        referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
+        initialCoordinates=start,
+        initialVelocities=rate,
+        visualization=VNodeRigidBodyRxyz(show=False),
+    )
+
+
+def _generic_node(name: str | None, start: list, rate: list) -> NodeGenericODE2:
+    return NodeGenericODE2(
+        name=inputs.item_name("NodeGeneric:", name),
+        numberOfODE2Coordinates=len(start),
+        referenceCoordinates=np.zeros(len(start)),
+        initialCoordinates=start,
+        initialCoordinates_t=rate,
+    )
+
+
+def _add_markers(
+    mbs: exudyn.MainSystem,
+    plan: Plan,
+    shell: exudyn.ObjectIndex,
+    mesh: ShellMesh,
+    requests: dict[str, inputs.MarkerRequest],
+) -> dict[str, exudyn.MarkerIndex]:
+    """Add one marker per interface; rigid markers have the mesh axes as their frame."""
+    markers = {}
+    for interface, request in requests.items():
+        common = {
+            "name": inputs.marker_name(plan.name, interface),
+            "bodyNumber": shell,
+            "visualization": {"show": request.show, "showMarkerNodes": False},
+        }
+        if request.kind == "rigid":
+            turn = np.eye(4)
+            turn[:3, :3] = plan.frame.B
+            item = MarkerSuperElementRigid(
+                meshNodeNumbers=mesh.rigid_nodes[interface],
+                weightingFactors=[1.0 / 3.0] * 3,
+                localHT=turn,
+                **common,
+            )
+        else:
+            item = MarkerSuperElementPosition(
+                meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
+            )
+        markers[interface] = mbs.AddMarker(item)
+    return markers
+
+
+def _body(mbs: exudyn.MainSystem, plan: Plan, **added) -> RotorBody:
+    shared = {name: getattr(plan, name) for name in _SHARED}
+    return RotorBody(mbs=mbs, **(shared | added))
+
+
+_SHARED = (
+    "name",
+    "axis",
+    "formulation",
+    "stiffening",
+    "selection",
+    "motion",
+    "frame",
+    "layout",
+    "locks",
+)

@@ -1,0 +1,265 @@
+"""Holding the coordinates of the native shell that a formulation does not have.
+
+Two ways:
+
+``'mass'``
+    A huge mass on the diagonal. No Lagrange multiplier, and explicit solvers work. A coordinate
+    with a time-varying prescribed motion follows it by a stiff servo of finite mass, so it is
+    accurate to the integrator's error and about ``1 / SERVO_RATIO``.
+``'constraints'``
+    ``CoordinateConstraint`` objects: exact for implicit and static solvers, one multiplier each.
+
+A constant spin is held by mass in both: that is exact, in every solver.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
+from exudyn.itemInterface import (
+    CoordinateConstraint,
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+    MarkerNodeCoordinates,
+    NodePointGround,
+    ObjectConnectorCoordinateVector,
+)
+
+from exudyn_rotor.multibody.equations import Layout, LockedForce
+from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+
+LOCKINGS = ("auto", "mass", "constraints")
+_PATIENCE = 4  # times that forces may be evaluated at while no constraint is
+COORDINATE_NAMES = ("x", "y", "z", "tilt a", "tilt b", "spin")
+TILTS, SPIN, MODES = (3, 4), 5, 6
+
+LOCK_RATIO = 1e18  # of the rotor's own inertia
+SERVO_RATIO = 1e9
+SERVO_RATE = 100.0  # rad/s, critically damped
+LOCK_RATE = 1.0  # rad/s: stiffness of a locked coordinate for static solvers, per lock mass
+# a spin angle grows without bound, so its stiffness must leave digits for the drive torque
+SPIN_HOLD_RATE = 1e3  # rad/s, per own inertia
+
+
+@dataclass(frozen=True, eq=False)
+class Locks:
+    """What happens to the six rigid coordinates of the shell.
+
+    Attributes
+    ----------
+    unknown : tuple of int
+        Rigid coordinates that are unknowns of the formulation.
+    fixed : tuple of int
+    prescribed : dict of int to PrescribedMotion or ConstantSpeed
+        Scalar motion of every prescribed coordinate.
+    plane : ndarray or None
+        Inertial directions of in-plane unknowns, shape (3, 2).
+    normal : ndarray or None
+        Set when the plane of translation is skew in space: all three translations are unknowns,
+        and one linear constraint along this direction holds them in the plane.
+    """
+
+    unknown: tuple[int, ...]
+    fixed: tuple[int, ...]
+    prescribed: dict[int, PrescribedMotion | ConstantSpeed]
+    plane: np.ndarray | None = None
+    normal: np.ndarray | None = None
+
+    @classmethod
+    def of(cls, formulation: Formulation, spin_direction: np.ndarray) -> Locks:
+        """Sort the coordinates for a spin axis along `spin_direction` in inertial axes."""
+        translations, plane, normal = _unknown_translations(formulation, spin_direction)
+        rest = [i for i in range(3) if i not in translations]
+        prescribed: dict[int, PrescribedMotion | ConstantSpeed] = {}
+        if formulation.moves_origin:
+            prescribed = {i: _component(formulation.translation, i) for i in rest}
+            rest = []
+        if formulation.has_spin:
+            return cls((*translations, SPIN), (*rest, *TILTS), prescribed, plane, normal)
+        prescribed[SPIN] = formulation.spin
+        return cls(tuple(translations), (*rest, *TILTS), prescribed, plane, normal)
+
+    @property
+    def varying(self) -> dict[int, PrescribedMotion]:
+        """Coordinates with a time-varying prescribed motion."""
+        return {i: m for i, m in self.prescribed.items() if isinstance(m, PrescribedMotion)}
+
+    @property
+    def locked_names(self) -> tuple[str, ...]:
+        """Names of the coordinates that exist only for the shell."""
+        return tuple(COORDINATE_NAMES[i] for i in (*self.fixed, *self.prescribed))
+
+
+def _unknown_translations(
+    formulation: Formulation, direction: np.ndarray
+) -> tuple[list[int], np.ndarray | None, np.ndarray | None]:
+    if formulation.translation_count == 3:
+        return [0, 1, 2], None, None
+    if formulation.translation_count == 0:
+        return [], None, None
+    along = np.flatnonzero(np.abs(direction) > 1.0 - 1e-14)
+    if along.size == 0:
+        return [0, 1, 2], None, direction
+    across = [i for i in range(3) if i != along[0]]
+    return across, np.eye(3)[:, across], None
+
+
+def _component(motion: PrescribedMotion, index: int) -> PrescribedMotion:
+    """Return one coordinate of a prescribed translation."""
+    return PrescribedMotion(
+        lambda t: float(motion.value(t)[index]),
+        lambda t: float(motion.rate(t)[index]),
+        lambda t: float(motion.acceleration(t)[index]),
+    )
+
+
+def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) -> Layout:
+    """Return where the unknowns stand and the diagonals that lock the rest.
+
+    `inertia` holds the rotor's mass (three times) and moment of inertia (three times).
+    """
+    size = MODES + mode_count
+    mass, stiffness, damping = np.zeros(size), np.zeros(size), np.zeros(size)
+    fixed, varying = list(locks.fixed), list(locks.varying)
+    if by_mass:
+        mass[fixed] = LOCK_RATIO * inertia[fixed]
+        stiffness[fixed] = LOCK_RATE**2 * mass[fixed]
+        mass[varying] = SERVO_RATIO * inertia[varying]
+        stiffness[varying] = SERVO_RATE**2 * mass[varying]
+        damping[varying] = 2.0 * SERVO_RATE * mass[varying]
+    else:
+        mass[fixed + varying] = inertia[fixed + varying]
+    if isinstance(locks.prescribed.get(SPIN), ConstantSpeed):
+        mass[SPIN] = LOCK_RATIO * inertia[SPIN]
+        stiffness[SPIN] = SPIN_HOLD_RATE**2 * inertia[SPIN]
+    unknowns = np.array([*locks.unknown, *range(MODES, size)])
+    return Layout(size, unknowns, mass, stiffness, damping)
+
+
+def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
+    """Return the forces, shape (size,), that belong to the prescribed motion of locked coordinates.
+
+    None where constraints do all of this, or nothing is prescribed.
+    """
+    guided = [index for index in locks.prescribed if place.lock_stiffness[index]]
+    if not guided:
+        return None
+
+    def force(t: float) -> np.ndarray:
+        total = np.zeros(place.size)
+        for index in guided:
+            motion = locks.prescribed[index]
+            total[index] = (
+                place.lock_mass[index] * motion.acceleration(t)
+                + place.lock_damping[index] * motion.rate(t)
+                + place.lock_stiffness[index] * motion.value(t)
+            )
+        return total
+
+    return force
+
+
+def add_spin_guide(
+    mbs: exudyn.MainSystem, locks: Locks, place: Layout, node: exudyn.NodeIndex
+) -> None:
+    """Add the guiding force of a constant spin as a load without Python calls.
+
+    A locked spin needs a stiffness for static solvers, and this load takes it along with the
+    angle.
+    """
+    motion, stiffness = locks.prescribed[SPIN], place.lock_stiffness[SPIN]
+    if not (motion.speed or motion.angle):
+        return
+    start, slope = stiffness * motion.angle, stiffness * motion.speed
+    marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=SPIN))
+    load = mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=0.0))
+    guide = CreateSymbolicUserFunction(
+        mbs, lambda mbs, t, load: start + slope * t, "loadUserFunction", load
+    )
+    mbs.SetLoadParameter(load, "loadUserFunction", guide)
+
+
+class ConstraintWatch:
+    """Stops explicit solvers, which set a constrained coordinate to zero without a word.
+
+    They never evaluate the constraints' prescribed motion, implicit and static solvers do at every
+    time. An object of this class stands in for the guiding force (see :func:`guiding_force`),
+    which is evaluated in all solvers.
+    """
+
+    def __init__(self, force: LockedForce | None, size: int) -> None:
+        self._force = force
+        self._size = size
+        self._last = 0.0
+        self._unseen = 0
+
+    def seen(self) -> None:
+        """Take note that a constraint has been evaluated."""
+        self._unseen = 0
+
+    def __call__(self, t: float) -> np.ndarray:
+        """Return the guiding force; raise RuntimeError in a solver that skips constraints."""
+        self._unseen = 0 if t < self._last else self._unseen + (t > self._last)
+        self._last = t
+        if self._unseen > _PATIENCE:
+            self._unseen = 0
+            raise RuntimeError(
+                "this solver ignores the constraints that prescribe the rotor's motion, as "
+                "explicit solvers do: add the rotor with locking='mass', or use an implicit solver"
+            )
+        return np.zeros(self._size) if self._force is None else self._force(t)
+
+
+def add_constraints(
+    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, watch: ConstraintWatch | None
+) -> dict[str, exudyn.ObjectIndex]:
+    """Hold the locked coordinates of the shell's node by constraints; return them by name.
+
+    `watch` is told of evaluations; it is needed where some prescribed motion varies with time.
+    """
+    ground = mbs.AddNode(NodePointGround())
+    origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+    constraints = {}
+    for index in (*locks.fixed, *locks.varying):
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+        offset = _offset(locks.varying[index], watch) if index in locks.varying else {}
+        constraints[COORDINATE_NAMES[index]] = mbs.AddObject(
+            CoordinateConstraint(markerNumbers=[origin, marker], **offset)
+        )
+    if locks.normal is not None:
+        constraints["plane"] = mbs.AddObject(_plane_constraint(mbs, ground, node, locks.normal))
+    return constraints
+
+
+def _offset(motion: PrescribedMotion, watch: ConstraintWatch) -> dict:
+    """Return the constraint's settings; index-2 solvers need the velocity beside the position."""
+
+    def value(mbs, t, item, offset):
+        watch.seen()
+        return motion.value(t)
+
+    def rate(mbs, t, item, offset):
+        watch.seen()
+        return motion.rate(t)
+
+    return {"offsetUserFunction": value, "offsetUserFunction_t": rate}
+
+
+def _plane_constraint(
+    mbs: exudyn.MainSystem, ground: exudyn.NodeIndex, node: exudyn.NodeIndex, normal: np.ndarray
+) -> ObjectConnectorCoordinateVector:
+    """Return ``eᵀτ = 0`` for a plane that is skew to the inertial axes."""
+    markers = [mbs.AddMarker(MarkerNodeCoordinates(nodeNumber=number)) for number in (ground, node)]
+    row = np.zeros((1, 6))
+    row[0, :3] = normal
+    # this connector takes a node's coordinates with their reference values
+    reference = np.asarray(mbs.GetNodeParameter(node, "referenceCoordinates"))
+    return ObjectConnectorCoordinateVector(
+        markerNumbers=markers,
+        scalingMarker0=np.zeros((1, 0)),
+        scalingMarker1=row,
+        offset=row @ reference,
+    )

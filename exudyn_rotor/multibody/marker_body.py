@@ -1,0 +1,151 @@
+"""The native shell: a massless ``ObjectFFRFreducedOrder`` that gives markers, sensors, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import ObjectFFRFreducedOrder, VObjectFFRFreducedOrder
+
+from exudyn_rotor.multibody.frame import ShellFrame
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.reduction.selection import Selection
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.invariants import Invariants
+
+
+@dataclass(frozen=True, eq=False)
+class ShellMesh:
+    """Nodes of the shell: mesh nodes first, then four virtual nodes per interface.
+
+    The virtual nodes move as the interface's mean rigid motion says, so a marker on them is exact
+    and its cost does not depend on the mesh: three around the reference point for rigid markers,
+    and the point itself for position markers.
+
+    Attributes
+    ----------
+    positions : ndarray, shape (N, 3)
+        Shell axes, from the frame origin [m].
+    modes : ndarray, shape (3N, m)
+        Displacement columns, shell axes.
+    triangles : ndarray of int
+    stress : ndarray, shape (N, 6 m) or (0, 0)
+        Stress columns in Exudyn's layout, mesh axes [Pa].
+    rigid_nodes, point_nodes : dict of str to list of int
+        Nodes of every interface's rigid and position marker.
+    mesh_node_count : int
+        Number of leading nodes that are mesh nodes.
+    """
+
+    positions: np.ndarray
+    modes: np.ndarray
+    triangles: np.ndarray
+    stress: np.ndarray
+    rigid_nodes: dict[str, list[int]]
+    point_nodes: dict[str, list[int]]
+    mesh_node_count: int
+
+
+def shell_mesh(
+    reduced: ReducedRotor,
+    selection: Selection,
+    frame: ShellFrame,
+    offsets: Mapping[str, np.ndarray],
+) -> ShellMesh:
+    """Return the nodes of the shell for one formulation.
+
+    `offsets` shift an interface's virtual nodes [m, mesh axes]. A marker's own offset is of no use
+    here: in Exudyn a force at it exerts no moment on modal coordinates.
+    """
+    positions, modes = [np.zeros((0, 3))], [np.zeros((0, selection.T.shape[1]))]
+    triangles, stress = np.zeros((0, 3), dtype=int), np.zeros((0, 0))
+    if reduced.shapes is not None:
+        positions.append(reduced.shapes.nodes)
+        modes.append(reduced.shapes.matrix @ selection.T)
+        triangles = reduced.shapes.triangles
+    mesh_count = count = sum(map(len, positions))
+    rigid_nodes, point_nodes = {}, {}
+    for name, interface in reduced.interfaces.items():
+        motion = interface.motion @ selection.T
+        offset = offsets.get(name, np.zeros(3))
+        motion[:3] += np.cross(motion[3:], offset, axisa=0, axisc=0)
+        points, columns = virtual_nodes(
+            interface.reference + offset, interface.radius, motion, reduced.axis
+        )
+        positions += [points, interface.reference[None, :] + offset]
+        modes += [columns, motion[:3]]
+        rigid_nodes[name], point_nodes[name] = [count, count + 1, count + 2], [count + 3]
+        count += 4
+    if reduced.shapes is not None and reduced.shapes.stress is not None:
+        stress = _stress_columns(reduced.shapes.stress @ selection.T, count)
+    return ShellMesh(
+        positions=frame.points(np.vstack(positions)),
+        modes=frame.columns(np.vstack(modes)),
+        triangles=triangles,
+        stress=stress,
+        rigid_nodes=rigid_nodes,
+        point_nodes=point_nodes,
+        mesh_node_count=mesh_count,
+    )
+
+
+def virtual_nodes(
+    reference: np.ndarray, radius: float, motion: np.ndarray, axis: SpinAxis
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return three nodes (3, 3) that move as a rigid interface, and their columns (9, m).
+
+    `motion` (6, m) holds displacement and rotation of the point `reference`, all in mesh axes.
+    """
+    radius = radius or 1.0  # a single node has no rotation, so any radius serves
+    angles = 2.0 * np.pi / 3.0 * np.arange(3)
+    arms = radius * np.column_stack([np.cos(angles), np.sin(angles)]) @ axis.plane.T
+    columns = [motion[:3] + np.cross(motion[3:], arm, axisa=0, axisc=0) for arm in arms]
+    return reference + arms, np.vstack(columns)
+
+
+def around(nodes: list[int]) -> list[int]:
+    """Return the three nodes of an interface from those of its marker; a point comes after them."""
+    return nodes if len(nodes) == 3 else [nodes[0] - 3, nodes[0] - 2, nodes[0] - 1]
+
+
+def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
+    """Return (n, 6, m) stress as Exudyn's (N, 6 m), zero at virtual nodes."""
+    full = np.zeros((node_count, 6 * stress.shape[2]))
+    full[: len(stress)] = stress.transpose(0, 2, 1).reshape(len(stress), -1)
+    return full
+
+
+def shell_object(
+    name: str, nodes: list, mesh: ShellMesh, invariants: Invariants, frame: ShellFrame, color: list
+) -> ObjectFFRFreducedOrder:
+    """Return the shell without inertia or stiffness of its own.
+
+    Mass, centre of mass and ``ΦᵀMΨ`` are given for gravity by ``MarkerBodyMass`` alone.
+    """
+    size = invariants.size
+    empty = exudyn.MatrixContainer()
+    empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
+    stress = {}
+    if mesh.stress.size:
+        stress = {
+            "outputVariableModeBasis": mesh.stress,
+            "outputVariableTypeModeBasis": exudyn.OutputVariableType.StressLocal,
+        }
+    return ObjectFFRFreducedOrder(
+        name=name,
+        nodeNumbers=nodes,
+        massMatrixReduced=empty,
+        stiffnessMatrixReduced=empty,
+        computeFFRFterms=False,
+        modeBasis=mesh.modes,
+        referencePositions=mesh.positions.ravel(),
+        mass=invariants.mass,
+        centerOfMass=frame.B @ invariants.center,
+        mPhitTPsi=frame.B @ invariants.S,
+        **stress,
+        visualization=VObjectFFRFreducedOrder(
+            triangleMesh=mesh.triangles.tolist(), color=color, showNodes=False
+        ),
+    )

@@ -1,0 +1,148 @@
+"""Recording a rotor's coordinates during a run, and reading them back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import SensorNode, SensorObject
+
+from exudyn_rotor.multibody.locking import COORDINATE_NAMES, SPIN
+
+if TYPE_CHECKING:
+    from exudyn_rotor.multibody.rotor_body import RotorBody
+
+_KINDS = exudyn.OutputVariableType
+_RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
+
+
+@dataclass(frozen=True, eq=False)
+class Solver:
+    """What Exudyn's last dynamic solution used.
+
+    Attributes
+    ----------
+    step : float
+        Step size [s]; the last one where it is controlled.
+    explicit : bool
+    method : str
+        Name of the explicit method, as in ``exudyn.DynamicSolverType``; empty for an implicit one.
+    steps : int
+        Nominal number of steps.
+    """
+
+    step: float
+    explicit: bool
+    method: str = ""
+    steps: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Motion of a rotor at the recorded instants.
+
+    Attributes
+    ----------
+    time : ndarray, shape (s,)
+        [s]
+    q, q_t, q_tt : ndarray, shape (s, n)
+        Coordinates of the body's nodes, those that are locked included.
+    held : ndarray, shape (s, n)
+        Forces of locking constraints on these coordinates.
+    speed : ndarray, shape (s,)
+        Spin speed [rad/s].
+    complete : bool
+        False if only the end state is known, because nothing was recorded.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    q_t: np.ndarray
+    q_tt: np.ndarray
+    held: np.ndarray
+    speed: np.ndarray
+    complete: bool
+
+
+def add_watch(body: RotorBody) -> None:
+    """Add native sensors of all coordinates and constraint forces; see :meth:`RotorBody.watch`."""
+    if body.watched:
+        return
+    if body.mbs.systemIsConsistent:
+        raise ValueError(
+            f"watch: the system of rotor {body.name!r} is assembled already; call body.watch() "
+            "before mbs.Assemble()"
+        )
+    options = {"storeInternal": True, "writeToFile": False}
+    for name, node in body.nodes.items():
+        for kind in _RATES:
+            body.watched[name, kind] = body.mbs.AddSensor(
+                SensorNode(nodeNumber=node, outputVariableType=kind, **options)
+            )
+    for name, constraint in body.constraints.items():
+        body.watched[name, _KINDS.Force] = body.mbs.AddSensor(
+            SensorObject(objectNumber=constraint, outputVariableType=_KINDS.Force, **options)
+        )
+
+
+def read_record(body: RotorBody) -> Record:
+    """Return what was recorded; the current state where that is nothing."""
+    first = next(iter(body.watched.values()), None)
+    stored = None if first is None else np.atleast_2d(body.mbs.GetSensorStoredData(first))
+    complete = stored is not None and len(stored) > 1
+    if complete:
+        time = stored[:, 0]
+        read = _stored
+    else:
+        time = np.array([body.mbs.systemData.GetTime()])
+        read = _current
+    parts = [
+        np.hstack([read(body, name, node, kind) for name, node in body.nodes.items()])
+        for kind in _RATES
+    ]
+    held = np.zeros_like(parts[0])
+    for name, constraint in body.constraints.items():
+        if name in COORDINATE_NAMES:
+            force = read(body, name, constraint, _KINDS.Force)
+            held[:, COORDINATE_NAMES.index(name)] = force[:, 0]
+    return Record(time, *parts, held, _speed(body, time, parts[1]), complete)
+
+
+def last_solver(body: RotorBody) -> Solver | None:
+    """Return what the last dynamic solution used; None before one."""
+    settings = body.mbs.sys.get("simulationSettings")
+    solver = body.mbs.sys.get("dynamicSolver")
+    if settings is None or solver is None:
+        return None
+    integration = settings.timeIntegration
+    duration = integration.endTime - integration.startTime
+    step = duration / integration.numberOfSteps
+    if "Explicit" not in type(solver).__name__:
+        return Solver(step, explicit=False)
+    # solvers with step control take shorter steps than the nominal one
+    method = solver.GetSolverName().partition("(")[2].rstrip(")")
+    step = min(step, solver.it.currentStepSize)
+    return Solver(step, explicit=True, method=method, steps=integration.numberOfSteps)
+
+
+def newton_tolerance(body: RotorBody) -> float:
+    """Return the relative tolerance of Newton's method in the last solution; 0 before one."""
+    settings = body.mbs.sys.get("simulationSettings")
+    return 0.0 if settings is None else settings.timeIntegration.newton.relativeTolerance
+
+
+def _stored(body: RotorBody, name: str, item: int, kind) -> np.ndarray:
+    return np.atleast_2d(body.mbs.GetSensorStoredData(body.watched[name, kind]))[:, 1:]
+
+
+def _current(body: RotorBody, name: str, item: int, kind) -> np.ndarray:
+    read = body.mbs.GetObjectOutput if kind == _KINDS.Force else body.mbs.GetNodeOutput
+    return np.atleast_2d(read(item, kind))
+
+
+def _speed(body: RotorBody, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    if not body.formulation.has_spin:
+        return np.array([float(body.formulation.spin.rate(t)) for t in time])
+    return q_t[:, SPIN if "rigid" in body.nodes else body.formulation.translation_count]

@@ -1,0 +1,345 @@
+"""Static prestress of a spinning rotor, and the stiffness that it gives.
+
+The centrifugal load per ω², ``f_c = M x_⊥``, deforms the rotor statically by u⁰ and stresses it by
+σ⁰; vibrations about this state have the stiffness ``K + ω² K_G``,
+``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV``. Inertia relief balances the load where nothing holds the rotor.
+A stress at rest has a K_G of its own, part of the K that the centrifugal load deforms.
+
+Nodes held by a massless rigid hub feel its forces R, which turn with the hub. K_G takes them for
+dead loads; by equilibrium ``K_G (a×x) = a×(f_c + R)``, a false stiffness of rotations. With the
+mean translation t and rotation ``φ = Φu`` of these nodes, ``u = t + φ×y + ψ``, y from the centre of
+mass, R works on the second-order displacements ``½ φ×(φ×y) + φ×ψ``, which takes that out again:
+``K_hub = Φᵀ (sym H − tr(H) I) Φ − Φᵀ N − Nᵀ Φ``, ``H = Σ R yᵀ``, ``N u = Σ R×ψ``. Rotations of the
+rotor then feel f_c alone, as at the level 'tilt'; a net force of the hub does no work on them.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.solid import matrices
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, inertia_relief
+from exudyn_rotor.theory.nodal import skew
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+# a stress field in equilibrium loses a few per cent where it was averaged at nodes
+_OUT_OF_BALANCE = 0.3
+# nodes that stand for the rotation of a hub
+_HUB_NODES = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Prestress:
+    """Stiffness of a rotor from its static stress; made by :meth:`SolidRotor.prestress`.
+
+    Attributes
+    ----------
+    matrix : scipy.sparse.csr_array, shape (3n, 3n)
+        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
+        hub's forces and the initial-displacement stiffness if these were asked for [N s²/m].
+    nodes : ndarray, shape (n, 3)
+        Positions of the mesh it belongs to [m].
+    euler : scipy.sparse.csr_array or None
+        K_G per ω̇, of the stress by the Euler load ``−M ẽx`` [N s²/m].
+    displacement : ndarray or None, shape (3n,)
+        Static centrifugal displacement per ω², mesh axes [m s²].
+    stress : ndarray or None, shape (n, 6)
+        Its stress at the nodes per ω², xx, yy, zz, yz, xz, xy in mesh axes [Pa s²].
+    constant : scipy.sparse.csr_array or None
+        K_G of a stress that does not depend on the speed [N/m].
+    constant_stress : ndarray or None, shape (n, 6)
+        That stress at the nodes, in equilibrium, components as in `stress` [Pa].
+    initial_displacement : bool
+        Whether `matrix` holds the initial-displacement stiffness.
+    balanced : bool
+        True if inertia forces balance the load on every rigid motion that the rotor's stiffness
+        leaves free; False if held nodes take it up.
+    yield_stress : float or None
+        Yield stress of the material [Pa].
+    load : ndarray or None, shape (3n,)
+        Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
+    hub : ndarray of int or None
+        Nodes that a rigid hub held in the static solution.
+    """
+
+    matrix: sp.csr_array
+    nodes: np.ndarray
+    euler: sp.csr_array | None = None
+    displacement: np.ndarray | None = None
+    stress: np.ndarray | None = None
+    constant: sp.csr_array | None = None
+    initial_displacement: bool = False
+    balanced: bool = True
+    yield_stress: float | None = None
+    constant_stress: np.ndarray | None = None
+    load: np.ndarray | None = None
+    hub: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("nodes", "displacement", "stress", "constant_stress", "load"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, read_only(getattr(self, name)))
+        if self.hub is not None:
+            object.__setattr__(self, "hub", read_only(self.hub, np.int64))
+
+    @classmethod
+    def from_matrix(
+        cls, matrix: Any, nodes: ArrayLike, euler: Any = None, *, balanced: bool = True
+    ) -> Prestress:
+        """Take the geometric stiffness of an imported model.
+
+        Parameters
+        ----------
+        matrix : array_like or sparse, shape (3n, 3n)
+            K_G of the centrifugal load for 1 rad/s, in the order of the rotor's matrices and
+            without the spin softening ``−ẽᵀMẽ`` [N s²/m].
+        nodes : array_like, shape (n, 3)
+            Positions of the mesh, those of the rotor [m].
+        euler : array_like or sparse, shape (3n, 3n), optional
+            The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
+        balanced : bool, optional
+            False if the stress was computed with nodes held fixed, not with inertia relief; the
+            rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
+
+        Raises
+        ------
+        TypeError
+            If an array does not hold numbers.
+        ValueError
+            If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
+        """
+        positions = matrices.as_nodes(nodes)
+        return cls(
+            matrix=matrices.as_matrix("prestress matrix", matrix, len(positions)),
+            nodes=positions,
+            euler=None
+            if euler is None
+            else matrices.as_matrix("Euler prestress matrix", euler, len(positions)),
+            balanced=bool(balanced),
+        )
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.nodes)} nodes"]
+        parts += [name for name in ("euler", "constant") if getattr(self, name) is not None]
+        parts += ["initial displacement"] if self.initial_displacement else []
+        parts += [] if self.balanced else ["clamped"]
+        return f"Prestress({', '.join(parts)})"
+
+
+def static_prestress(
+    rotor: SolidRotor,
+    clamped: Sequence[str],
+    initial_displacement: bool,
+    euler: bool,
+    stress: ArrayLike | None,
+    yield_stress: float | None,
+    speed: float | None,
+) -> Prestress:
+    """Return the prestress; parameters as :meth:`exudyn_rotor.SolidRotor.prestress`."""
+    if rotor.elements is None:
+        raise ValueError(
+            "prestress: this rotor has no elements to assemble a geometric stiffness on; make it "
+            "with SolidRotor.from_ngsolve, give the matrix of another program with "
+            "Prestress.from_matrix, or use stiffening='tilt'"
+        )
+    _check_yield(yield_stress, speed)
+    elements = rotor.elements
+    own = None if stress is None else _numbers(stress)
+    residual = None if own is None else elements.load_of_stress(own)
+    state = _support(rotor, clamped)
+    constant = None
+    if own is not None:
+        springback = state.solve(residual)
+        constant = elements.geometric_stiffness_of_stress(own)
+        constant = constant - elements.geometric_stiffness(springback)
+        reactions = residual - rotor.stiffness @ springback
+        constant = _symmetric(constant + _hub_stiffness(rotor, state.hub, reactions))
+        own = _in_equilibrium(rotor, own, springback)
+        state = state.stressed(constant)
+
+    load = centrifugal_load(rotor)
+    displacement, matrix = state.stiffening(load)
+    if initial_displacement:
+        matrix = matrix + elements.initial_displacement_stiffness(displacement)
+    by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
+    if speed is not None:
+        total = speed**2 * by_spin + (0.0 if own is None else own)
+        _warn_of_yield(rotor.nodes, total, yield_stress, speed)
+    return Prestress(
+        matrix=_symmetric(matrix),
+        nodes=rotor.nodes,
+        euler=_symmetric(state.stiffening(euler_load(rotor))[1]) if euler else None,
+        displacement=displacement,
+        stress=by_spin,
+        constant=constant,
+        initial_displacement=bool(initial_displacement),
+        balanced=not clamped,
+        yield_stress=yield_stress,
+        constant_stress=own,
+        load=load,
+        hub=state.hub,
+    )
+
+
+def centrifugal_load(rotor: SolidRotor) -> np.ndarray:
+    """Return ``f_c = M x_⊥``, the centrifugal nodal load per ω², shape (3n,)."""
+    return rotor.mass @ rotor.axis.radial(rotor.nodes).ravel()
+
+
+def euler_load(rotor: SolidRotor) -> np.ndarray:
+    """Return ``−M ẽx``, the Euler nodal load per ω̇, shape (3n,)."""
+    return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
+
+
+def relief_under_stress(
+    stiffness: sp.csr_array, mass: sp.csr_array, free: np.ndarray
+) -> InertiaRelief:
+    """Return the elastic inverse of a stiffness with a stress at rest in it.
+
+    Raises
+    ------
+    ValueError
+        If it is not positive definite but for the `free` rigid motions: the rotor buckles.
+    """
+    try:
+        return InertiaRelief(stiffness, mass, free)
+    except ValueError as error:
+        raise ValueError(
+            "prestress: the rotor buckles under its stress at rest; check sign and unit of "
+            "prestress(stress=…) [Pa, tension positive]"
+        ) from error
+
+
+@dataclass(frozen=True, eq=False)
+class _StaticState:
+    """What takes up static loads: the rotor, with a hub, and with a stress at rest or none.
+
+    `supported` is the rotor with the hub's nodes held, `stiffness` that of the rotor itself.
+    """
+
+    rotor: SolidRotor
+    supported: SolidRotor
+    stiffness: sp.csr_array
+    relief: InertiaRelief
+
+    @property
+    def hub(self) -> np.ndarray:
+        """Nodes that the hub holds."""
+        return np.setdiff1d(self.supported.elements.held, self.rotor.elements.held)
+
+    def stressed(self, constant: sp.csr_array) -> _StaticState:
+        """Return the state with the stiffness of a stress at rest, which acts on every load."""
+        kept = np.ones((self.rotor.node_count, 3))
+        kept[self.supported.elements.held] = 0.0
+        mask = sp.diags_array(kept.ravel())
+        held = sp.csr_array(self.supported.stiffness + mask @ constant @ mask)
+        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid)
+        return replace(self, stiffness=self.stiffness + constant, relief=relief)
+
+    def solve(self, load: np.ndarray) -> np.ndarray:
+        """Return the static displacement (3n,)."""
+        displacement = self.relief.solve(load)
+        # the stiff springs of `clamped` give way a little
+        displacement.reshape(-1, 3)[self.supported.elements.held] = 0.0
+        return displacement
+
+    def stiffening(self, load: np.ndarray) -> tuple[np.ndarray, sp.csr_array]:
+        """Return the displacement (3n,) of a load, and K_G with what the hub's forces add."""
+        displacement = self.solve(load)
+        matrix = self.rotor.elements.geometric_stiffness(displacement)
+        forces = self.stiffness @ displacement - load
+        return displacement, matrix + _hub_stiffness(self.rotor, self.hub, forces)
+
+
+def _support(rotor: SolidRotor, clamped: Sequence[str]) -> _StaticState:
+    supported = rotor.clamped(clamped) if clamped else rotor
+    return _StaticState(rotor, supported, rotor.stiffness, inertia_relief(supported))
+
+
+def _hub_stiffness(rotor: SolidRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:
+    """Return ``K_hub`` (3n, 3n) of the nodal forces (3n,) by which a rigid hub holds its nodes."""
+    if hub.size == 0:
+        return sp.csr_array((rotor.nodes.size, rotor.nodes.size))
+    forces, arms = forces.reshape(-1, 3)[hub], rotor.nodes[hub] - rotor.center_of_mass
+    moments = forces.T @ arms
+    own = np.trace(moments) * np.eye(3) - 0.5 * (moments + moments.T)
+    # any of its nodes tell how a rigid hub moves, and the matrix is dense on those
+    some = hub[:: -(-hub.size // _HUB_NODES)]
+    mean = Interface("hub", some, np.ones(some.size), rotor.nodes[some], rotor.center_of_mass)
+    motion = mean.mean_motion(rotor.node_count)
+    shift, turn = motion[:3], motion[3:]
+    # N with ψ = u − t − φ×y put in; its part with φ×y is in `own`
+    columns = (3 * hub[:, None] + np.arange(3)).ravel()
+    couple = sp.csr_array(np.hstack([skew(force) for force in forces]))
+    couple = couple @ sp.eye_array(rotor.nodes.size, format="csr")[columns]
+    couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift
+    mixed = turn.T @ couple
+    return sp.csr_array(turn.T @ sp.csr_array(own) @ turn - mixed - mixed.T)
+
+
+def _symmetric(matrix: sp.csr_array) -> sp.csr_array:
+    return matrices.frozen(sp.csr_array(0.5 * (matrix + matrix.T)))
+
+
+def _numbers(stress: ArrayLike) -> np.ndarray:
+    try:
+        return np.asarray(stress, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise TypeError(
+            f"stress: needs an array of numbers, shape (n, 6) [Pa], got {type(stress).__name__} "
+            f"({error})"
+        ) from error
+
+
+def _check_yield(yield_stress: float | None, speed: float | None) -> None:
+    for name, value in (("yield_stress", yield_stress), ("speed", speed)):
+        if value is None:
+            continue
+        if np.ndim(value) or not np.issubdtype(np.asarray(value).dtype, np.number):
+            raise TypeError(f"{name}: needs one number, got {value!r}")
+        if not (np.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name}: must be a positive number, got {value!r}")
+    if speed is not None and yield_stress is None:
+        raise ValueError("speed: only serves the check of yielding; give yield_stress=, too")
+
+
+def _in_equilibrium(rotor: SolidRotor, stress: np.ndarray, springback: np.ndarray) -> np.ndarray:
+    """Return a stress (n, 6) less the part that no load balances; warn if that is much of it."""
+    part = rotor.stress_recovery(springback[:, None])[:, :, 0]
+    share = np.linalg.norm(part) / max(np.linalg.norm(stress), 1e-300)
+    if share > _OUT_OF_BALANCE:
+        warnings.warn(
+            f"stress: {share:.0%} of it is not in equilibrium without external load and was left "
+            "out; a thermal stress must have the thermal strain taken off, C : (ε − ε_T)",
+            UserWarning,
+            stacklevel=4,
+        )
+    return stress - part
+
+
+def _warn_of_yield(
+    nodes: np.ndarray, stress: np.ndarray, yield_stress: float, speed: float
+) -> None:
+    values = von_mises(stress)
+    worst = int(np.argmax(values))
+    if values[worst] > yield_stress:
+        place = ", ".join(f"{x:.4g}" for x in nodes[worst])
+        warnings.warn(
+            f"at {speed:.6g} rad/s the static von Mises stress is {values[worst]:.4g} Pa at node "
+            f"{worst} ({place}) m, above yield_stress={yield_stress:.4g} Pa; the prestress is "
+            "elastic and holds below that only",
+            UserWarning,
+            stacklevel=4,
+        )

@@ -1,0 +1,1 @@
+"""From solid to reduced rotor: component modes, reduction, modes of a formulation, truncation."""

@@ -1,0 +1,84 @@
+"""Attachment modes: static responses to loads at the interfaces, which no finite set of modes has.
+
+With them a basis is statically complete for loads at the interfaces. They tell what other modes
+leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (1975).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor.solvers.factor import SparseCholesky
+from exudyn_rotor.solvers.inertia_relief import inertia_relief
+from exudyn_rotor.theory.nodal import coupled, rotations, translations
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.interface import Interface
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+# share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
+_RIGID = 1e-6
+
+
+def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
+    """Return static responses to unit forces and moments at the interfaces, with inertia relief.
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+    others : ndarray, shape (3n, k)
+        Modes that these are to go with. Interfaces that they keep rigid on purpose, or that are
+        clamped, get no loads of their own. Where there are such, or the rotor's own stiffness holds
+        it, responses to uniform linear and angular accelerations are among them, with these
+        interfaces held: with the rigid motions of interfaces that ``craig_bampton_modes`` has, that
+        is the same as inertia relief.
+
+    Raises
+    ------
+    ValueError
+        If the rotor has loose parts.
+    """
+    interfaces, moving = rotor.interfaces.values(), coupled(rotor.stiffness).reshape(-1, 3)
+    rigid = [one for one in interfaces if _kept_rigid(one, others)]
+    loads = [
+        one.mean_motion(rotor.node_count).T.toarray()
+        for one in interfaces
+        if one not in rigid and (moving[one.nodes].any() or not rotor.grounded)
+    ]
+    inertia = rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
+    found = [np.zeros((rotor.nodes.size, 0))]
+    if rotor.grounded:
+        loads.append(inertia)
+    if loads:
+        found.append(inertia_relief(rotor).solve(np.hstack(loads)))
+    if rigid and not rotor.grounded:
+        found.append(_held_at(rotor, rigid, inertia))
+    columns = np.hstack(found)
+    norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
+    columns = columns[:, norms > 0.0] / norms[norms > 0.0]
+    labels = tuple(f"attachment mode {i + 1}" for i in range(columns.shape[1]))
+    return ModeBasis(columns, labels, rotor.nodes)
+
+
+def _held_at(rotor: SolidRotor, interfaces: list[Interface], loads: np.ndarray) -> np.ndarray:
+    """Return static responses (3n, k) to loads with the nodes of interfaces held."""
+    held = np.concatenate([one.nodes for one in interfaces])
+    inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * held[:, None] + np.arange(3)).ravel())
+    columns = np.zeros_like(loads)
+    columns[inner] = SparseCholesky(rotor.stiffness[inner][:, inner]).solve(loads[inner])
+    return columns
+
+
+def _kept_rigid(interface: Interface, modes: np.ndarray) -> bool:
+    """Return True if no mode deforms the interface."""
+    if modes.shape[1] == 0 or len(interface.nodes) < 3:
+        return False
+    motion = modes.reshape(-1, 3, modes.shape[1])[interface.nodes].reshape(-1, modes.shape[1])
+    turns = rotations(interface.positions, interface.center)
+    rigid = np.linalg.qr(np.hstack([translations(len(interface.nodes)), turns]))[0]
+    strain = np.linalg.norm(motion - rigid @ (rigid.T @ motion))
+    return bool(strain <= _RIGID * np.linalg.norm(motion))

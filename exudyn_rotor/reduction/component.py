@@ -1,0 +1,165 @@
+"""Component modes of a rotor: the columns of ``Ψ`` in ``c_f = Ψ ζ`` (16)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers.inertia_relief import (
+    free_rigid_motions,
+    inertia_relief,
+    relative_rounding,
+)
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+# node positions agree if they differ by less than this share of the mesh's size
+_POSITION_TOLERANCE = 1e-9
+# of the median: beside stiffer springs dense eigenvalues of the rest lose digits
+_GRADED = 1e4
+
+
+@dataclass(frozen=True, eq=False)
+class ModeBasis:
+    """Displacement modes of one mesh.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3n, k)
+        One displacement field per column, mesh axes, ordered x0 y0 z0 x1 …
+    labels : tuple of str
+        What each column is: 'eigenmode 1', 'left translation x', …
+    nodes : ndarray, shape (n, 3)
+        Node positions of the mesh that the modes belong to [m].
+    frequencies : ndarray, shape (k,), optional
+        Angular eigenfrequency of each column [rad/s]; NaN where it is not an eigenmode.
+    stress : ndarray, shape (n, 6, k), optional
+        Nodal stress of each column per unit modal coordinate, components xx, yy, zz, yz, xz, xy
+        in mesh axes.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit or a number that must be finite is not.
+    """
+
+    matrix: np.ndarray
+    labels: tuple[str, ...]
+    nodes: np.ndarray
+    frequencies: np.ndarray | None = None
+    stress: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "labels", tuple(self.labels))
+        if self.frequencies is None:
+            object.__setattr__(self, "frequencies", np.full(len(self.labels), np.nan))
+        for key in ("matrix", "nodes", "frequencies", "stress"):
+            if getattr(self, key) is not None:
+                object.__setattr__(self, key, read_only(getattr(self, key)))
+        self._check_shapes()
+        for key in ("matrix", "nodes", "stress"):
+            if getattr(self, key) is not None and not np.all(np.isfinite(getattr(self, key))):
+                raise ValueError(f"mode basis: {key} has entries that are not finite")
+
+    def _check_shapes(self) -> None:
+        nodes, modes = len(self.nodes), len(self.labels)
+        expected = {
+            "matrix": (3 * nodes, modes),
+            "nodes": (nodes, 3),
+            "frequencies": (modes,),
+            "stress": (nodes, 6, modes),
+        }
+        for key, shape in expected.items():
+            value = getattr(self, key)
+            if value is not None and value.shape != shape:
+                raise ValueError(
+                    f"mode basis: {key} has the shape {value.shape}, but {nodes} nodes and "
+                    f"{modes} labels need {shape}"
+                )
+
+
+def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
+    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it.
+
+    Raises
+    ------
+    ValueError
+        If the numbers of nodes or their positions differ.
+    """
+    if others.shape != nodes.shape:
+        raise ValueError(
+            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
+            f"{label.split()[-1]}, {len(nodes)} in the rotor); compute the {label} with this rotor"
+        )
+    distance = np.linalg.norm(nodes - others, axis=1).max()
+    if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
+        raise ValueError(
+            f"{label} from another mesh: node positions differ by up to {distance:.3g} m; compute "
+            f"the {label} with this rotor"
+        )
+
+
+def free_modes(rotor: SolidRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
+    """Return the lowest flexible eigenmodes of the rotor at rest, without bearings.
+
+    Rigid motions that the stiffness leaves free are not among them (``rotor.rigid_motions`` says
+    how many there are).
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+    count : int
+        Number of modes.
+    tolerance : float, optional
+        Relative accuracy of the iteration (not used for small models, which are solved directly).
+
+    Returns
+    -------
+    ModeBasis
+        Mass-normalised, ascending frequencies, largest component of each mode positive.
+
+    Raises
+    ------
+    ValueError
+        If there are not that many modes, parts are loose, or the iteration misses the tolerance.
+
+    Notes
+    -----
+    The iteration needs ``K⁻¹`` on the motions without a rigid part. Inertia relief gives it with
+    no shift, so that nothing depends on a guess of the lowest frequency.
+    """
+    stiffness, mass = rotor.stiffness, rotor.mass
+    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
+    size, rigid_count = rigid.shape
+    check_count(count, size - rigid_count, smallest=1)
+    graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())
+    if lanczos.is_small(size, count) and not (graded and 4 * count <= size):
+        values, modes = lanczos.dense_modes(
+            stiffness.toarray(), mass.toarray(), count, skip=rigid_count
+        )
+    else:
+        inverse = inertia_relief(rotor).solve
+        values, modes = lanczos.lanczos_modes(stiffness, mass, inverse, count, tolerance)
+    precision = relative_rounding(stiffness, rigid)
+    lanczos.check_modes(stiffness, mass, values, modes, precision=precision)
+    return ModeBasis(
+        lanczos.with_fixed_sign(modes), eigenmode_labels(count), rotor.nodes, np.sqrt(values)
+    )
+
+
+def eigenmode_labels(count: int) -> tuple[str, ...]:
+    """Return 'eigenmode 1', 'eigenmode 2', …"""
+    return tuple(f"eigenmode {number}" for number in range(1, count + 1))
+
+
+def check_count(count: int, available: int, *, smallest: int) -> None:
+    """Refuse a number of eigenmodes that the model cannot have."""
+    if not smallest <= count <= available:
+        raise ValueError(
+            f"{count} eigenmodes asked for; this model has between {smallest} and {available}"
+        )

@@ -1,0 +1,237 @@
+"""Hurty–Craig–Bampton modes: static modes of the interfaces and modes with fixed interfaces.
+
+Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA Journal 6 (1968).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+
+from exudyn_rotor.reduction.component import ModeBasis, check_count, eigenmode_labels
+from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers.constrained import ConstrainedInverse
+from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers.inertia_relief import (
+    free_rigid_motions,
+    inertia_relief,
+    relative_rounding,
+)
+from exudyn_rotor.theory.nodal import rotations, translations
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.interface import Interface
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+# static modes, eigenvalues and eigenmodes
+CoupledModes = tuple[np.ndarray, np.ndarray, np.ndarray]
+_MOTIONS = ("translation", "rotation")
+# nodes are on one line if they spread across it by less than this share of its length
+_LINE_TOLERANCE = 1e-6
+# a static mode may miss its unit interface motion by this much; rounding leaves about 1e-10
+_MOTION_TOLERANCE = 1e-8
+
+
+def craig_bampton_modes(
+    rotor: SolidRotor,
+    count: int,
+    interfaces: Iterable[str] | None = None,
+    *,
+    coupling: str = "RBE2",
+    tolerance: float = 1e-10,
+) -> ModeBasis:
+    """Return static modes of the interfaces, then eigenmodes with the interfaces fixed.
+
+    Every interface has three unit translations and three unit rotations of its reference point,
+    about the mesh axes; an interface with a single node has the translations only. No interface
+    is left out: together the static modes contain the rigid motions.
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+    count : int
+        Number of fixed-interface eigenmodes; may be zero.
+    interfaces : iterable of str, optional
+        Names of the rotor's interfaces to use; all of them by default.
+    coupling : {'RBE2', 'RBE3'}, optional
+        'RBE2': the nodes of an interface move as one rigid body. 'RBE3': their weighted mean
+        motion (:meth:`Interface.mean_motion`) is prescribed and the surface may deform.
+    tolerance : float, optional
+        Relative accuracy of the eigenmode iteration (not used for small models).
+
+    Returns
+    -------
+    ModeBasis
+        Static modes in m/m and m/rad, labelled 'left translation x'; then mass-normalised
+        eigenmodes in ascending order. Frequencies are NaN for static modes.
+
+    Raises
+    ------
+    ValueError
+        If an interface or coupling is unknown, RBE2 interfaces share nodes, an interface has its
+        nodes on one line, the interfaces do not hold the rotor, or there are fewer eigenmodes.
+    """
+    chosen = _choose(rotor.interfaces, interfaces)
+    if coupling not in _COUPLINGS:
+        raise ValueError(f"coupling {coupling!r} is unknown; use 'RBE2' or 'RBE3'")
+    static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen, tolerance)
+    labels = sum((_labels(interface) for interface in chosen), ()) + eigenmode_labels(count)
+    return ModeBasis(
+        np.hstack([static, lanczos.with_fixed_sign(eigenmodes)]),
+        labels,
+        rotor.nodes,
+        np.concatenate([np.full(static.shape[1], np.nan), np.sqrt(values)]),
+    )
+
+
+def _choose(known: Mapping[str, Interface], names: Iterable[str] | None) -> list[Interface]:
+    names = list(known) if names is None else list(names)
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise ValueError(f"no interface {unknown[0]!r}; the rotor has {', '.join(known) or 'none'}")
+    if not names or len(set(names)) < len(names):
+        raise ValueError(f"name at least one interface, and each of them once; got {names}")
+    return [known[name] for name in names]
+
+
+def _motion_count(interface: Interface) -> int:
+    """Return 6, or 3 for a single node, which has no rotation."""
+    spread = np.linalg.svd(interface.positions - interface.center, compute_uv=False)
+    if spread[0] == 0.0 or len(interface.nodes) == 1:
+        return 3
+    if len(spread) < 2 or spread[1] <= _LINE_TOLERANCE * spread[0]:
+        raise ValueError(
+            f"interface {interface.name!r} has its nodes on one line, so its rotation about the "
+            "line is undefined; add a node off the line or use a single node"
+        )
+    return 6
+
+
+def _labels(interface: Interface) -> tuple[str, ...]:
+    names = [f"{interface.name} {motion} {axis}" for motion in _MOTIONS for axis in "xyz"]
+    return tuple(names[: _motion_count(interface)])
+
+
+def _rigid_coupling(
+    rotor: SolidRotor, count: int, chosen: list[Interface], tolerance: float
+) -> CoupledModes:
+    """Return static modes, eigenvalues and eigenmodes with rigid interfaces (RBE2)."""
+    _refuse_shared_nodes(chosen)
+    static = _rigid_interfaces(chosen, rotor.mass.shape[0])
+    inner = np.setdiff1d(np.arange(rotor.mass.shape[0]), _coordinates(chosen))
+    stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
+    check_count(count, len(inner), smallest=0)
+    try:
+        factor = SparseCholesky(stiffness)
+    except NotPositiveDefiniteError as error:
+        raise ValueError(
+            f"the interfaces do not hold the rotor, or it has loose parts ({error})"
+        ) from error
+    static[inner] = -factor.solve((rotor.stiffness @ static)[inner])
+    _check_equilibrium((rotor.stiffness @ static)[inner], lanczos.rounding(rotor.stiffness, static))
+    values, inner_modes = _eigenmodes(stiffness, mass, factor.solve, count, tolerance)
+    lanczos.check_modes(stiffness, mass, values, inner_modes)
+    eigenmodes = np.zeros((rotor.mass.shape[0], count))
+    eigenmodes[inner] = inner_modes
+    return static, values, eigenmodes
+
+
+def _mean_coupling(
+    rotor: SolidRotor, count: int, chosen: list[Interface], tolerance: float
+) -> CoupledModes:
+    """Return static modes, eigenvalues and eigenmodes with prescribed mean motions (RBE3)."""
+    stiffness, mass = rotor.stiffness, rotor.mass
+    rows = [
+        interface.mean_motion(len(rotor.nodes))[: _motion_count(interface)] for interface in chosen
+    ]
+    constraints = sp.csr_array(sp.vstack(rows))
+    check_count(count, mass.shape[0] - constraints.shape[0], smallest=0)
+    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
+    inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
+    static = inverse.prescribe(np.eye(constraints.shape[0]))
+    _check_mean_motion(constraints, static)
+    precision = relative_rounding(stiffness, rigid)
+    force = lanczos.without_reactions(stiffness @ static, constraints)
+    _check_equilibrium(force, lanczos.rounding(stiffness, static, precision))
+    values, modes = _eigenmodes(stiffness, mass, inverse.solve, count, tolerance, constraints)
+    lanczos.check_modes(
+        stiffness, mass, values, modes, precision=precision, constraints=constraints
+    )
+    return static, values, modes
+
+
+_COUPLINGS = {"RBE2": _rigid_coupling, "RBE3": _mean_coupling}
+
+
+def _eigenmodes(
+    stiffness: sp.csr_array,
+    mass: sp.csr_array,
+    inverse: Callable[[np.ndarray], np.ndarray],
+    count: int,
+    tolerance: float,
+    constraints: sp.csr_array | None = None,
+) -> lanczos.Modes:
+    """Return the lowest modes of a held model, under ``C u = 0`` where constraints are given."""
+    size = mass.shape[0]
+    if count == 0:
+        return np.zeros(0), np.zeros((size, 0))
+    if not lanczos.is_small(size, count):
+        return lanczos.lanczos_modes(stiffness, mass, inverse, count, tolerance)
+    if constraints is None:
+        return lanczos.dense_modes(stiffness.toarray(), mass.toarray(), count)
+    allowed = la.null_space(constraints.toarray())
+    values, modes = lanczos.dense_modes(
+        allowed.T @ (stiffness @ allowed), allowed.T @ (mass @ allowed), count
+    )
+    return values, allowed @ modes
+
+
+def _coordinates(chosen: list[Interface]) -> np.ndarray:
+    nodes = np.concatenate([interface.nodes for interface in chosen])
+    return (3 * nodes[:, None] + np.arange(3)).ravel()
+
+
+def _rigid_interfaces(chosen: list[Interface], size: int) -> np.ndarray:
+    """Return unit rigid motions of the interface nodes (size, modes), zero elsewhere."""
+    blocks = []
+    for interface in chosen:
+        block = np.zeros((size, _motion_count(interface)))
+        turns = rotations(interface.positions, interface.reference)
+        motions = np.hstack([translations(len(interface.nodes)), turns])
+        block[_coordinates([interface])] = motions[:, : block.shape[1]]
+        blocks.append(block)
+    return np.hstack(blocks)
+
+
+def _refuse_shared_nodes(chosen: list[Interface]) -> None:
+    owner: dict[int, str] = {}
+    for interface in chosen:
+        for node in interface.nodes.tolist():
+            if node in owner:
+                raise ValueError(
+                    f"interfaces {owner[node]!r} and {interface.name!r} share node {node}, which "
+                    "cannot move rigidly with both; use coupling='RBE3' or separate the faces"
+                )
+            owner[node] = interface.name
+
+
+def _check_equilibrium(force: np.ndarray, allowed: np.ndarray) -> None:
+    """Check that static modes need no `force` but at the interfaces, up to rounding of ``K u``."""
+    if np.any(np.linalg.norm(force, axis=0) > allowed):
+        raise ValueError(
+            "a static interface mode is not in equilibrium; the stiffness may not be symmetric "
+            "or is too badly conditioned"
+        )
+
+
+def _check_mean_motion(constraints: sp.csr_array, static: np.ndarray) -> None:
+    error = np.abs(constraints @ static - np.eye(len(static.T))).max()
+    if error > _MOTION_TOLERANCE:
+        raise ValueError(
+            f"the interfaces miss their unit motions by {error:.1e}; the interfaces nearly "
+            "depend on each other"
+        )

@@ -1,0 +1,201 @@
+"""Reduction of a solid rotor: component modes plus rigid motions → :class:`ReducedRotor`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg
+from exudyn.FEM import FEMinterface
+
+from exudyn_rotor.prestress.stressed import relief_rotations, stressed
+from exudyn_rotor.reduction.attachment import attachment_modes
+from exudyn_rotor.reduction.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
+from exudyn_rotor.reduction.component import ModeBasis, check_same_mesh, free_modes
+from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
+from exudyn_rotor.reduction.reduced_rotor import (
+    Centrifugal,
+    ModeShapes,
+    ReducedInterface,
+    ReducedRotor,
+)
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import with_prestress
+
+if TYPE_CHECKING:
+    from exudyn_rotor.prestress.prestress import Prestress
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+ModeSource = int | ModeBasis | FEMinterface | np.ndarray
+
+
+def reduce_rotor(
+    rotor: SolidRotor,
+    modes: ModeSource,
+    *,
+    stress: bool = False,
+    keep_shapes: bool = True,
+    rank_tolerance: float = 1e-7,
+    prestress: Prestress | bool | None = None,
+) -> ReducedRotor:
+    """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
+    rotor = stressed(rotor, prestress)
+    if not 0.0 <= rank_tolerance < 1.0:
+        raise ValueError(f"rank_tolerance: needs a share from 0 to below 1, got {rank_tolerance!r}")
+    return _reduced(rotor, _component_modes(rotor, modes), stress, keep_shapes, rank_tolerance)
+
+
+def _reduced(
+    rotor: SolidRotor,
+    component: ModeBasis,
+    stress: bool,
+    keep_shapes: bool,
+    rank_tolerance: float,
+    attach: bool = True,
+) -> ReducedRotor:
+    center = rotor.center_of_mass
+    rigid, names = _rigid_motions(rotor, center)
+    basis = orthonormal_basis(rigid, names, component, rotor.mass, rotor.stiffness, rank_tolerance)
+    if basis.matrix.shape[1] == 0:
+        raise ValueError("the reduced basis is empty: ask for at least one component mode")
+    invariants = Invariants.of(
+        rotor.nodes - center,
+        rotor.mass,
+        rotor.stiffness,
+        rotor.damping,
+        basis.matrix,
+        rotor.axis.direction,
+    )
+    _check_stable(invariants, len(basis.rigid))
+    raw_mass = component.matrix.T @ (rotor.mass @ component.matrix)
+    return ReducedRotor(
+        axis=rotor.axis,
+        center_of_mass=center,
+        invariants=_stiffened(rotor, _cleaned(invariants, len(basis.rigid)), basis.matrix),
+        rigid=basis.rigid,
+        interfaces=_interfaces(rotor, basis.matrix),
+        mode_mass=basis.from_modes.T @ raw_mass @ basis.from_modes,
+        dropped=basis.dropped,
+        grounded=rotor.grounded,
+        shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
+        centrifugal=_centrifugal(rotor) if keep_shapes else None,
+        with_attachments=_with_attachments(rotor, component, rank_tolerance) if attach else None,
+    )
+
+
+def _with_attachments(
+    rotor: SolidRotor, component: ModeBasis, rank_tolerance: float
+) -> ReducedRotor | None:
+    """Return the rotor with attachment modes as well; None if its static response is unknown."""
+    try:
+        added = attachment_modes(rotor, component.matrix)
+    except ValueError:  # loose parts; the given modes may do without them
+        return None
+    both = ModeBasis(
+        np.hstack([component.matrix, added.matrix]), component.labels + added.labels, rotor.nodes
+    )
+    return _reduced(rotor, both, False, False, rank_tolerance, attach=False)
+
+
+def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
+    if isinstance(modes, ModeBasis):
+        check_same_mesh(rotor.nodes, modes.nodes)
+        return modes
+    if isinstance(modes, FEMinterface):
+        return fem_interface_modes(rotor, modes)
+    if isinstance(modes, np.ndarray):
+        labels = tuple(f"column {i + 1}" for i in range(modes.shape[-1]))
+        return ModeBasis(modes, labels, nodes=rotor.nodes)
+    if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
+        if modes == 0:  # a rigid rotor
+            return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
+        return free_modes(rotor, int(modes))
+    raise TypeError(
+        f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
+        f"an array of displacement columns, got {type(modes).__name__}"
+    )
+
+
+def _rigid_motions(rotor: SolidRotor, center: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the rigid motions that the stiffness matrix leaves free, with their names."""
+    rigid = rigid_columns(rotor.nodes, rotor.axis, center)
+    if not rotor.grounded:
+        return rigid, RIGID
+    if rotor.rigid_motions == 0:
+        return rigid[:, :0], ()
+    scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
+    _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
+    free = scaled @ vt[6 - rotor.rigid_motions :].T
+    return free, tuple(f"free motion {i + 1}" for i in range(rotor.rigid_motions))
+
+
+def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
+    """Put in exactly what holds by construction, so that round-off excites nothing."""
+    stiffness = np.maximum(np.diag(invariants.K), 0.0)
+    stiffness[:rigid_count] = 0.0
+    return replace(
+        invariants,
+        M=np.eye(invariants.size),
+        K=np.diag(stiffness),
+        center=np.zeros(3),
+        G=0.5 * (invariants.G - invariants.G.T),
+        C=0.5 * (invariants.C + invariants.C.T),
+    )
+
+
+def _check_stable(invariants: Invariants, rigid_count: int) -> None:
+    """Refuse a rotor that its stress at rest makes buckle."""
+    stiffness = np.diag(invariants.K)[rigid_count:]
+    if stiffness.size and stiffness.min() < -1e-9 * abs(stiffness).max():
+        raise ValueError(
+            f"a mode has the stiffness {stiffness.min():.4g} 1/s²: the rotor buckles under its "
+            "stress at rest; check sign and unit of prestress(stress=…) [Pa, tension positive]"
+        )
+
+
+def _stiffened(rotor: SolidRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
+    """Add what the carried prestress gives to the invariants of the basis."""
+    carried = rotor.carried_prestress
+    if carried is None:
+        return invariants
+    K2 = basis.T @ (carried.matrix @ basis)
+    B = None if carried.euler is None else basis.T @ (carried.euler @ basis)
+    return with_prestress(invariants, K2, B, relief_rotations(rotor))
+
+
+def _centrifugal(rotor: SolidRotor) -> Centrifugal | None:
+    carried = rotor.carried_prestress
+    if carried is None or carried.displacement is None:
+        return None
+    return Centrifugal(
+        carried.displacement, carried.stress, carried.yield_stress, carried.constant_stress
+    )
+
+
+def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
+    return {
+        name: ReducedInterface(
+            reference=interface.reference,
+            center=interface.center,
+            radius=interface.radius,
+            motion=interface.mean_motion(rotor.node_count) @ basis,
+        )
+        for name, interface in rotor.interfaces.items()
+    }
+
+
+def _shapes(
+    rotor: SolidRotor, component: ModeBasis, basis: OrthonormalBasis, stress: bool
+) -> ModeShapes:
+    columns = None
+    if component.stress is not None:
+        columns = component.stress @ basis.from_modes
+    elif stress:
+        if rotor.stress_recovery is None:
+            raise ValueError(
+                "stress=True: this rotor has no stress recovery; make it with from_ngsolve, or "
+                "give a FEMinterface with post-processing modes"
+            )
+        columns = rotor.stress_recovery(basis.matrix)
+    return ModeShapes(rotor.nodes, basis.matrix, rotor.triangles, columns)

@@ -1,0 +1,174 @@
+"""Which rigid modes a formulation needs: those its frame does not hold, and no others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import numpy as np
+
+from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.invariants import Invariants
+
+NEGLIGIBLE = 1e-10
+_SAME = 1e-6  # share of its scale below which a difference of two bases is round-off
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """Basis of one formulation out of a reduced rotor.
+
+    Attributes
+    ----------
+    T : ndarray, shape (k, m)
+        The basis of the formulation is ``Ψ = Q T`` with Q of the reduced rotor; orthonormal.
+    origin : ndarray, shape (3,)
+        Frame origin, mesh coordinates [m]: the centre of mass where the translation is free, else
+        the foot of its perpendicular on the spin axis.
+    labels : tuple of str
+    invariants : Invariants
+        In the basis Ψ, about the origin, mesh axes.
+    source : ReducedRotor
+        The rotor that it was taken from, without shapes; see :meth:`is_of`.
+    """
+
+    T: np.ndarray
+    origin: np.ndarray
+    labels: tuple[str, ...]
+    invariants: Invariants
+    source: ReducedRotor
+
+    def is_of(self, reduced: ReducedRotor) -> bool:
+        """Return whether `reduced` has the basis Q that this was taken from.
+
+        Stored and loaded, with or without shapes, it is the same rotor. Columns that changed their
+        sign are another basis.
+        """
+        return _same_basis(self.source, reduced)
+
+    def __repr__(self) -> str:
+        return f"Selection({len(self.labels)} of the {self.T.shape[0]} columns of {self.source!r})"
+
+
+def select_modes(
+    reduced: ReducedRotor, formulation: Formulation, negligible: float = NEGLIGIBLE
+) -> Selection:
+    """Pick the columns of `reduced` for `formulation`.
+
+    Rigid motions held by the frame leave the basis; the others become orthogonal to them, so that
+    ``S = 0`` for the frame's translations and ``g = 0`` for its spin.
+
+    Parameters
+    ----------
+    reduced : ReducedRotor
+    formulation : Formulation
+    negligible : float
+        Couplings and moments of mass below this share of their upper bound, which Cauchy and
+        Schwarz give, are taken as zero, and what belongs to them is not evaluated in a time step.
+        A real unbalance is such a moment: leave this at the level of round-off to keep it.
+
+    Raises
+    ------
+    ValueError
+        When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
+    """
+    _check_possible(reduced, formulation)
+    if not (isinstance(negligible, Real) and 0.0 <= negligible < 1.0):
+        raise ValueError(f"negligible: needs a share from 0 to below 1, got {negligible!r}")
+    if formulation.translation_count:
+        origin = reduced.center_of_mass
+    else:
+        origin = reduced.axis.project(reduced.center_of_mass)
+    T, labels = _columns(reduced, formulation, origin)
+    invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
+    kept = _without_noise(invariants, negligible)
+    return Selection(T, origin, labels, kept, reduced.without_shapes())
+
+
+def _same_basis(one: ReducedRotor, two: ReducedRotor) -> bool:
+    """Compare what is linear or bilinear in the columns, and kept without shapes."""
+    if one.rigid != two.rigid or one.size != two.size:
+        return False
+    a, b = one.invariants, two.invariants
+    pairs = [
+        (a.direction, b.direction, 1.0),
+        (a.mass, b.mass, a.mass),
+        (one.center_of_mass, two.center_of_mass, np.sqrt(np.trace(a.J) / a.mass)),
+        (a.P, b.P, np.sqrt(np.trace(a.J))),
+        (a.G, b.G, 1.0),  # the columns are mass-orthonormal
+        (a.C, b.C, 1.0),
+        (a.K, b.K, np.maximum(np.abs(a.K), np.abs(b.K))),
+    ]
+    for name in one.interfaces.keys() & two.interfaces.keys():
+        motion = one.interfaces[name].motion
+        pairs.append((motion, two.interfaces[name].motion, np.abs(motion).max()))
+    return all(np.all(np.abs(x - y) <= _SAME * scale) for x, y, scale in pairs)
+
+
+def _without_noise(invariants: Invariants, negligible: float) -> Invariants:
+    """Put zeros for what is negligible; the columns are mass-orthonormal."""
+    size = np.sqrt(invariants.mass)
+    spread = np.sqrt(np.diag(invariants.J))[:, None, None]
+
+    def cut(values: np.ndarray, bound: float | np.ndarray) -> np.ndarray:
+        return np.where(np.abs(values) < negligible * bound, 0.0, values)
+
+    return replace(
+        invariants,
+        S=cut(invariants.S, size),
+        P=cut(invariants.P, spread),
+        center=cut(invariants.center, np.linalg.norm(spread) / size),
+    )
+
+
+def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:
+    if reduced.grounded and (formulation.translation_count or formulation.has_spin):
+        raise ValueError(
+            "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
+            "without mass cannot move freely: use translation='none' and a prescribed spin"
+        )
+    if formulation.has_spin and "spin" not in reduced.rigid:
+        raise ValueError(
+            "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
+            "prescribe the spin, or give the rotor mass off the axis"
+        )
+
+
+def _columns(
+    reduced: ReducedRotor, formulation: Formulation, origin: np.ndarray
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    identity = np.eye(reduced.size)
+    holds_spin = formulation.has_spin or formulation.drive == "rigid"
+    held = RIGID[: formulation.translation_count]
+    if reduced.grounded:
+        return identity, reduced.labels
+    if holds_spin:
+        held = (*held, "spin")
+    keep = [i for i, name in enumerate(reduced.labels) if name not in held]
+    T = identity[:, keep]
+    if holds_spin and not formulation.translation_count:
+        T = _orthogonal_to(_spin_about(reduced, origin), T)
+    return T, tuple(reduced.labels[i] for i in keep)
+
+
+def _spin_about(reduced: ReducedRotor, origin: np.ndarray) -> np.ndarray:
+    """Unit vector of the spin ``X_e`` about the axis through `origin`, in the reduced basis."""
+    arm = reduced.center_of_mass - origin
+    spin = reduced.invariants.moved(-arm).g
+    return spin / np.linalg.norm(spin) if np.any(spin) else spin
+
+
+def _orthogonal_to(held: np.ndarray, T: np.ndarray) -> np.ndarray:
+    """Make the columns T orthogonal to the unit vector `held`, and orthonormal again."""
+    overlap = held @ T
+    touched = np.abs(overlap) > 1e-14
+    if not np.any(touched):
+        return T
+    columns = T[:, touched] - np.outer(held, overlap[touched])
+    # the polar factor is the orthonormal set closest to the columns, so labels keep their meaning
+    u, _, vt = np.linalg.svd(columns, full_matrices=False)
+    result = T.copy()
+    result[:, touched] = u @ vt
+    return result

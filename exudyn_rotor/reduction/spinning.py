@@ -1,0 +1,110 @@
+"""Component modes of a rotor at several spin speeds, for rotors that stiffen much by spinning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.reduction.component import ModeBasis, check_count, free_modes
+from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+
+if TYPE_CHECKING:
+    from exudyn_rotor.solid.rotor import SolidRotor
+
+_ACROSS = 1e-2  # share of its energy across the axis from which a mode feels Coriolis forces
+
+
+def spinning_modes(
+    rotor: SolidRotor, count: int, speeds: Sequence[float], *, tolerance: float = 1e-10
+) -> ModeBasis:
+    """Return the lowest eigenmodes at rest and those at spin speeds, as one basis.
+
+    At a speed Ω these are the modes φ of ``A = K + Ω²(K_G − ẽᵀMẽ)``, and the static responses
+    ``A⁻¹Mẽφ`` to the Coriolis forces of those that move across the axis: a blade that swings in
+    the plane of rotation is stretched by them, and the stretch is far above all bending modes. A
+    blade whose tension has changed its mode shapes needs fewer columns of this basis than of modes
+    at rest. Modes of different speeds are much alike; :meth:`SolidRotor.reduce` makes them
+    orthonormal and drops what is not new.
+
+    Parameters
+    ----------
+    rotor : SolidRotor
+        Carrying a prestress, see :meth:`SolidRotor.with_prestress`.
+    count : int
+        Number of flexible modes at rest and at each speed.
+    speeds : sequence of float
+        Spin speeds Ω > 0 [rad/s].
+    tolerance : float, optional
+        As in :func:`free_modes`.
+
+    Returns
+    -------
+    ModeBasis
+        Modes at rest first. A column at a speed has no frequency at rest, hence NaN.
+
+    Raises
+    ------
+    ValueError
+        If the rotor carries no prestress, no speed is given or one is not positive, there are not
+        that many modes, or the prestress makes the rotor unstable at a speed.
+    """
+    if rotor.carried_prestress is None:
+        raise ValueError(
+            "spinning_modes: the rotor carries no prestress; use "
+            "rotor.with_prestress(rotor.prestress())"
+        )
+    speeds = np.asarray(speeds, dtype=float)
+    if (
+        speeds.ndim != 1
+        or speeds.size == 0
+        or not np.all(np.isfinite(speeds))
+        or np.any(speeds <= 0.0)
+    ):
+        raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
+    rest = free_modes(rotor, count, tolerance=tolerance)
+    found, labels = [rest.matrix], list(rest.labels)
+    for speed in speeds:
+        for name, part in zip(
+            ("mode", "Coriolis response"), _modes_at(rotor, count, speed, tolerance), strict=True
+        ):
+            found.append(part)
+            labels += [f"{name} {i + 1} at {speed:.6g} rad/s" for i in range(part.shape[1])]
+    frequencies = np.full(len(labels), np.nan)
+    frequencies[:count] = rest.frequencies
+    return ModeBasis(np.hstack(found), tuple(labels), rotor.nodes, frequencies)
+
+
+def _modes_at(
+    rotor: SolidRotor, count: int, speed: float, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest modes at a speed, and the static responses to their Coriolis forces.
+
+    There are as many more modes as rigid motions are free, which are among them.
+    """
+    wanted = count + rotor.rigid_motions
+    check_count(wanted, 3 * rotor.node_count, smallest=1)
+    e = rotor.axis.direction
+    softening = sp.kron(rotor.mass[::3, ::3], np.eye(3) - np.outer(e, e), format="csr")
+    stiffness = rotor.stiffness + speed**2 * (rotor.carried_prestress.matrix - softening)
+    # softening takes at most Ω² from any eigenvalue, so that this is definite unless K_G buckles
+    shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
+    try:
+        solve = SparseCholesky(shifted).solve
+    except NotPositiveDefiniteError as error:
+        raise ValueError(
+            f"at {speed:.6g} rad/s the compression by the static stress makes the rotor buckle "
+            f"({error}); leave this speed out"
+        ) from error
+    if lanczos.is_small(shifted.shape[0], wanted):
+        _, modes = lanczos.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
+    else:
+        _, modes = lanczos.lanczos_modes(shifted, rotor.mass, solve, wanted, tolerance)
+    modes = lanczos.with_fixed_sign(modes)
+    turned = np.cross(e, modes.reshape(-1, 3, wanted), axisb=1, axisc=1).reshape(modes.shape)
+    forces = rotor.mass @ turned
+    share = np.einsum("ik,ik->k", turned, forces)  # of a mode's energy that moves across e
+    return modes, solve(forces[:, share > _ACROSS])

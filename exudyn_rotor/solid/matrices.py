@@ -1,0 +1,262 @@
+"""Checks of finite-element matrices and node sets: every error says what, where and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.checks import read_only
+
+# Relative to the largest entry: well above the rounding of any assembly, far below a wrong matrix.
+SYMMETRY_TOLERANCE = 1e-8
+BLOCK_TOLERANCE = 1e-8
+
+
+def as_nodes(nodes: Any) -> np.ndarray:
+    """Return the node positions as a read-only array, shape (n, 3).
+
+    Raises
+    ------
+    TypeError
+        If `nodes` does not hold numbers.
+    ValueError
+        If the shape is not (n, 3) with n ≥ 1, or an entry is not finite.
+    """
+    try:
+        positions = read_only(nodes)
+    except (TypeError, ValueError) as error:
+        raise TypeError("nodes: needs an array of numbers with three columns x, y, z") from error
+    if positions.ndim == 2 and positions.shape[1] in (6, 7):
+        raise ValueError(
+            f"nodes: {positions.shape[1]} coordinates per node mean rotation-carrying nodes "
+            "(shells, beams); a solid rotor needs solid elements with x, y, z per node"
+        )
+    if positions.ndim != 2 or positions.shape[1] != 3 or len(positions) == 0:
+        raise ValueError(f"nodes: the shape must be (n, 3), got {positions.shape}")
+    bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    if bad.size:
+        raise ValueError(
+            f"nodes: {bad.size} of {len(positions)} positions are not finite, {_some(bad)}"
+        )
+    return positions
+
+
+def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
+    """Return a checked (3n, 3n) matrix: finite, exactly symmetric, read-only csr_array.
+
+    Parameters
+    ----------
+    label : str
+        Name of the matrix in messages, e.g. ``"mass matrix"``.
+    matrix : array_like or sparse
+    node_count : int
+        The number of nodes n.
+
+    Raises
+    ------
+    TypeError
+        If `matrix` does not hold real numbers.
+    ValueError
+        If the size does not fit the nodes, an entry is not finite, or it is not symmetric.
+    """
+    converted = _to_csr(label, matrix)
+    _check_size(label, converted.shape, node_count)
+    bad = int(np.count_nonzero(~np.isfinite(converted.data)))
+    if bad:
+        raise ValueError(
+            f"{label}: {bad} entries are not finite (NaN or infinity); check the export"
+        )
+    return frozen(_symmetrised(label, converted))
+
+
+def frozen(matrix: sp.csr_array) -> sp.csr_array:
+    """Return `matrix` in canonical form with its arrays made read-only."""
+    matrix.sum_duplicates()
+    matrix.eliminate_zeros()
+    for array in (matrix.data, matrix.indices, matrix.indptr):
+        array.flags.writeable = False
+    return matrix
+
+
+def check_mass(mass: sp.csr_array) -> None:
+    """Raise ValueError unless `mass` is a solid's mass matrix: I₃ blocks (24), no empty node."""
+    if not _has_identity_blocks(mass):
+        raise ValueError(_explain_blocks(mass))
+    diagonal = mass.diagonal()[::3]
+    negative = np.flatnonzero(diagonal < 0.0)
+    if negative.size:
+        raise ValueError(
+            f"mass matrix: {negative.size} nodes have a negative mass, {_some(negative)}; "
+            "it must be positive definite"
+        )
+    empty = np.flatnonzero(diagonal == 0.0)
+    if empty.size:
+        raise ValueError(
+            f"mass matrix: {empty.size} nodes have no mass, {_some(empty)}; remove nodes that "
+            "belong to no element (a mesh made second order twice has some), or condense them"
+        )
+    total = mass[::3, ::3].sum()
+    if total <= 0.0:
+        raise ValueError(f"mass matrix: the total mass must be positive, got {total:.6g} kg")
+
+
+def check_stiffness(stiffness: sp.csr_array) -> None:
+    """Raise ValueError where a negative diagonal entry shows that `stiffness` is indefinite."""
+    negative = np.flatnonzero(stiffness.diagonal() < 0.0)
+    if negative.size:
+        raise ValueError(
+            f"stiffness matrix: {negative.size} diagonal entries are negative, at nodes "
+            f"{_numbers(np.unique(negative // 3))}; it must not be indefinite (wrong sign, or "
+            "mass and stiffness exchanged?)"
+        )
+
+
+def as_node_numbers(name: str, nodes: Any, node_count: int) -> np.ndarray:
+    """Return the node numbers of interface `name`, shape (k,).
+
+    Raises
+    ------
+    TypeError
+        If they are not integers.
+    ValueError
+        If there are none, one does not exist, or one is listed twice.
+    """
+    numbers = np.asarray(nodes)
+    if numbers.size == 0:
+        raise ValueError(f"interface {name!r} has no nodes; check the face name or the node list")
+    if numbers.ndim != 1 or not np.issubdtype(numbers.dtype, np.integer):
+        raise TypeError(
+            f"interface {name!r}: needs a flat list of integer node numbers, "
+            f"got {numbers.dtype} of shape {numbers.shape}"
+        )
+    outside = numbers[(numbers < 0) | (numbers >= node_count)]
+    if outside.size:
+        raise ValueError(
+            f"interface {name!r}: there is no node {_numbers(outside)}; the model has the nodes "
+            f"0 to {node_count - 1} (counted from zero)"
+        )
+    unique, counts = np.unique(numbers, return_counts=True)
+    if np.any(counts > 1):
+        raise ValueError(
+            f"interface {name!r}: repeated node numbers {_numbers(unique[counts > 1])}; "
+            "list every node once and use weights instead"
+        )
+    return numbers.astype(np.int64)
+
+
+def as_weights(name: str, weights: Sequence[float] | None, count: int) -> np.ndarray:
+    """Return the node weights of interface `name`, equal ones for None; never negative."""
+    if weights is None:
+        return np.full(count, 1.0 / count)
+    values = np.asarray(weights, dtype=float)
+    if np.any(values < 0.0):
+        raise ValueError(
+            f"interface {name!r}: weights are shares of an area and cannot be negative, "
+            f"got {values.min():.6g}"
+        )
+    return values
+
+
+def as_triangles(triangles: Any, node_count: int) -> np.ndarray:
+    """Return the surface triangles as a read-only integer array, shape (t, 3) or (t, 6)."""
+    array = np.array(triangles)
+    if array.size == 0:
+        array = np.zeros((0, 3), dtype=np.int64)
+    if not np.issubdtype(array.dtype, np.integer):
+        raise TypeError(f"triangles: need integer node numbers, got {array.dtype}")
+    if array.ndim != 2 or array.shape[1] not in (3, 6):
+        raise ValueError(f"triangles: the shape must be (t, 3) or (t, 6), got {array.shape}")
+    if array.size and (array.min() < 0 or array.max() >= node_count):
+        raise ValueError(
+            f"triangles: node numbers {array.min()} to {array.max()} are outside the model's "
+            f"0 to {node_count - 1}"
+        )
+    array = array.astype(np.int64)
+    array.flags.writeable = False
+    return array
+
+
+def _to_csr(label: str, matrix: Any) -> sp.csr_array:
+    if matrix is None:
+        raise ValueError(f"{label}: is missing (None)")
+    if not sp.issparse(matrix):
+        matrix = np.asarray(matrix)
+    if matrix.dtype.kind not in "iuf":
+        raise TypeError(f"{label}: needs real numbers (dense or scipy.sparse), got {matrix.dtype}")
+    if matrix.ndim != 2:
+        raise ValueError(f"{label}: needs a square matrix, got the shape {matrix.shape}")
+    return sp.csr_array(matrix, dtype=float, copy=True)
+
+
+def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
+    size = 3 * node_count
+    if shape == (size, size):
+        return
+    if shape in ((2 * size, 2 * size), (7 * node_count, 7 * node_count)):
+        raise ValueError(
+            f"{label}: {shape[0] // node_count} coordinates for each of {node_count} nodes mean "
+            "rotation-carrying nodes (shells, beams); a solid rotor needs solid elements with "
+            "three displacements per node"
+        )
+    raise ValueError(
+        f"{label}: the shape must be ({size}, {size}), three displacements for each of "
+        f"{node_count} nodes, got {shape}"
+    )
+
+
+def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
+    transposed = sp.csr_array(matrix.T)
+    largest = _largest(matrix)
+    difference = _largest(matrix - transposed)
+    if difference > SYMMETRY_TOLERANCE * largest:
+        raise ValueError(
+            f"{label}: is not symmetric, entries differ by {difference:.3g} with a largest entry "
+            f"of {largest:.3g}; many exports write one triangle only: then pass "
+            "A + A.T - diag(A)"
+        )
+    return 0.5 * (matrix + transposed)
+
+
+def _has_identity_blocks(mass: sp.csr_array) -> bool:
+    blocks = sp.kron(mass[::3, ::3], sp.eye_array(3), format="csr")
+    return _largest(mass - blocks) <= BLOCK_TOLERANCE * _largest(mass)
+
+
+def _explain_blocks(mass: sp.csr_array) -> str:
+    node_count = mass.shape[0] // 3
+    order = np.arange(3 * node_count).reshape(3, node_count).T.ravel()
+    if _has_identity_blocks(mass[order][:, order]):
+        return (
+            "mass matrix: the coordinates are ordered x0 x1 … y0 y1 … z0 z1 …, but "
+            "x0 y0 z0 x1 … is needed; with p = np.arange(3*n).reshape(3, n).T.ravel() pass "
+            "M[p][:, p] and K[p][:, p] (and the damping likewise)"
+        )
+    if _largest(mass - sp.diags_array(mass.diagonal())) == 0.0:
+        triples = mass.diagonal().reshape(-1, 3)
+        differing = np.flatnonzero(np.ptp(triples, axis=1) > BLOCK_TOLERANCE * _largest(mass))
+        return (
+            f"mass matrix: a lumped matrix with direction-dependent masses at {differing.size} "
+            f"nodes, {_some(differing)}, the first with {triples[differing[0]].tolist()} kg in "
+            "x, y, z; a rotor turns these directions into each other, so give every node one mass"
+        )
+    return (
+        "mass matrix: it does not consist of multiples of the 3×3 identity, one for each pair of "
+        "nodes, as displacement-based solid elements give; check that all elements are solids "
+        "with three displacements per node and that no directions were condensed or fixed"
+    )
+
+
+def _largest(matrix: sp.csr_array) -> float:
+    return float(abs(matrix).max()) if matrix.nnz else 0.0
+
+
+def _some(nodes: np.ndarray) -> str:
+    return f"nodes {_numbers(nodes)}"
+
+
+def _numbers(values: np.ndarray) -> str:
+    listed = ", ".join(str(value) for value in values[:5])
+    return listed if values.size <= 5 else f"{listed}, …"

@@ -1,0 +1,1 @@
+"""Linear algebra of large models: factors, inertia relief, constrained solves, Lanczos modes."""

@@ -1,0 +1,1 @@
+"""The formulation: axis, coordinates, inertia invariants, stiffening, equations of motion."""

@@ -1,0 +1,120 @@
+"""The fixed spin axis: a direction and a point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.theory.nodal import skew
+
+_NAMED_DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+@dataclass(frozen=True, eq=False)
+class SpinAxis:
+    """Spin axis of a rotor in its mesh coordinates.
+
+    Parameters
+    ----------
+    direction : array_like, shape (3,)
+        Any non-zero vector along the axis; stored as the unit vector ``e``. The spin angle is
+        positive about it (right-hand rule).
+    point : array_like, shape (3,), optional
+        Any point on the axis [m].
+
+    Raises
+    ------
+    ValueError
+        If the direction has no length, or an entry is not finite.
+    """
+
+    direction: np.ndarray
+    point: np.ndarray = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        direction, point = read_only(self.direction), read_only(self.point)
+        for label, vector in (("direction", direction), ("point", point)):
+            if vector.shape != (3,) or not np.all(np.isfinite(vector)):
+                raise ValueError(
+                    f"spin axis: the {label} needs three finite numbers, got {vector.tolist()}"
+                )
+        largest = np.abs(direction).max()
+        if largest == 0.0:
+            raise ValueError(
+                "spin axis: the direction [0, 0, 0] has no length; "
+                "give a vector along the axis, e.g. [0, 0, 1] or 'z'"
+            )
+        # scaled first: the squares of very long and very short vectors leave the range of floats
+        scaled = direction / largest
+        object.__setattr__(self, "direction", read_only(scaled / np.linalg.norm(scaled)))
+        object.__setattr__(self, "point", point)
+
+    @classmethod
+    def of(cls, axis: SpinAxis | str | ArrayLike) -> SpinAxis:
+        """Read an axis: a SpinAxis, 'x', 'y', 'z', a direction, or (direction, point)."""
+        if isinstance(axis, SpinAxis):
+            return axis
+        if isinstance(axis, str):
+            if axis not in _NAMED_DIRECTIONS:
+                raise ValueError(f"spin axis {axis!r} is unknown; use 'x', 'y', 'z' or a vector")
+            return cls(_NAMED_DIRECTIONS[axis])
+        try:
+            values = np.asarray(axis, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"spin axis {axis!r} is neither a direction nor (direction, point)"
+            ) from error
+        if values.shape == (2, 3):
+            return cls(values[0], values[1])
+        return cls(values)
+
+    @cached_property
+    def skew(self) -> np.ndarray:
+        """``ẽ``, shape (3, 3)."""
+        return read_only(skew(self.direction))
+
+    @cached_property
+    def _along(self) -> np.ndarray:
+        """``e eᵀ``."""
+        return np.outer(self.direction, self.direction)
+
+    @cached_property
+    def _across(self) -> np.ndarray:
+        """``I − e eᵀ``."""
+        return np.eye(3) - self._along
+
+    @property
+    def plane(self) -> np.ndarray:
+        """``N = null(eᵀ)`` (89), shape (3, 2): unit vectors with n1 × n2 = e.
+
+        For the axes x, y, z these are the next two coordinate axes in cyclic order (121).
+        """
+        e = self.direction
+        if np.count_nonzero(e) == 1:
+            first = np.roll(np.abs(e), 1)
+        else:
+            first = np.eye(3)[np.argmin(np.abs(e))]
+            first = first - e * (e @ first)
+            first = first / np.linalg.norm(first)
+        return np.column_stack([first, np.cross(e, first)])
+
+    def rotation(self, angle: float) -> np.ndarray:
+        """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3)."""
+        return self._along + np.cos(angle) * self._across + np.sin(angle) * self.skew
+
+    def project(self, points: ArrayLike) -> np.ndarray:
+        """Return the feet of the perpendiculars from `points` (…, 3) to the axis."""
+        arms = np.asarray(points, dtype=float) - self.point
+        return self.point + (arms @ self.direction)[..., None] * self.direction
+
+    def radial(self, points: ArrayLike) -> np.ndarray:
+        """Return the offsets (…, 3) of `points` from the axis, ``x_⊥ = −ẽẽ(x − p)``."""
+        return np.asarray(points, dtype=float) - self.project(points)
+
+    def turned(self, rotation: ArrayLike) -> SpinAxis:
+        """Return this axis after the rotation matrix `rotation` (3, 3) about the origin."""
+        return SpinAxis(rotation @ self.direction, rotation @ self.point)

@@ -1,0 +1,168 @@
+"""Inertia invariants of a rotor in one basis: everything the formulations need, computed once.
+
+With a single fixed axis only products with ``ẽ`` occur, so the 3n × 3m tilde bases of the 3D
+theory (30, 35–40) are never formed. Centre of mass, moment of inertia and the mode moments follow
+from three small arrays (J, S, P), which also move to another origin in closed form.
+
+Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.theory.nodal import block_diagonal, skew
+
+Matrix = np.ndarray | sp.csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class Invariants:
+    """Inertia, stiffness and damping of a rotor in a basis Ψ of k displacement columns.
+
+    All arrays are read-only and refer to rotor-fixed axes; the matrices of size k are dense for
+    component modes and sparse for the full model (Ψ = I).
+
+    Attributes
+    ----------
+    direction : ndarray, shape (3,)
+        Unit spin axis ``e``.
+    mass : float
+        Total mass m (31) [kg].
+    center : ndarray, shape (3,)
+        Centre of mass ``χ`` from the origin (32) [m].
+    J : ndarray, shape (3, 3)
+        Second moments of mass ``Σ M x xᵀ`` about the origin [kg m²].
+    S : ndarray, shape (3, k)
+        ``ΦᵀMΨ`` (37).
+    P : ndarray, shape (3, 3, k)
+        Mixed moments ``Σ M x ψᵀ`` about the origin; (39) and (40) contracted with e follow.
+    M, K, D : shape (k, k)
+        ``ΨᵀMΨ, ΨᵀKΨ, ΨᵀDΨ`` (34, 19, 20).
+    G : shape (k, k)
+        ``M*_ψ̃ψ = ΨᵀMẽ_bdΨ`` (80), skew-symmetric.
+    C : shape (k, k)
+        ``M*_ψ̃ψ̃ = (ẽ_bdΨ)ᵀM(ẽ_bdΨ)`` (81), symmetric and non-negative.
+    K2, B : shape (k, k), optional
+        Stiffness per ω² and per ω̇ of a static prestress, see
+        :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
+    """
+
+    direction: np.ndarray
+    mass: float
+    center: np.ndarray
+    J: np.ndarray
+    S: np.ndarray
+    P: np.ndarray
+    M: Matrix
+    K: Matrix
+    D: Matrix
+    G: Matrix
+    C: Matrix
+    K2: Matrix | None = None
+    B: Matrix | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                object.__setattr__(self, field.name, read_only(value))
+            elif sp.issparse(value):
+                value.data.flags.writeable = False
+
+    @classmethod
+    def of(
+        cls,
+        nodes: np.ndarray,
+        mass: sp.csr_array,
+        stiffness: sp.csr_array,
+        damping: sp.csr_array | None,
+        basis: Matrix,
+        direction: np.ndarray,
+    ) -> Invariants:
+        """Compute the invariants from nodes (n, 3), FE matrices and a basis (3n, k).
+
+        The basis is a dense array of component modes or a sparse matrix; the identity gives the
+        full formulations. The origin is that of `nodes`.
+        """
+        scalar_mass = mass[::3, ::3]
+        mass_x = scalar_mass @ nodes
+        turned = block_diagonal(skew(direction), len(nodes)) @ basis
+        mass_basis = mass @ basis
+        total = float(scalar_mass.sum())
+        none = sp.csr_array(mass.shape) if damping is None else damping
+        return cls(
+            direction=np.asarray(direction, dtype=float),
+            mass=total,
+            center=mass_x.sum(axis=0) / total,
+            J=nodes.T @ mass_x,
+            S=np.vstack([_row_sum(mass_basis[a::3]) for a in range(3)]),
+            P=np.stack([_dense(mass_x.T @ basis[b::3]) for b in range(3)], axis=1),
+            M=basis.T @ mass_basis,
+            K=basis.T @ (stiffness @ basis),
+            D=basis.T @ (none @ basis),
+            G=mass_basis.T @ turned,
+            C=turned.T @ (mass @ turned),
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of columns k."""
+        return self.S.shape[1]
+
+    @property
+    def is_sparse(self) -> bool:
+        """True for the full model, whose matrices are sparse."""
+        return sp.issparse(self.M)
+
+    @cached_property
+    def _across(self) -> np.ndarray:
+        """Projector onto the plane of rotation, ``−ẽẽ = I − eeᵀ``."""
+        return np.eye(3) - np.outer(self.direction, self.direction)
+
+    @cached_property
+    def Theta(self) -> float:
+        """Moment of inertia about the axis, ``Θ*_u`` (79) [kg m²]."""
+        return float(np.sum(self._across * self.J))
+
+    @cached_property
+    def g(self) -> np.ndarray:
+        """``−M*_x̃ψ = ΨᵀM X_e`` (82), shape (k,): zero in a Tisserand frame."""
+        return np.einsum("ba,abk->k", skew(self.direction), self.P)
+
+    @cached_property
+    def h(self) -> np.ndarray:
+        """``M*_x̃ψ̃ = Ψ_eᵀM X_e`` (83), shape (k,): centrifugal load per ω²."""
+        return np.einsum("ab,abk->k", self._across, self.P)
+
+    def moved(self, origin: np.ndarray) -> Invariants:
+        """Return the invariants about another origin, given from the present one [m]."""
+        shift = np.asarray(origin, dtype=float)
+        cross = self.mass * np.outer(self.center, shift)
+        return replace(
+            self,
+            center=self.center - shift,
+            J=self.J - cross - cross.T + self.mass * np.outer(shift, shift),
+            P=self.P - shift[:, None, None] * self.S[None, :, :],
+        )
+
+    def in_basis(self, T: np.ndarray) -> Invariants:
+        """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
+
+        names = ("M", "K", "D", "G", "C", "K2", "B")
+        given = {name: getattr(self, name) for name in names}
+        projected = {name: T.T @ (X @ T) for name, X in given.items() if X is not None}
+        return replace(self, S=self.S @ T, P=self.P @ T, **projected)
+
+
+def _row_sum(block: Matrix) -> np.ndarray:
+    return np.asarray(block.sum(axis=0)).ravel()
+
+
+def _dense(array: Matrix) -> np.ndarray:
+    return array.toarray() if sp.issparse(array) else np.asarray(array)

@@ -1,0 +1,308 @@
+"""Equations of motion of every formulation: mass matrix, forces, Jacobian.
+
+Coordinates ``q = (τ, θ, ζ)``, of which only the unknown ones exist. Every term stands here once
+and serves dense component modes as well as the sparse full model (Ψ = I).
+
+The kinetic energy behind the terms, with ``W = G + B`` and ``Ĉ = C − K2``
+(:mod:`exudyn_rotor.theory.stiffening`; the paper's equations are B = K2 = 0), is
+
+    T = ½m|τ̇|² + τ̇·A(ω(mχ* + S*ζ) + Sζ̇) + ½ω²(Θ + 2hᵀζ + ζᵀĈζ) + ωζ̇ᵀ(g + Wζ) + ½ζ̇ᵀMζ̇
+
+Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.stiffening import Stiffening
+
+
+@dataclass(frozen=True)
+class _State:
+    """One instant, split into its parts."""
+
+    omega: float
+    omega_t: float  # prescribed part of the spin acceleration
+    zeta: np.ndarray
+    zeta_t: np.ndarray
+    A: np.ndarray | None = None  # NᵀA(θ), rows: unknown translations
+    push: np.ndarray | None = None  # gravity minus frame acceleration, rotor axes
+
+
+class Motion:
+    """Equations of motion ``M(q) q̈ = f(t, q, q̇)`` of one formulation.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        With the origin on the spin axis.
+    formulation : Formulation
+    second_order : Stiffening
+    orientation : ndarray, shape (3, 3), optional
+        Rotation from rotor axes at θ = 0 to inertial axes.
+    plane : ndarray, shape (3, 2), optional
+        Inertial directions of the in-plane translations, ``N`` (89).
+    gravity : array_like, shape (3,), optional
+        Acceleration, inertial axes [m/s²] (App. A).
+
+    Attributes
+    ----------
+    size : int
+        Number of unknowns: translations, then θ, then modal coordinates.
+    free_directions : ndarray, shape (3, 0…3)
+        Inertial directions of the unknown translations, ``N`` (89).
+    C, W, B : shape (m, m)
+        ``C − K2``, ``G + B`` and B of the kinetic energy above.
+    translations, modes : slice
+        Where the translations and the modal coordinates stand among the unknowns.
+    is_coupled, is_pushed : bool
+        Whether translations are coupled with other unknowns, and whether gravity or the frame's
+        acceleration acts on any but them. Terms that vanish for this rotor are left out of every
+        step.
+    weight : ndarray
+        Gravity on the unknown translations [N].
+    """
+
+    def __init__(
+        self,
+        invariants: Invariants,
+        formulation: Formulation,
+        second_order: Stiffening,
+        orientation: np.ndarray | None = None,
+        plane: np.ndarray | None = None,
+        gravity: np.ndarray | None = None,
+    ) -> None:
+        self.invariants = invariants
+        self.formulation = formulation
+        self.orientation = np.eye(3) if orientation is None else np.asarray(orientation, float)
+        self.gravity = np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float)
+        self._e = skew(invariants.direction)
+        self._turn = SpinAxis(invariants.direction)
+        self.free_directions = self._free_directions(plane)
+        self.C = invariants.C - second_order.K2
+        self.B = second_order.B
+        self.W = invariants.G + second_order.B
+        counts = (formulation.translation_count, int(formulation.has_spin), invariants.size)
+        ends = np.cumsum(counts)
+        self.translations, self._r, self.modes = (
+            slice(end - count, end) for end, count in zip(ends, counts, strict=True)
+        )
+        self.size = int(ends[-1])
+        self.is_pushed = bool(
+            (formulation.moves_origin or np.any(self.gravity))
+            and (np.any(invariants.S) or np.any(self.lever))
+        )
+        self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
+
+    def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
+        count = self.formulation.translation_count
+        if count == 3:
+            return np.eye(3)
+        if count == 2:
+            return self.orientation @ self._turn.plane if plane is None else plane
+        return np.zeros((3, 0))
+
+    @cached_property
+    def lever(self) -> np.ndarray:
+        """``mχ*`` (67) [kg m]."""
+        return self.invariants.mass * self._e @ self.invariants.center
+
+    @cached_property
+    def S1(self) -> np.ndarray:
+        """``S* = ẽS`` (69), shape (3, m)."""
+        return self._e @ self.invariants.S
+
+    @cached_property
+    def _constant_mass(self) -> np.ndarray | sp.csr_array:
+        """(41) and (42)."""
+        count = self.formulation.translation_count
+        blocks = {("f", "f"): self.invariants.M}
+        if count:
+            blocks["t", "t"] = self.invariants.mass * np.eye(count)
+        zero = (self.size, self.size)
+        empty = sp.csr_array(zero) if self.invariants.is_sparse else np.zeros(zero)
+        return self._placed(blocks, empty)
+
+    @cached_property
+    def is_coupled(self) -> bool:
+        """True when ``mχ*`` or S couple unknown translations with the other coordinates."""
+        count = self.formulation.translation_count
+        seen = self.invariants.S if count == 3 else self.S1  # in the plane, S* is S turned
+        return bool(count and (np.any(self.lever) or np.any(seen)))
+
+    @property
+    def is_constant(self) -> bool:
+        """True when all matrices and forces are constant: Eq. (109) and its uncoupled kin."""
+        form = self.formulation
+        return (
+            form.is_constant_speed
+            and not self.is_coupled
+            and not form.moves_origin
+            and not self.is_pushed
+        )
+
+    def mass_matrix(self, t: float, q: np.ndarray) -> np.ndarray | sp.csr_array:
+        """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
+        inv = self.invariants
+        now = self._state(t, q, np.zeros(self.size))
+        blocks = {}
+        if self.is_coupled:
+            blocks["t", "f"] = now.A @ inv.S
+            blocks["f", "t"] = blocks["t", "f"].T
+        if self.formulation.has_spin:
+            blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
+            blocks["r", "f"] = (inv.g + self.W @ now.zeta)[None, :]
+            blocks["f", "r"] = blocks["r", "f"].T
+            if self.is_coupled:
+                blocks["t", "r"] = (now.A @ self._imbalance(now.zeta))[:, None]
+                blocks["r", "t"] = blocks["t", "r"].T
+        return self._placed(blocks, self._constant_mass)
+
+    def forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return velocity-dependent, elastic, damping and gravity forces, shape (size,).
+
+        (66), (86), (87), the prescribed accelerations of (108), and App. A.
+        """
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
+        force = np.zeros(self.size)
+        outward = inv.h + self.C @ zeta
+        force[self.modes] = (
+            outward * omega**2 - 2.0 * omega * (inv.G @ zeta_t) - inv.K @ zeta - inv.D @ zeta_t
+        )
+        if now.omega_t:
+            force[self.modes] -= (inv.g + self.W @ zeta) * now.omega_t
+        if self.formulation.has_spin:
+            force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self.B @ zeta_t)
+        force[self.translations] = self.weight
+        if self.is_pushed:
+            self._add_push(now, force)
+        if self.is_coupled:
+            force[self.translations] -= now.A @ self._swing(now)
+        return force
+
+    def jacobian(
+        self, t: float, q: np.ndarray, q_t: np.ndarray
+    ) -> tuple[np.ndarray | sp.csr_array, np.ndarray | sp.csr_array]:
+        """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
+        by_q = {("f", "f"): omega**2 * self.C - inv.K}
+        by_v = {("f", "f"): -2.0 * omega * inv.G - inv.D}
+        if now.omega_t:
+            by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self.W
+        if self.formulation.has_spin:
+            outward = inv.h + self.C @ zeta
+            by_q["r", "f"] = -2.0 * omega * (self.C @ zeta_t)[None, :]
+            by_v["f", "r"] = (2.0 * omega * outward - 2.0 * (inv.G @ zeta_t))[:, None]
+            by_v["r", "r"] = [[-2.0 * outward @ zeta_t]]
+            by_v["r", "f"] = (-2.0 * omega * outward - 2.0 * (self.B @ zeta_t))[None, :]
+            if self.is_pushed:
+                turned = -self._e @ now.push
+                by_q["f", "r"] = (inv.S.T @ turned)[:, None]
+                by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
+                by_q["r", "f"] = by_q["r", "f"] + self.S1.T @ now.push
+        if self.is_coupled:
+            self._add_translational_jacobian(now, by_q, by_v)
+        empty = 0.0 * self._constant_mass
+        return self._placed(by_q, empty), self._placed(by_v, empty)
+
+    def energy(self, t: float, q: np.ndarray, q_t: np.ndarray) -> float:
+        """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
+        zeta = q[self.modes]
+        kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
+        return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
+
+    def momentum(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return the generalised momenta ``M(q) q̇``, shape (size,).
+
+        With a free spin, the entry of θ is the angular momentum about the spin axis relative to
+        the frame origin.
+        """
+        return self.mass_matrix(t, q) @ q_t
+
+    def drive_torque(self, t: float, q: np.ndarray, q_t: np.ndarray, zeta_tt: np.ndarray) -> float:
+        """Return the torque about e that a prescribed spin needs, external loads left out [N m].
+
+        The row of θ that a prescribed spin removes: (84–86) times the accelerations.
+        """
+        inv = self.invariants
+        now = self._state(t, q, q_t)
+        inertia = self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self.W @ now.zeta) @ zeta_tt
+        coriolis = 2.0 * now.omega * (inv.h + self.C @ now.zeta) @ now.zeta_t
+        return float(inertia + coriolis + now.zeta_t @ (self.B @ now.zeta_t)) - (
+            float(self._imbalance(now.zeta) @ now.push) if self.is_pushed else 0.0
+        )
+
+    def _spin_inertia(self, zeta: np.ndarray) -> float:
+        """(85)."""
+        inv = self.invariants
+        return inv.Theta + (2.0 * inv.h + self.C @ zeta) @ zeta
+
+    def _imbalance(self, zeta: np.ndarray) -> np.ndarray:
+        """``mχ* + S*ζ``, the bracket of (65), rotor axes."""
+        return self.lever + self.S1 @ zeta
+
+    def _add_push(self, now: _State, force: np.ndarray) -> None:
+        """Add gravity (App. A) and the frame's prescribed acceleration (108)."""
+        force[self.modes] += self.invariants.S.T @ now.push
+        if self.formulation.has_spin:
+            force[self._r] += self._imbalance(now.zeta) @ now.push
+
+    def _swing(self, now: _State) -> np.ndarray:
+        """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
+        arm = self._imbalance(now.zeta)
+        centrifugal = now.omega**2 * (self._e @ arm)
+        return centrifugal + 2.0 * now.omega * (self.S1 @ now.zeta_t) + now.omega_t * arm
+
+    def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
+        omega, arm = now.omega, self._imbalance(now.zeta)
+        turning = omega**2 * self._e + now.omega_t * np.eye(3)
+        by_q["t", "f"] = -now.A @ turning @ self.S1
+        by_v["t", "f"] = -2.0 * omega * now.A @ self.S1
+        if self.formulation.has_spin:
+            by_q["t", "r"] = -(now.A @ self._e @ self._swing(now))[:, None]
+            by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self.S1 @ now.zeta_t)
+            by_v["t", "r"] = -(now.A @ by_rate)[:, None]
+
+    def _state(self, t: float, q: np.ndarray, q_t: np.ndarray) -> _State:
+        form = self.formulation
+        if form.has_spin:
+            theta, omega, omega_t = float(q[self._r][0]), float(q_t[self._r][0]), 0.0
+        else:
+            theta, omega = form.spin.value(t), form.spin.rate(t)
+            omega_t = form.spin.acceleration(t)
+        zeta, zeta_t = q[self.modes], q_t[self.modes]
+        if not (self.is_coupled or self.is_pushed):
+            return _State(omega, omega_t, zeta, zeta_t)
+        rotation = self.orientation @ self._turn.rotation(theta)
+        push = self.gravity
+        if form.moves_origin:
+            push = push - np.asarray(form.translation.acceleration(t), dtype=float)
+        A, push = self.free_directions.T @ rotation, rotation.T @ push
+        return _State(omega, omega_t, zeta, zeta_t, A, push)
+
+    def _placed(self, blocks: dict, base: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
+        """Return `base` with the blocks of t, r, f put in, sparse where the invariants are."""
+        places = {"t": self.translations, "r": self._r, "f": self.modes}
+        matrix = base.copy()
+        for (row, column), block in blocks.items():
+            if not self.invariants.is_sparse:
+                matrix[places[row], places[column]] = block
+                continue
+            part = sp.coo_array(block)
+            rows, columns = part.coords
+            place = (rows + places[row].start, columns + places[column].start)
+            matrix = matrix + sp.csr_array((part.data, place), shape=matrix.shape)
+        return matrix

@@ -1,0 +1,182 @@
+"""Centrifugal stiffening: the work of the centrifugal field on second-order displacements.
+
+The paper's equations (84–87, 103–109) hold the softening ``−ω²C`` only. The centrifugal load
+``ω² M x_⊥`` also does work on the second-order part u₂ of a displacement, a stiffness of the same
+order. Without it a rigid rotor tilting in the rotating frame has the stiffness
+``k − ω²(I_t − I_p/2)`` instead of ``k − ω²(I_t − I_p)`` and turns falsely unstable.
+
+Levels
+------
+``'none'``
+    The paper's equations.
+``'tilt'``
+    Exact for the rigid rotations contained in the basis, from M and x alone.
+``'full'``
+    The geometric stiffness of the static centrifugal stress, which stiffens flexible modes, too
+    (blades, discs), and contains ``'tilt'``: a stress in equilibrium does the work of its load.
+    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.prestress`).
+
+Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
+φ about the centre of mass and a flexible rest ψ; composing them gives
+``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
+``f = M F x`` on it is a quadratic form in (φ, ψ) that needs only the invariants J, S and P.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import skew
+
+LEVELS = ("none", "tilt", "full")
+NO_PRESTRESS = (
+    "stiffening='full' needs the static centrifugal stress: reduce the rotor with prestress=True "
+    "(NGSolve model) or with Prestress.from_matrix (imported model), carry it in a full model with "
+    "rotor.with_prestress, or use stiffening='tilt'"
+)
+
+_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffening:
+    """Second-order inertia terms in a basis of k columns.
+
+    Attributes
+    ----------
+    K2 : ndarray, shape (k, k)
+        Stiffness per ω² from the centrifugal field; C − K2 replaces C in (85–87).
+    B : ndarray, shape (k, k)
+        Symmetric matrix of the Euler field: stiffness ``ω̇ B`` and, where θ is a coordinate,
+        ``(Bζ)ᵀ`` added to ``M_θζ``. Zero for the tilts of an axisymmetric rotor.
+    """
+
+    K2: np.ndarray
+    B: np.ndarray
+
+
+def stiffening(invariants: Invariants, level: str) -> Stiffening:
+    """Return the second-order terms of `level` for a basis.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        With the origin on the spin axis.
+    level : {'none', 'tilt', 'full'}
+
+    Raises
+    ------
+    ValueError
+        For an unknown level, or 'full' without a prestress.
+    """
+    if level not in LEVELS:
+        raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
+    if level == "none":
+        shape = (invariants.size, invariants.size)
+        zero = sp.csr_array(shape) if invariants.is_sparse else np.zeros(shape)
+        return Stiffening(zero, zero)
+    if level == "full":
+        return _full(invariants)
+    e = skew(invariants.direction)
+    split = _rigid_split(invariants)
+    return Stiffening(K2=-_work_hessian(split, -e @ e), B=_work_hessian(split, e))
+
+
+def _full(invariants: Invariants) -> Stiffening:
+    if invariants.K2 is None:
+        raise ValueError(NO_PRESTRESS)
+    B = invariants.B
+    if B is None:  # of the Euler field only what rigid rotations feel
+        B = _work_hessian(_rigid_split(invariants), skew(invariants.direction))
+    return Stiffening(invariants.K2, B)
+
+
+def with_prestress(
+    invariants: Invariants, K2: np.ndarray, B: np.ndarray | None, relief: np.ndarray
+) -> Invariants:
+    """Return the invariants with the stiffness of a static prestress.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Dense.
+    K2 : ndarray, shape (k, k)
+        ``ΨᵀK_GΨ`` per ω².
+    B : ndarray or None, shape (k, k)
+        The same per ω̇.
+    relief : ndarray, shape (2, 3)
+        Angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a
+        load strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
+    """
+    split = _rigid_split(invariants)
+
+    def whole(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        return 0.5 * (matrix + matrix.T) - _work_hessian(split, skew(turn))
+
+    return replace(
+        invariants,
+        K2=whole(K2, relief[0]),
+        B=None if B is None else whole(B, relief[1]),
+    )
+
+
+def relief_factors(invariants: Invariants, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6): ``VᵀWV`` is what `with_prestress` adds to K2 for a turn (3,).
+
+    The form for full models.
+    """
+    V, W = _work_factors(_rigid_split(invariants), skew(turn))
+    return V, -W
+
+
+def tilt_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6) of ``K2 = VᵀWV`` at the level 'tilt'.
+
+    The form for full models, where K2 would be a dense matrix of the size of the model.
+    """
+    e = skew(invariants.direction)
+    V, W = _work_factors(_rigid_split(invariants), -e @ e)
+    return V, -W
+
+
+@dataclass(frozen=True, eq=False)
+class _RigidSplit:
+    """Columns split into rotation about the centre of mass and a flexible rest."""
+
+    rotation: np.ndarray  # (3, k) rotation vector of every column
+    P_flexible: np.ndarray  # (3, 3, k) mixed moments Σ M y ψᵀ of the flexible rest
+    J: np.ndarray  # (3, 3) second moments about the centre of mass
+
+
+def _rigid_split(invariants: Invariants) -> _RigidSplit:
+    """Split every column by mass-orthogonality (Tisserand)."""
+    central = invariants.moved(invariants.center)
+    inertia = np.trace(central.J) * np.eye(3) - central.J
+    momentum = np.einsum("aib,abk->ik", _EPSILON, central.P)
+    rotation = np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum
+    P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, central.J)
+    return _RigidSplit(rotation, central.P - P_rigid, central.J)
+
+
+def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:
+    """Hessian of the work of the nodal forces ``M F x`` on u₂, shape (k, k)."""
+    V, W = _work_factors(split, field)
+    hessian = V.T @ W @ V
+    return 0.5 * (hessian + hessian.T)
+
+
+def _work_factors(split: _RigidSplit, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6) of the Hessian ``VᵀWV`` of the work of ``M F x`` on u₂.
+
+    ``f·(φ×(φ×y)) = φᵀ(H − tr(H) I)φ`` with ``H = Σ f yᵀ``, and
+    ``f·(φ×ψ) = −φ·Σ f×ψ``.
+    """
+    H = field @ split.J
+    own = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
+    mixed = -np.einsum("aib,ac,cbk->ik", _EPSILON, field, split.P_flexible)
+    W = np.block([[own, np.eye(3)], [np.eye(3), np.zeros((3, 3))]])
+    return np.vstack([split.rotation, mixed]), W
