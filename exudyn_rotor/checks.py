@@ -6,9 +6,11 @@ range a ValueError. Arrays that are kept are copies and read-only.
 
 from __future__ import annotations
 
+import copyreg
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -19,6 +21,7 @@ Kind = TypeVar("Kind")
 Shape = tuple[int | None, ...]
 
 _LONGEST = 80  # characters of a value in a message
+_SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
 _NUMBERS = "buif"
 
 
@@ -169,18 +172,17 @@ def array(
     finite: bool = True,
     dtype: type = float,
 ) -> np.ndarray:
-    """Return numbers as a read-only copy of the wanted shape; None in `shape` is any length.
+    """Return numbers as a read-only array of the wanted shape; None in `shape` is any length.
 
     `dtype` is float, complex or int. Text, masks, imaginary parts of numbers that must be real,
-    and fractions of numbers that must be whole are refused.
+    and fractions of numbers that must be whole are refused. What can be written to is copied.
     """
     needed = f"{_kind_of(dtype, finite)}{_unit(unit)}{_of_shape(shape)}"
-    result = np.array(_numbers(values, name, needed, dtype), dtype=dtype)
+    result = read_only(_numbers(values, name, needed, dtype), dtype)
     if shape is not None and not _has_shape(result.shape, shape):
         raise ValueError(f"{name}: needs {needed}, got {shown(values)}{_its_shape(result)}")
     if finite and not np.all(np.isfinite(result)):
         raise ValueError(f"{name}: needs {needed}, got {shown(values)}")
-    result.flags.writeable = False
     return result
 
 
@@ -208,10 +210,32 @@ def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None
     if not sp.issparse(values):
         return array(values, name, unit, shape=shape)
     needed = f"finite numbers{_unit(unit)}{_of_shape(shape)}"
-    result = sp.csr_array(values, copy=True)
-    if not _has_shape(result.shape, shape):
-        raise ValueError(f"{name}: needs {needed}, got a sparse matrix of shape {result.shape}")
-    result.data = array(result.data, f"{name}: its entries", unit, shape=(None,))
+    if not _has_shape(values.shape, shape):
+        raise ValueError(f"{name}: needs {needed}, got a sparse matrix of shape {values.shape}")
+    rows = values.tocsr()
+    result = sp.csr_array(rows)
+    result.data = array(rows.data, f"{name}: its entries", unit, shape=(None,))
+    result.indices = read_only(rows.indices, rows.indices.dtype)
+    result.indptr = read_only(rows.indptr, rows.indptr.dtype)
+    return result
+
+
+def symmetric(values: Any, name: str, unit: str = "", *, size: int, sign: int = 1) -> Any:
+    """Return a symmetric matrix (size, size), for the sign −1 a skew-symmetric one.
+
+    Of a sparse one, entries and shape are looked at only.
+    """
+    result = matrix(values, name, unit, shape=(size, size))
+    if sp.issparse(result):
+        return result
+    difference = np.abs(result - sign * result.T).max(initial=0.0)
+    largest = np.abs(result).max(initial=0.0)
+    if difference > _SYMMETRY * largest:
+        kind = "symmetric" if sign > 0 else "skew-symmetric"
+        raise ValueError(
+            f"{name}: needs a {kind} matrix; entries differ by {difference:.3g}, the largest is "
+            f"{largest:.3g}"
+        )
     return result
 
 
@@ -347,12 +371,21 @@ def path(value: str | os.PathLike, name: str = "path") -> Path:
 
 def read_only(values: ArrayLike, dtype: type = float) -> np.ndarray:
     """Return an array that cannot be written to: as it is if so already, else a copy."""
-    shared = isinstance(values, np.ndarray) and values.dtype == dtype
+    shared = type(values) is np.ndarray and values.dtype == dtype
     if shared and values.flags.owndata and not values.flags.writeable:
         return values
     copy = np.array(values, dtype=dtype)
     copy.flags.writeable = False
     return copy
+
+
+def read_only_mapping(values: Mapping[str, Kind]) -> Mapping[str, Kind]:
+    """Return a copy that cannot be written to; it can be pickled and copied."""
+    return MappingProxyType(dict(values))
+
+
+# results and rotors go to other processes; Python itself does not pickle a read-only mapping
+copyreg.pickle(MappingProxyType, lambda view: (read_only_mapping, (dict(view),)))
 
 
 def ascending(values: Sequence[float], name: str, unit: str = "") -> np.ndarray:
