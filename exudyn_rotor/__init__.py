@@ -29,7 +29,6 @@ from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
-from exudyn_rotor.prestress.prestress import Prestress
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -37,9 +36,10 @@ from exudyn_rotor.reduction.selection import select_modes
 from exudyn_rotor.reduction.spinning import spinning_modes
 from exudyn_rotor.reduction.truncation import keep_modes
 from exudyn_rotor.results import load_result
+from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.point_mass import PointMass
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.strength.field import StressField
 from exudyn_rotor.strength.history import StressHistory, stress_history
 from exudyn_rotor.theory.axis import SpinAxis

@@ -4,7 +4,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 

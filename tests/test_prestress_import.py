@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from models import STEEL, block_beam
 
 from exudyn_rotor import Prestress, SolidRotor, SpinAxis
-from exudyn_rotor.prestress.prestress import centrifugal_load, euler_load
+from exudyn_rotor.prestress.static_solution import centrifugal_load, euler_load
 
 ASIDE = SpinAxis((0, 0, 1), (0.1, 0, 0))
 ASKEW = SpinAxis((0.3, 0.1, 1.0), (0.02, -0.03, 0.1))

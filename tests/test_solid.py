@@ -8,8 +8,8 @@ from models import ALUMINIUM, STEEL, block_beam, disc_on_shaft, two_masses, two_
 
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid import rigid_residuals
-from exudyn_rotor.solid.rotor import SolidRotor
 from exudyn_rotor.solid.surface import area_weights
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 

@@ -8,8 +8,8 @@ import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import STEEL, block_beam, two_masses, two_material_cylinder
 
-from exudyn_rotor.solid.rotor import SolidRotor
 from exudyn_rotor.solid.units import check_model_units
+from exudyn_rotor.solid_rotor import SolidRotor
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,8 @@ from exudyn_rotor.advice.request import PERIOD_ERROR, share
 from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.prestress.prestress import von_mises
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.tensor import von_mises
 
 _ENOUGH = 20  # instants
 _SAME = 1e-6  # relative difference of masses and moments of one rotor

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.prestress.prestress import Prestress
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 

@@ -6,25 +6,21 @@ leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (197
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.theory.nodal import coupled, rotations, translations
-
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.interface import Interface
-    from exudyn_rotor.solid.rotor import SolidRotor
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6
 
 
-def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
+def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis:
     """Return static responses to unit forces and moments at the interfaces, with inertia relief.
 
     Parameters
@@ -64,7 +60,9 @@ def attachment_modes(rotor: SolidRotor, others: np.ndarray) -> ModeBasis:
     return ModeBasis(columns, labels, rotor.nodes)
 
 
-def _held_at(rotor: SolidRotor, interfaces: list[Interface], loads: np.ndarray) -> np.ndarray:
+def _held_at(
+    rotor: FiniteElementRotor, interfaces: list[Interface], loads: np.ndarray
+) -> np.ndarray:
     """Return static responses (3n, k) to loads with the nodes of interfaces held."""
     held = np.concatenate([one.nodes for one in interfaces])
     inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * held[:, None] + np.arange(3)).ravel())

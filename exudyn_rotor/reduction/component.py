@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_rotor.checks import read_only
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.inertia_relief import (
     free_rigid_motions,
@@ -15,11 +15,6 @@ from exudyn_rotor.solvers.inertia_relief import (
     relative_rounding,
 )
 
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.rotor import SolidRotor
-
-# node positions agree if they differ by less than this share of the mesh's size
-_POSITION_TOLERANCE = 1e-9
 # of the median: beside stiffer springs dense eigenvalues of the rest lose digits
 _GRADED = 1e4
 
@@ -83,28 +78,7 @@ class ModeBasis:
                 )
 
 
-def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
-    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it.
-
-    Raises
-    ------
-    ValueError
-        If the numbers of nodes or their positions differ.
-    """
-    if others.shape != nodes.shape:
-        raise ValueError(
-            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
-            f"{label.split()[-1]}, {len(nodes)} in the rotor); compute the {label} with this rotor"
-        )
-    distance = np.linalg.norm(nodes - others, axis=1).max()
-    if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
-        raise ValueError(
-            f"{label} from another mesh: node positions differ by up to {distance:.3g} m; compute "
-            f"the {label} with this rotor"
-        )
-
-
-def free_modes(rotor: SolidRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
+def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
     """Return the lowest flexible eigenmodes of the rotor at rest, without bearings.
 
     Rigid motions that the stiffness leaves free are not among them (``rotor.rigid_motions`` says

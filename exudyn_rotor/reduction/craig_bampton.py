@@ -6,13 +6,14 @@ Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA J
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
 from exudyn_rotor.reduction.component import ModeBasis, check_count, eigenmode_labels
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
@@ -22,10 +23,6 @@ from exudyn_rotor.solvers.inertia_relief import (
     relative_rounding,
 )
 from exudyn_rotor.theory.nodal import rotations, translations
-
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.interface import Interface
-    from exudyn_rotor.solid.rotor import SolidRotor
 
 # static modes, eigenvalues and eigenmodes
 CoupledModes = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -37,7 +34,7 @@ _MOTION_TOLERANCE = 1e-8
 
 
 def craig_bampton_modes(
-    rotor: SolidRotor,
+    rotor: FiniteElementRotor,
     count: int,
     interfaces: Iterable[str] | None = None,
     *,
@@ -117,7 +114,7 @@ def _labels(interface: Interface) -> tuple[str, ...]:
 
 
 def _rigid_coupling(
-    rotor: SolidRotor, count: int, chosen: list[Interface], tolerance: float
+    rotor: FiniteElementRotor, count: int, chosen: list[Interface], tolerance: float
 ) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with rigid interfaces (RBE2)."""
     _refuse_shared_nodes(chosen)
@@ -141,7 +138,7 @@ def _rigid_coupling(
 
 
 def _mean_coupling(
-    rotor: SolidRotor, count: int, chosen: list[Interface], tolerance: float
+    rotor: FiniteElementRotor, count: int, chosen: list[Interface], tolerance: float
 ) -> CoupledModes:
     """Return static modes, eigenvalues and eigenmodes with prescribed mean motions (RBE3)."""
     stiffness, mass = rotor.stiffness, rotor.mass

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_rotor.reduction.component import ModeBasis, check_same_mesh
+from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor.solid.matrices import check_same_mesh
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 
 if TYPE_CHECKING:
     from exudyn.FEM import FEMinterface
 
-    from exudyn_rotor.solid.rotor import SolidRotor
 
-
-def fem_interface_modes(rotor: SolidRotor, fem: FEMinterface) -> ModeBasis:
+def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBasis:
     """Return the modal basis of a ``FEMinterface`` for a rotor made from the same mesh.
 
     Parameters

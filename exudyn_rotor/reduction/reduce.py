@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg
 from exudyn.FEM import FEMinterface
 
-from exudyn_rotor.prestress.stressed import relief_rotations, stressed
+from exudyn_rotor.prestress.carrying import with_chosen_prestress
+from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
-from exudyn_rotor.reduction.component import ModeBasis, check_same_mesh, free_modes
+from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.reduction.reduced_rotor import (
     Centrifugal,
@@ -20,18 +20,17 @@ from exudyn_rotor.reduction.reduced_rotor import (
     ReducedInterface,
     ReducedRotor,
 )
+from exudyn_rotor.solid import matrices
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import with_prestress
-
-if TYPE_CHECKING:
-    from exudyn_rotor.prestress.prestress import Prestress
-    from exudyn_rotor.solid.rotor import SolidRotor
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
 
 
 def reduce_rotor(
-    rotor: SolidRotor,
+    rotor: FiniteElementRotor,
     modes: ModeSource,
     *,
     stress: bool = False,
@@ -40,14 +39,14 @@ def reduce_rotor(
     prestress: Prestress | bool | None = None,
 ) -> ReducedRotor:
     """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
-    rotor = stressed(rotor, prestress)
+    rotor = with_chosen_prestress(rotor, prestress)
     if not 0.0 <= rank_tolerance < 1.0:
         raise ValueError(f"rank_tolerance: needs a share from 0 to below 1, got {rank_tolerance!r}")
     return _reduced(rotor, _component_modes(rotor, modes), stress, keep_shapes, rank_tolerance)
 
 
 def _reduced(
-    rotor: SolidRotor,
+    rotor: FiniteElementRotor,
     component: ModeBasis,
     stress: bool,
     keep_shapes: bool,
@@ -85,7 +84,7 @@ def _reduced(
 
 
 def _with_attachments(
-    rotor: SolidRotor, component: ModeBasis, rank_tolerance: float
+    rotor: FiniteElementRotor, component: ModeBasis, rank_tolerance: float
 ) -> ReducedRotor | None:
     """Return the rotor with attachment modes as well; None if its static response is unknown."""
     try:
@@ -98,9 +97,9 @@ def _with_attachments(
     return _reduced(rotor, both, False, False, rank_tolerance, attach=False)
 
 
-def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
+def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
     if isinstance(modes, ModeBasis):
-        check_same_mesh(rotor.nodes, modes.nodes)
+        matrices.check_same_mesh(rotor.nodes, modes.nodes)
         return modes
     if isinstance(modes, FEMinterface):
         return fem_interface_modes(rotor, modes)
@@ -117,7 +116,9 @@ def _component_modes(rotor: SolidRotor, modes: ModeSource) -> ModeBasis:
     )
 
 
-def _rigid_motions(rotor: SolidRotor, center: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+def _rigid_motions(
+    rotor: FiniteElementRotor, center: np.ndarray
+) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the rigid motions that the stiffness matrix leaves free, with their names."""
     rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
@@ -154,7 +155,7 @@ def _check_stable(invariants: Invariants, rigid_count: int) -> None:
         )
 
 
-def _stiffened(rotor: SolidRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
+def _stiffened(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndarray) -> Invariants:
     """Add what the carried prestress gives to the invariants of the basis."""
     carried = rotor.carried_prestress
     if carried is None:
@@ -164,7 +165,7 @@ def _stiffened(rotor: SolidRotor, invariants: Invariants, basis: np.ndarray) -> 
     return with_prestress(invariants, K2, B, relief_rotations(rotor))
 
 
-def _centrifugal(rotor: SolidRotor) -> Centrifugal | None:
+def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:
     carried = rotor.carried_prestress
     if carried is None or carried.displacement is None:
         return None
@@ -173,7 +174,7 @@ def _centrifugal(rotor: SolidRotor) -> Centrifugal | None:
     )
 
 
-def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
+def _interfaces(rotor: FiniteElementRotor, basis: np.ndarray) -> dict[str, ReducedInterface]:
     return {
         name: ReducedInterface(
             reference=interface.reference,
@@ -186,7 +187,7 @@ def _interfaces(rotor: SolidRotor, basis: np.ndarray) -> dict[str, ReducedInterf
 
 
 def _shapes(
-    rotor: SolidRotor, component: ModeBasis, basis: OrthonormalBasis, stress: bool
+    rotor: FiniteElementRotor, component: ModeBasis, basis: OrthonormalBasis, stress: bool
 ) -> ModeShapes:
     columns = None
     if component.stress is not None:

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.reduction.component import ModeBasis, check_count, free_modes
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
-
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.rotor import SolidRotor
 
 _ACROSS = 1e-2  # share of its energy across the axis from which a mode feels Coriolis forces
 
 
 def spinning_modes(
-    rotor: SolidRotor, count: int, speeds: Sequence[float], *, tolerance: float = 1e-10
+    rotor: FiniteElementRotor, count: int, speeds: Sequence[float], *, tolerance: float = 1e-10
 ) -> ModeBasis:
     """Return the lowest eigenmodes at rest and those at spin speeds, as one basis.
 
@@ -79,7 +76,7 @@ def spinning_modes(
 
 
 def _modes_at(
-    rotor: SolidRotor, count: int, speed: float, tolerance: float
+    rotor: FiniteElementRotor, count: int, speed: float, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest modes at a speed, and the static responses to their Coriolis forces.
 

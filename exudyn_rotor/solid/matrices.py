@@ -13,6 +13,8 @@ from exudyn_rotor.checks import read_only
 # Relative to the largest entry: well above the rounding of any assembly, far below a wrong matrix.
 SYMMETRY_TOLERANCE = 1e-8
 BLOCK_TOLERANCE = 1e-8
+# node positions agree if they differ by less than this share of the mesh's size
+_POSITION_TOLERANCE = 1e-9
 
 
 def as_nodes(nodes: Any) -> np.ndarray:
@@ -70,6 +72,27 @@ def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
             f"{label}: {bad} entries are not finite (NaN or infinity); check the export"
         )
     return frozen(_symmetrised(label, converted))
+
+
+def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
+    """Refuse what belongs to other nodes (n, 3) than those of the rotor; `label` names it.
+
+    Raises
+    ------
+    ValueError
+        If the numbers of nodes or their positions differ.
+    """
+    if others.shape != nodes.shape:
+        raise ValueError(
+            f"{label} from another mesh: the rotor has other nodes ({len(others)} nodes in the "
+            f"{label.split()[-1]}, {len(nodes)} in the rotor); compute the {label} with this rotor"
+        )
+    distance = np.linalg.norm(nodes - others, axis=1).max()
+    if distance > _POSITION_TOLERANCE * np.ptp(nodes, axis=0).max():
+        raise ValueError(
+            f"{label} from another mesh: node positions differ by up to {distance:.3g} m; compute "
+            f"the {label} with this rotor"
+        )
 
 
 def frozen(matrix: sp.csr_array) -> sp.csr_array:

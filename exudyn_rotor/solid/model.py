@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.elements import NgsolveElements
+from exudyn_rotor.solid.elements import NgsolveElements
 
 StressRecovery = Callable[[np.ndarray], np.ndarray]
 NodeSet = tuple[Sequence[int], Sequence[float] | None]
@@ -30,7 +29,7 @@ class FiniteElementModel:
     triangles : array_like of int, shape (t, 3) or (t, 6)
         Surface for drawing.
     stress_recovery : callable or None
-        See :class:`exudyn_rotor.solid.SolidRotor`.
+        See :class:`exudyn_rotor.SolidRotor`.
     elements : NgsolveElements or None
         What matrices of a static stress are assembled on.
     """

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.interface import Interface
-    from exudyn_rotor.solid.point_mass import PointMass
-    from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 
 
-def summary(rotor: SolidRotor) -> str:
+def summary(rotor: FiniteElementRotor) -> str:
     """Return size, mass, supports, interfaces and point masses of `rotor` as lines of text."""
     axis = rotor.axis
     support = "grounded" if rotor.grounded else "not supported"
@@ -28,7 +25,7 @@ def summary(rotor: SolidRotor) -> str:
     return "\n".join(lines)
 
 
-def _interface_line(rotor: SolidRotor, interface: Interface) -> str:
+def _interface_line(rotor: FiniteElementRotor, interface: Interface) -> str:
     offset = np.linalg.norm(rotor.axis.radial(interface.center))
     left = np.linalg.norm(rotor.axis.radial(interface.reference))
     rounding = 1e-12 * np.abs(interface.positions).max()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 import scipy.linalg as la
@@ -12,13 +12,23 @@ import scipy.sparse as sp
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.theory.nodal import rotations, translations
 
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.rotor import SolidRotor
-
 # Largest |K r| of a free motion r, as a share of ‖K‖∞ ‖r‖∞. Full precision leaves 1e-16, rounding
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
 # k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
+
+
+class ElasticBody(Protocol):
+    """What inertia relief needs of a rotor: positions, matrices, number of free rigid motions."""
+
+    @property
+    def nodes(self) -> np.ndarray: ...
+    @property
+    def mass(self) -> sp.csr_array: ...
+    @property
+    def stiffness(self) -> sp.csr_array: ...
+    @property
+    def rigid_motions(self) -> int: ...
 
 
 def free_rigid_motions(
@@ -136,7 +146,7 @@ def _pins(rigid: np.ndarray) -> np.ndarray:
 _known: dict[int, tuple[weakref.ref[sp.csr_array], int, InertiaRelief]] = {}
 
 
-def inertia_relief(rotor: SolidRotor) -> InertiaRelief:
+def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
     """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
 
     Raises

@@ -14,7 +14,7 @@ Levels
 ``'full'``
     The geometric stiffness of the static centrifugal stress, which stiffens flexible modes, too
     (blades, discs), and contains ``'tilt'``: a stress in equilibrium does the work of its load.
-    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.prestress`).
+    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.static_solution`).
 
 Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
 φ about the centre of mass and a flexible rest ψ; composing them gives

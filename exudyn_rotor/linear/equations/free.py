@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.reduction.basis import RIGID, rigid_columns
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 
 # share of the largest rigid-body stiffness, per unit mass, that counts as none
 _HELD = 1e-10

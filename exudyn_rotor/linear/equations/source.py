@@ -14,7 +14,7 @@ from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.equations.scene import LinearScene

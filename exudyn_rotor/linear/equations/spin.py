@@ -27,7 +27,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor.linear.equations.supports import Support, axes_of
 from exudyn_rotor.reduction.basis import RIGID, rigid_columns
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 

@@ -24,7 +24,7 @@ from exudyn_rotor.linear.response.places import Source
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, storable
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 FRAMES = ("inertial", "rotating")

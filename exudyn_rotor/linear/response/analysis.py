@@ -30,7 +30,7 @@ from exudyn_rotor.linear.response.places import At, Place, Source, places
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 Target = ReducedRotor | SolidRotor | exudyn.MainSystem

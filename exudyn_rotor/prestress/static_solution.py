@@ -18,21 +18,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.checks import read_only
 from exudyn_rotor.solid import matrices
+from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solid.tensor import von_mises
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief, inertia_relief
-from exudyn_rotor.theory.nodal import skew
-
-if TYPE_CHECKING:
-    from exudyn_rotor.solid.rotor import SolidRotor
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_rigid_motions, inertia_relief
+from exudyn_rotor.theory.nodal import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
 _OUT_OF_BALANCE = 0.3
@@ -40,114 +37,20 @@ _OUT_OF_BALANCE = 0.3
 _HUB_NODES = 100
 
 
-@dataclass(frozen=True, eq=False)
-class Prestress:
-    """Stiffness of a rotor from its static stress; made by :meth:`SolidRotor.prestress`.
-
-    Attributes
-    ----------
-    matrix : scipy.sparse.csr_array, shape (3n, 3n)
-        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
-        hub's forces and the initial-displacement stiffness if these were asked for [N s²/m].
-    nodes : ndarray, shape (n, 3)
-        Positions of the mesh it belongs to [m].
-    euler : scipy.sparse.csr_array or None
-        K_G per ω̇, of the stress by the Euler load ``−M ẽx`` [N s²/m].
-    displacement : ndarray or None, shape (3n,)
-        Static centrifugal displacement per ω², mesh axes [m s²].
-    stress : ndarray or None, shape (n, 6)
-        Its stress at the nodes per ω², xx, yy, zz, yz, xz, xy in mesh axes [Pa s²].
-    constant : scipy.sparse.csr_array or None
-        K_G of a stress that does not depend on the speed [N/m].
-    constant_stress : ndarray or None, shape (n, 6)
-        That stress at the nodes, in equilibrium, components as in `stress` [Pa].
-    initial_displacement : bool
-        Whether `matrix` holds the initial-displacement stiffness.
-    balanced : bool
-        True if inertia forces balance the load on every rigid motion that the rotor's stiffness
-        leaves free; False if held nodes take it up.
-    yield_stress : float or None
-        Yield stress of the material [Pa].
-    load : ndarray or None, shape (3n,)
-        Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
-    hub : ndarray of int or None
-        Nodes that a rigid hub held in the static solution.
-    """
-
-    matrix: sp.csr_array
-    nodes: np.ndarray
-    euler: sp.csr_array | None = None
-    displacement: np.ndarray | None = None
-    stress: np.ndarray | None = None
-    constant: sp.csr_array | None = None
-    initial_displacement: bool = False
-    balanced: bool = True
-    yield_stress: float | None = None
-    constant_stress: np.ndarray | None = None
-    load: np.ndarray | None = None
-    hub: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("nodes", "displacement", "stress", "constant_stress", "load"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, read_only(getattr(self, name)))
-        if self.hub is not None:
-            object.__setattr__(self, "hub", read_only(self.hub, np.int64))
-
-    @classmethod
-    def from_matrix(
-        cls, matrix: Any, nodes: ArrayLike, euler: Any = None, *, balanced: bool = True
-    ) -> Prestress:
-        """Take the geometric stiffness of an imported model.
-
-        Parameters
-        ----------
-        matrix : array_like or sparse, shape (3n, 3n)
-            K_G of the centrifugal load for 1 rad/s, in the order of the rotor's matrices and
-            without the spin softening ``−ẽᵀMẽ`` [N s²/m].
-        nodes : array_like, shape (n, 3)
-            Positions of the mesh, those of the rotor [m].
-        euler : array_like or sparse, shape (3n, 3n), optional
-            The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
-        balanced : bool, optional
-            False if the stress was computed with nodes held fixed, not with inertia relief; the
-            rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
-
-        Raises
-        ------
-        TypeError
-            If an array does not hold numbers.
-        ValueError
-            If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
-        """
-        positions = matrices.as_nodes(nodes)
-        return cls(
-            matrix=matrices.as_matrix("prestress matrix", matrix, len(positions)),
-            nodes=positions,
-            euler=None
-            if euler is None
-            else matrices.as_matrix("Euler prestress matrix", euler, len(positions)),
-            balanced=bool(balanced),
-        )
-
-    def __repr__(self) -> str:
-        parts = [f"{len(self.nodes)} nodes"]
-        parts += [name for name in ("euler", "constant") if getattr(self, name) is not None]
-        parts += ["initial displacement"] if self.initial_displacement else []
-        parts += [] if self.balanced else ["clamped"]
-        return f"Prestress({', '.join(parts)})"
-
-
 def static_prestress(
-    rotor: SolidRotor,
-    clamped: Sequence[str],
-    initial_displacement: bool,
-    euler: bool,
-    stress: ArrayLike | None,
-    yield_stress: float | None,
-    speed: float | None,
+    rotor: FiniteElementRotor,
+    *,
+    clamped: Sequence[str] = (),
+    initial_displacement: bool = False,
+    euler: bool = False,
+    stress: ArrayLike | None = None,
+    yield_stress: float | None = None,
+    speed: float | None = None,
 ) -> Prestress:
     """Return the prestress; parameters as :meth:`exudyn_rotor.SolidRotor.prestress`."""
+    rotor.check_unstressed()
+    if isinstance(clamped, str):
+        clamped = (clamped,)
     if rotor.elements is None:
         raise ValueError(
             "prestress: this rotor has no elements to assemble a geometric stiffness on; make it "
@@ -193,14 +96,31 @@ def static_prestress(
     )
 
 
-def centrifugal_load(rotor: SolidRotor) -> np.ndarray:
+def centrifugal_load(rotor: FiniteElementRotor) -> np.ndarray:
     """Return ``f_c = M x_⊥``, the centrifugal nodal load per ω², shape (3n,)."""
     return rotor.mass @ rotor.axis.radial(rotor.nodes).ravel()
 
 
-def euler_load(rotor: SolidRotor) -> np.ndarray:
+def euler_load(rotor: FiniteElementRotor) -> np.ndarray:
     """Return ``−M ẽx``, the Euler nodal load per ω̇, shape (3n,)."""
     return -rotor.mass @ np.cross(rotor.axis.direction, rotor.nodes - rotor.axis.point).ravel()
+
+
+def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
+    """Return the angular accelerations of inertia relief per ω² and per ω̇, shape (2, 3).
+
+    What balances the load on the free rigid motions is the inertia of such an acceleration; it
+    strains nothing, and its work on second-order displacements is no part of K_G.
+    """
+    carried = rotor.carried_prestress
+    if not carried.balanced:
+        return np.zeros((2, 3))
+    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+    loads = np.stack([centrifugal_load(rotor), euler_load(rotor)])
+    turns = rotations(rotor.nodes, rotor.center_of_mass)
+    inertia = turns.T @ (rotor.mass @ turns)
+    momentum = turns.T @ (rotor.mass @ (free @ (free.T @ loads.T)))
+    return (np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum).T
 
 
 def relief_under_stress(
@@ -229,8 +149,8 @@ class _StaticState:
     `supported` is the rotor with the hub's nodes held, `stiffness` that of the rotor itself.
     """
 
-    rotor: SolidRotor
-    supported: SolidRotor
+    rotor: FiniteElementRotor
+    supported: FiniteElementRotor
     stiffness: sp.csr_array
     relief: InertiaRelief
 
@@ -263,12 +183,12 @@ class _StaticState:
         return displacement, matrix + _hub_stiffness(self.rotor, self.hub, forces)
 
 
-def _support(rotor: SolidRotor, clamped: Sequence[str]) -> _StaticState:
+def _support(rotor: FiniteElementRotor, clamped: Sequence[str]) -> _StaticState:
     supported = rotor.clamped(clamped) if clamped else rotor
     return _StaticState(rotor, supported, rotor.stiffness, inertia_relief(supported))
 
 
-def _hub_stiffness(rotor: SolidRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:
+def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarray) -> sp.csr_array:
     """Return ``K_hub`` (3n, 3n) of the nodal forces (3n,) by which a rigid hub holds its nodes."""
     if hub.size == 0:
         return sp.csr_array((rotor.nodes.size, rotor.nodes.size))
@@ -315,7 +235,9 @@ def _check_yield(yield_stress: float | None, speed: float | None) -> None:
         raise ValueError("speed: only serves the check of yielding; give yield_stress=, too")
 
 
-def _in_equilibrium(rotor: SolidRotor, stress: np.ndarray, springback: np.ndarray) -> np.ndarray:
+def _in_equilibrium(
+    rotor: FiniteElementRotor, stress: np.ndarray, springback: np.ndarray
+) -> np.ndarray:
     """Return a stress (n, 6) less the part that no load balances; warn if that is much of it."""
     part = rotor.stress_recovery(springback[:, None])[:, :, 0]
     share = np.linalg.norm(part) / max(np.linalg.norm(stress), 1e-300)

@@ -1,0 +1,38 @@
+"""Rotors that carry a prestress."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import scipy.sparse as sp
+
+from exudyn_rotor.prestress.static_solution import relief_under_stress, static_prestress
+from exudyn_rotor.prestress.static_state import check_static_state
+from exudyn_rotor.solid import matrices
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.rotor import Rotor
+from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+
+
+def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
+    """Return the rotor carrying a prestress; see :meth:`exudyn_rotor.SolidRotor.with_prestress`."""
+    if not isinstance(prestress, Prestress):
+        raise TypeError(f"prestress: expected a Prestress, got {type(prestress).__name__}")
+    rotor.check_unstressed()
+    matrices.check_same_mesh(rotor.nodes, prestress.nodes, "prestress")
+    check_static_state(rotor, prestress)
+    stiffness = rotor.stiffness
+    if prestress.constant is not None:
+        stiffness = matrices.frozen(sp.csr_array(stiffness + prestress.constant))
+        free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+        relief_under_stress(stiffness, rotor.mass, free)
+    return replace(rotor, stiffness=stiffness, carried_prestress=replace(prestress, constant=None))
+
+
+def with_chosen_prestress(rotor: Rotor, prestress: Prestress | bool | None) -> Rotor:
+    """Return the rotor with what ``reduce(prestress=…)`` asks for."""
+    if prestress is None:
+        return rotor
+    if prestress is False:
+        return replace(rotor, carried_prestress=None)
+    return with_prestress(rotor, static_prestress(rotor) if prestress is True else prestress)

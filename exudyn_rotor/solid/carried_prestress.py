@@ -1,0 +1,111 @@
+"""Static stress of a spinning rotor as stiffness matrices, which the rotor carries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.checks import read_only
+from exudyn_rotor.solid import matrices
+
+
+@dataclass(frozen=True, eq=False)
+class Prestress:
+    """Stiffness of a rotor from its static stress; made by :meth:`SolidRotor.prestress`.
+
+    Attributes
+    ----------
+    matrix : scipy.sparse.csr_array, shape (3n, 3n)
+        Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
+        hub's forces and the initial-displacement stiffness if these were asked for [N s²/m].
+    nodes : ndarray, shape (n, 3)
+        Positions of the mesh it belongs to [m].
+    euler : scipy.sparse.csr_array or None
+        K_G per ω̇, of the stress by the Euler load ``−M ẽx`` [N s²/m].
+    displacement : ndarray or None, shape (3n,)
+        Static centrifugal displacement per ω², mesh axes [m s²].
+    stress : ndarray or None, shape (n, 6)
+        Its stress at the nodes per ω², xx, yy, zz, yz, xz, xy in mesh axes [Pa s²].
+    constant : scipy.sparse.csr_array or None
+        K_G of a stress that does not depend on the speed [N/m].
+    constant_stress : ndarray or None, shape (n, 6)
+        That stress at the nodes, in equilibrium, components as in `stress` [Pa].
+    initial_displacement : bool
+        Whether `matrix` holds the initial-displacement stiffness.
+    balanced : bool
+        True if inertia forces balance the load on every rigid motion that the rotor's stiffness
+        leaves free; False if held nodes take it up.
+    yield_stress : float or None
+        Yield stress of the material [Pa].
+    load : ndarray or None, shape (3n,)
+        Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
+    hub : ndarray of int or None
+        Nodes that a rigid hub held in the static solution.
+    """
+
+    matrix: sp.csr_array
+    nodes: np.ndarray
+    euler: sp.csr_array | None = None
+    displacement: np.ndarray | None = None
+    stress: np.ndarray | None = None
+    constant: sp.csr_array | None = None
+    initial_displacement: bool = False
+    balanced: bool = True
+    yield_stress: float | None = None
+    constant_stress: np.ndarray | None = None
+    load: np.ndarray | None = None
+    hub: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("nodes", "displacement", "stress", "constant_stress", "load"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, read_only(getattr(self, name)))
+        if self.hub is not None:
+            object.__setattr__(self, "hub", read_only(self.hub, np.int64))
+
+    @classmethod
+    def from_matrix(
+        cls, matrix: Any, nodes: ArrayLike, euler: Any = None, *, balanced: bool = True
+    ) -> Prestress:
+        """Take the geometric stiffness of an imported model.
+
+        Parameters
+        ----------
+        matrix : array_like or sparse, shape (3n, 3n)
+            K_G of the centrifugal load for 1 rad/s, in the order of the rotor's matrices and
+            without the spin softening ``−ẽᵀMẽ`` [N s²/m].
+        nodes : array_like, shape (n, 3)
+            Positions of the mesh, those of the rotor [m].
+        euler : array_like or sparse, shape (3n, 3n), optional
+            The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
+        balanced : bool, optional
+            False if the stress was computed with nodes held fixed, not with inertia relief; the
+            rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
+
+        Raises
+        ------
+        TypeError
+            If an array does not hold numbers.
+        ValueError
+            If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
+        """
+        positions = matrices.as_nodes(nodes)
+        return cls(
+            matrix=matrices.as_matrix("prestress matrix", matrix, len(positions)),
+            nodes=positions,
+            euler=None
+            if euler is None
+            else matrices.as_matrix("Euler prestress matrix", euler, len(positions)),
+            balanced=bool(balanced),
+        )
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.nodes)} nodes"]
+        parts += [name for name in ("euler", "constant") if getattr(self, name) is not None]
+        parts += ["initial displacement"] if self.initial_displacement else []
+        parts += [] if self.balanced else ["clamped"]
+        return f"Prestress({', '.join(parts)})"

@@ -1,0 +1,309 @@
+"""The solid rotor as users see it: sources, static stress, reduction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.prestress.carrying import with_prestress
+from exudyn_rotor.prestress.static_solution import static_prestress
+from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid import fem_interface, ngsolve_model
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
+from exudyn_rotor.solid.summary import summary
+
+if TYPE_CHECKING:
+    import ngsolve
+    from exudyn.FEM import FEMinterface
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidRotor(FiniteElementRotor):
+    """Solid finite-element rotor; immutable. Make one with a ``from_…`` constructor.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Reference positions in mesh coordinates [m].
+    mass, stiffness : scipy.sparse.csr_array, shape (3n, 3n)
+        Assembled FE matrices, ordered x0 y0 z0 x1 … [kg], [N/m].
+    axis : SpinAxis
+        Spin axis in mesh coordinates.
+    damping : scipy.sparse.csr_array or None
+        Damping of the rotor's own material, acting in the rotor frame [N s/m].
+    interfaces : mapping of str to Interface
+    triangles : ndarray of int, shape (t, 3) or (t, 6)
+        Surface for drawing, 6-node triangles where the mesh is quadratic: corners, then the mid
+        nodes of the edges 0-1, 1-2, 2-0.
+    stress_recovery : callable or None
+        Maps displacement columns (3n, k) to nodal stress (n, 6, k) [Pa], components xx, yy, zz,
+        yz, xz, xy in mesh axes.
+    point_masses : tuple of PointMass
+        What :meth:`add_point_mass` placed, with the snapping distances.
+    rigid_motions : int
+        How many of the six rigid motions the stiffness leaves free; 6 for a free rotor. A
+        rotation that displaces no node (all nodes on its axis) counts as free.
+    elements : NgsolveElements or None
+        What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
+    carried_prestress : Prestress or None
+        Set by :meth:`with_prestress`.
+    """
+
+    @classmethod
+    def from_ngsolve(
+        cls,
+        mesh: ngsolve.Mesh,
+        materials: Mapping[str, Any],
+        axis: AxisLike,
+        *,
+        order: int = 2,
+        interfaces: Sequence[str] | None = None,
+        check_units: bool = True,
+    ) -> SolidRotor:
+        """Assemble a rotor from an NGSolve mesh of tetrahedra.
+
+        Parameters
+        ----------
+        mesh : ngsolve.Mesh
+            Gets mid nodes (``SecondOrder``) if `order` is 2 and it has none yet. Node numbers are
+            those of the Netgen mesh and of Exudyn's FEMinterface, counted from zero.
+        materials : mapping
+            Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
+            such dict by itself for a mesh with one material.
+        axis : SpinAxis, str or array_like
+            Read by :meth:`SpinAxis.of`: 'x', 'y', 'z', a direction, or (direction, point) [m].
+        order : int, optional
+            Order of the displacements, 2 (10-node tetrahedra) or 1.
+        interfaces : sequence of str, optional
+            Names of the faces that become interfaces; all faces with a name by default. The
+            weights are area shares, see :func:`exudyn_rotor.solid.surface.area_weights`.
+        check_units : bool, optional
+            Refuse materials and sizes that cannot be in SI units.
+
+        Raises
+        ------
+        TypeError
+            If `mesh` is not an ngsolve.Mesh, or `materials` not a dictionary.
+        ValueError
+            If the mesh is no tetrahedral solid, a material or face is missing or impossible, or
+            the units cannot be SI.
+        """
+        model = ngsolve_model.assemble_model(
+            mesh, materials, order=order, interfaces=interfaces, check_units=check_units
+        )
+        return cls.of_model(model, axis, check_units)
+
+    @classmethod
+    def from_fem_interface(
+        cls,
+        fem: FEMinterface,
+        axis: AxisLike,
+        *,
+        check_units: bool = True,
+        grounded: bool | None = None,
+    ) -> SolidRotor:
+        """Take a rotor from Exudyn's FEMinterface; its node sets with a name become interfaces.
+
+        Parameters
+        ----------
+        fem : exudyn.FEM.FEMinterface
+            With 'Position' nodes, mass and stiffness matrix; surface and node sets are optional.
+        axis : SpinAxis, str or array_like
+            Read by :meth:`SpinAxis.of`.
+        check_units : bool, optional
+            Refuse sizes and masses that cannot be in SI units.
+        grounded : bool, optional
+            Whether springs to the ground are inside the stiffness matrix; needed only if the
+            matrix itself does not tell.
+
+        Raises
+        ------
+        TypeError
+            If `fem` is not a FEMinterface.
+        ValueError
+            If nodes carry rotations, something is missing, or a check of the matrices fails.
+        """
+        return cls.of_model(fem_interface.import_model(fem), axis, check_units, grounded)
+
+    @classmethod
+    def from_matrices(
+        cls,
+        mass: Any,
+        stiffness: Any,
+        nodes: ArrayLike,
+        axis: AxisLike,
+        damping: Any = None,
+        *,
+        interfaces: Mapping[str, Any] | None = None,
+        triangles: ArrayLike = (),
+        check_units: bool = True,
+        grounded: bool | None = None,
+    ) -> SolidRotor:
+        """Make a rotor from plain arrays.
+
+        Parameters
+        ----------
+        mass, stiffness, damping : array_like or scipy.sparse, shape (3n, 3n)
+            Symmetric, ordered x0 y0 z0 x1 … [kg], [N/m], [N s/m]. The damping is optional.
+        nodes : array_like, shape (n, 3)
+            Reference positions [m].
+        axis : SpinAxis, str or array_like
+            Read by :meth:`SpinAxis.of`.
+        interfaces : mapping, optional
+            Name → node numbers, or name → (node numbers, weights).
+        triangles : array_like of int, shape (t, 3) or (t, 6), optional
+            Surface for drawing.
+        check_units : bool, optional
+            Refuse sizes and masses that cannot be in SI units.
+        grounded : bool, optional
+            Whether springs to the ground are inside the stiffness matrix; needed only if the
+            matrix itself does not tell.
+
+        Raises
+        ------
+        TypeError
+            If an array does not hold numbers, or node numbers are not integers.
+        ValueError
+            If a check fails: shape, finite entries, symmetry, I₃ blocks and positive mass,
+            rigid motions, node numbers, units.
+        """
+        node_sets = {name: _node_set(entry) for name, entry in (interfaces or {}).items()}
+        model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
+        return cls.of_model(model, axis, check_units, grounded)
+
+    def prestress(
+        self,
+        *,
+        clamped: Sequence[str] = (),
+        initial_displacement: bool = False,
+        euler: bool = False,
+        stress: ArrayLike | None = None,
+        yield_stress: float | None = None,
+        speed: float | None = None,
+    ) -> Prestress:
+        """Return the static prestress by the rotation, for ``stiffening='full'``.
+
+        Solves ``K u⁰ = M x_⊥`` for ω = 1 rad/s, with inertia relief on the motions that the
+        stiffness leaves free, and assembles the geometric stiffness of its stress.
+
+        Parameters
+        ----------
+        clamped : sequence of str, optional
+            Interfaces whose nodes a massless rigid hub holds fixed for the static solution, e.g. a
+            bore on a rigid shaft. The hub moves with the rotor afterwards; a rotor that is held
+            in its frame needs :meth:`clamped`.
+        initial_displacement : bool, optional
+            Also the stiffness from the change of shape by u⁰: the rest of what is linear in u⁰ in
+            St. Venant–Kirchhoff elasticity. Of the order of the static strain.
+        euler : bool, optional
+            Also the stiffness from the stress of an angular acceleration. Without it the
+            rigid-body part of that is used, which is all of it for a rotor that nothing holds.
+        stress : array_like, shape (n, 6), optional
+            Stress at rest, from an interference fit or temperature: xx, yy, zz, yz, xz, xy at the
+            nodes in mesh axes [Pa]. It must be in equilibrium without load; what averaging at
+            nodes lost of that is put right by one elastic solution. Its stiffness takes part in
+            the static solution for the rotation.
+        yield_stress : float, optional
+            Yield stress [Pa].
+        speed : float, optional
+            Highest speed [rad/s]; warns if the von Mises stress is above `yield_stress` there.
+
+        Raises
+        ------
+        TypeError
+            If `stress`, `yield_stress` or `speed` hold no numbers.
+        ValueError
+            If the rotor has no elements (not made by :meth:`from_ngsolve`) or carries a prestress
+            already, an interface is unknown, or `stress` belongs to another mesh or makes the
+            rotor buckle.
+
+        Warns
+        -----
+        UserWarning
+            When the material yields, or `stress` is far from equilibrium.
+        """
+        return static_prestress(
+            self,
+            clamped=clamped,
+            initial_displacement=initial_displacement,
+            euler=euler,
+            stress=stress,
+            yield_stress=yield_stress,
+            speed=speed,
+        )
+
+    def with_prestress(self, prestress: Prestress) -> SolidRotor:
+        """Return the rotor carrying a prestress, for full models and as default of `reduce`.
+
+        A constant stress becomes part of the stiffness. Point masses and clamped nodes change the
+        static state: add them before.
+
+        Raises
+        ------
+        TypeError
+            If `prestress` is of another kind.
+        ValueError
+            If the rotor carries one already, or it belongs to another mesh or another static
+            state: other axis, mass, elasticity, springs or held nodes; or if its stress at rest
+            makes the rotor buckle.
+        """
+        return with_prestress(self, prestress)
+
+    def reduce(
+        self,
+        modes: ModeSource,
+        *,
+        stress: bool = False,
+        keep_shapes: bool = True,
+        rank_tolerance: float = 1e-7,
+        prestress: Prestress | bool | None = None,
+    ) -> ReducedRotor:
+        """Reduce the rotor to component modes and its rigid motions.
+
+        Parameters
+        ----------
+        modes : int, ModeBasis, FEMinterface or ndarray, shape (3n, r)
+            A number of free eigenmodes (0 for a rigid rotor), a basis made by a function of
+            :mod:`exudyn_rotor.reduction`, a FEMinterface whose modes have been computed, or
+            displacement columns in mesh axes [m].
+        stress : bool, optional
+            Also recover stress modes, for stress sensors and contour pictures.
+        keep_shapes : bool, optional
+            Keep the mode shapes at all nodes: needed for sensors at mesh nodes and for drawing.
+        rank_tolerance : float, optional
+            A column of which less than this share is new is dropped, and named in the result.
+        prestress : Prestress or bool, optional
+            Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
+            None for that which the rotor carries, if any.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the modes are of another kind or of another mesh, or nothing is left of them.
+        """
+        return reduce_rotor(
+            self,
+            modes,
+            stress=stress,
+            keep_shapes=keep_shapes,
+            rank_tolerance=rank_tolerance,
+            prestress=prestress,
+        )
+
+    def summary(self) -> str:
+        """Return size, mass, supports, interfaces and point masses as lines of text."""
+        return summary(self)
+
+
+def _node_set(entry: Any) -> NodeSet:
+    """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
+    if isinstance(entry, tuple) and len(entry) == 2 and np.ndim(entry[0]) == 1:
+        return entry
+    return entry, None
