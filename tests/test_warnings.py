@@ -76,16 +76,16 @@ def stress_at_speed_without_prestress(beam):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
-    "solid/prestress.py:_in_equilibrium": (
+    "prestress/static_solution.py:_in_equilibrium": (
         stress_out_of_balance, UserWarning, "not in equilibrium",
     ),
-    "solid/prestress.py:_warn_of_yield": (
+    "prestress/static_solution.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress",
     ),
     "linear/equations/system.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
     ),
-    "body/sensors.py:_warn_of_static_stress": (
+    "multibody/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone",
     ),
     "strength/field.py:warn_without_static": (
