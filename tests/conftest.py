@@ -1,6 +1,22 @@
-"""One thread per numerical library: small matrices, and results that do not depend on the cores."""
+"""One thread per numerical library, small matrices; the tests share the processor's cores."""
 
 import os
 
+import pytest
+
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
+
+_MOST_WORKERS = 4  # each takes up to 1 GB
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Spread the whole suite over the cores where pytest-xdist is there and ``-n`` is not given."""
+    options, workers = config.option, min(_MOST_WORKERS, os.cpu_count() or 1)
+    chosen = getattr(options, "numprocesses", 0) is not None or options.usepdb
+    single = any(".py" in name for name in config.args)  # quicker without the start of workers
+    if hasattr(config, "workerinput") or chosen or single or workers == 1:
+        return
+    options.numprocesses = workers
+    options.dist = "worksteal"  # neighbours stay together and share the models of their file
