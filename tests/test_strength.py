@@ -21,7 +21,7 @@ from exudyn_rotor import (
     StressHistory,
     add_rotor,
     load_result,
-    plots,
+    plotting,
     select_modes,
     stress_history,
 )
@@ -280,7 +280,7 @@ def drawn(size):
     """Return the axes, the pixels of a body drawn in violet, and the renderer."""
     nodes, triangles = box(size)
     with matplotlib.rc_context(matplotlib.rcParamsDefault):  # Exudyn's plots set another font size
-        made = plots.draw_surface(nodes, triangles, np.zeros(8), "stress")
+        made = plotting.draw_surface(nodes, triangles, np.zeros(8), "stress")
         canvas = FigureCanvasAgg(made)
         canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba()).astype(int)
@@ -338,6 +338,6 @@ def test_labels_of_a_compact_body_stand_apart_and_inside(size):
 def test_a_surface_that_cannot_be_drawn_is_refused():
     nodes, triangles = box((1.0, 1.0, 1.0))
     with pytest.raises(ValueError, match=r"values: .* the 8 nodes, got the shape \(3,\)"):
-        plots.draw_surface(nodes, triangles, np.ones(3), "stress")
+        plotting.draw_surface(nodes, triangles, np.ones(3), "stress")
     with pytest.raises(ValueError, match="triangles: there are none"):
-        plots.draw_surface(nodes, triangles[:0], np.ones(8), "stress")
+        plotting.draw_surface(nodes, triangles[:0], np.ones(8), "stress")
