@@ -103,12 +103,22 @@ def count(value: int, name: str, *, least: int = 0, most: int | None = None) -> 
     """Return a whole number within limits, both included."""
     upper = "" if most is None else f" and ≤ {most}"
     needed = f"a whole number ≥ {least}{upper}"
+    value = _whole(value, name, needed)
+    if value < least or (most is not None and value > most):
+        raise ValueError(f"{name}: needs {needed}, got {shown(value)}")
+    return value
+
+
+def whole_number(value: int, name: str) -> int:
+    """Return a whole number of either sign."""
+    return _whole(value, name, "a whole number")
+
+
+def _whole(value: object, name: str, needed: str) -> int:
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
         raise TypeError(f"{name}: needs {needed}, got {shown(value)}")
-    if value < least or (most is not None and value > most):
-        raise ValueError(f"{name}: needs {needed}, got {shown(value)}")
     return int(value)
 
 
@@ -308,27 +318,39 @@ def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
 def instance(value: object, name: str, kinds: type[Kind] | tuple[type, ...], how: str = "") -> Kind:
     """Return an object of one of the `kinds`; `how` says how to make one."""
     if not isinstance(value, kinds):
-        several = kinds if isinstance(kinds, tuple) else (kinds,)
-        needed = " or ".join(kind.__name__ for kind in several)
-        raise TypeError(f"{name}: needs {needed}, got {shown(value)}" + (f"; {how}" if how else ""))
+        raise TypeError(
+            f"{name}: needs {_named(kinds)}, got {shown(value)}" + (f"; {how}" if how else "")
+        )
     return value
 
 
 def instances(
-    values: Iterable[Kind] | Kind, name: str, kind: type[Kind], how: str = ""
+    values: Iterable[Kind] | Kind, name: str, kinds: type[Kind] | tuple[type, ...], how: str = ""
 ) -> tuple[Kind, ...]:
-    """Return objects of one kind, given as one or as a sequence."""
-    if isinstance(values, kind):
+    """Return objects of some kinds, given as one or as a sequence."""
+    if isinstance(values, kinds):
         return (values,)
-    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
-        raise TypeError(
-            f"{name}: needs a {kind.__name__} or a sequence of them, got {shown(values)}"
-            + (f"; {how}" if how else "")
-        )
-    listed = tuple(values)
+    needed = f"a {_named(kinds)} or a sequence of them"
+    listed = items(values, name, f"{needed} ({how})" if how else needed)
     return tuple(
-        instance(value, f"{name}[{index}]", kind, how) for index, value in enumerate(listed)
+        instance(value, f"{name}[{index}]", kinds, how) for index, value in enumerate(listed)
     )
+
+
+def items(values: Iterable[Any], name: str, needed: str) -> tuple:
+    """Return what a sequence holds; text and mappings are none. `needed` is for the message."""
+    if not isinstance(values, str | bytes | Mapping) and isinstance(values, Iterable):
+        try:
+            return tuple(values)
+        # an array without dimensions, an iterator that breaks off
+        except Exception as error:
+            raise TypeError(f"{name}: needs {needed}, got {shown(values)}") from error
+    raise TypeError(f"{name}: needs {needed}, got {shown(values)}")
+
+
+def _named(kinds: type | tuple[type, ...]) -> str:
+    several = kinds if isinstance(kinds, tuple) else (kinds,)
+    return " or ".join(kind.__name__ for kind in several)
 
 
 def mapping(value: Mapping[str, Kind], name: str, what: str = "") -> Mapping[str, Kind]:

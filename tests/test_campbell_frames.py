@@ -298,7 +298,7 @@ def test_result_is_stored_and_shown(tmp_path):
         ax = result.plot(frame=frame)
         assert "[Hz]" in ax.get_ylabel()
         assert len(ax.lines) >= 3
-    with pytest.raises(ValueError, match="frame 'rotor' is unknown"):
+    with pytest.raises(ValueError, match="frame: 'rotor' is unknown"):
         result.plot(frame="rotor")
 
 
@@ -314,15 +314,15 @@ def test_processes_give_the_same_result():
 
 def test_wrong_input_is_refused():
     rotor = rings(SHAFT)
-    with pytest.raises(ValueError, match="must ascend"):
+    with pytest.raises(ValueError, match=r"speeds: .* ascending order"):
         campbell(rotor, [1.0, 0.0])
     with pytest.raises(ValueError, match="no such interface; the rotor has: all"):
         campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
-    with pytest.raises(TypeError, match="expected Support objects, got str"):
+    with pytest.raises(TypeError, match=r"supports\[0\]: needs Support, got 'all'"):
         campbell(rotor, 0.0, supports=["all"])
-    with pytest.raises(TypeError, match="needs a ReducedRotor, a SolidRotor, or"):
+    with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, or"):
         campbell(np.eye(3), 0.0)
-    with pytest.raises(TypeError, match="body=: is only for"):
+    with pytest.raises(TypeError, match="body: is only for"):
         campbell(rotor, 0.0, body=rotor)
     with pytest.raises(ValueError, match="99 is not between 1 and the 30"):
         campbell(rotor, 0.0, modes=99)

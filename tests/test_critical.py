@@ -158,7 +158,7 @@ def test_wrong_input_is_refused(masses):
             critical_speeds(masses, order=wrong)
         with pytest.raises(ValueError, match="max_speed: needs"):
             critical_speeds(masses, max_speed=wrong)
-    with pytest.raises(ValueError, match="numbers from 0 to 4"):
+    with pytest.raises(ValueError, match="nodal_diameters: needs whole numbers ≥ 0 and ≤ 4, got 5"):
         critical_speeds(masses, nodal_diameters=[5])
     with pytest.raises(ValueError, match="no such interface"):
         critical_speeds(masses, supports=[Support("left", 1.0)])

@@ -195,9 +195,9 @@ def test_harmonics_run_at_their_own_rate(shaken):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda r: r.phasor("top"), "there are mid, node 2"),
-        (lambda r: r.phasor("mid", "x"), "direction 'x'"),
-        (lambda r: r.whirl("mid", 7), "order 7"),
+        (lambda r: r.phasor("top"), "place: 'top' is unknown; use one of 'mid', 'node 2'"),
+        (lambda r: r.phasor("mid", "x"), "direction: 'x' is unknown"),
+        (lambda r: r.whirl("mid", 7), "order: there is no harmonic 7"),
     ],
 )
 def test_unknown_names_are_listed(ellipses, call, message):

@@ -125,7 +125,7 @@ def test_residual_that_is_not_reached_is_an_error(beam, monkeypatch):
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"modes": 0}, ValueError, "modes: 0 is not between 1 and"),
+        ({"modes": 0}, ValueError, "modes: needs a whole number ≥ 1, got 0"),
         ({"modes": 2.5}, TypeError, "whole number"),
         ({"residual": 0.0}, ValueError, "residual: needs"),
         ({"method": "floquet"}, ValueError, "takes 'auto' only"),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import exudyn
 
+from exudyn_rotor import checks
 from exudyn_rotor.linear.equations.dense import as_reduced
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.spin import spin_of
@@ -15,6 +16,7 @@ from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.stiffening import LEVELS
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.equations.scene import LinearScene
@@ -54,6 +56,7 @@ def linear_source(
         For an unknown interface or level of stiffening, or supports given with a scene.
     """
     supports = checked_supports(supports)
+    checks.choice(stiffening, "stiffening", LEVELS)
     if isinstance(target, LinearRotor):
         if supports or body is not None:
             raise ValueError("a LinearRotor has its supports already; leave supports and body out")
@@ -61,7 +64,10 @@ def linear_source(
     if isinstance(target, exudyn.MainSystem):
         return _scene(target, body, supports)
     if body is not None:
-        raise TypeError("body=: is only for an exudyn.MainSystem, the rotor itself was given")
+        raise TypeError(
+            "body: is only for an exudyn.MainSystem, the rotor itself was given; got "
+            f"{checks.shown(body)}"
+        )
     if isinstance(target, ReducedRotor):
         return LinearRotor.of(target, supports, stiffening)
     if isinstance(target, SolidRotor):
@@ -69,24 +75,14 @@ def linear_source(
             return LinearRotor.of(as_reduced(target), supports, stiffening, spin_of(target))
         return FullRotor.of(target, supports, stiffening).with_spin()
     raise TypeError(
-        "a linear analysis needs a ReducedRotor, a SolidRotor, or an exudyn.MainSystem with "
-        f"body=…, got {type(target).__name__}"
+        "target: needs a ReducedRotor, a SolidRotor, or an exudyn.MainSystem with body=…, got "
+        f"{checks.shown(target)}"
     )
 
 
 def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ...]:
     """Return supports as a tuple; TypeError for anything else."""
-    if isinstance(supports, Support):
-        return (supports,)
-    if isinstance(supports, Mapping) or not isinstance(supports, Iterable):
-        raise TypeError(
-            f"supports: expected Support objects in a list, got {type(supports).__name__}"
-        )
-    found = tuple(supports)
-    for support in found:
-        if not isinstance(support, Support):
-            raise TypeError(f"supports: expected Support objects, got {type(support).__name__}")
-    return found
+    return checks.instances(supports, "supports", Support)
 
 
 def _scene(
@@ -96,8 +92,7 @@ def _scene(
 
     if not isinstance(body, RotorBody):
         raise TypeError(
-            "a scene needs body=…, the RotorBody that add_rotor returned, "
-            f"got {type(body).__name__}"
+            f"body: a scene needs its RotorBody, which add_rotor returned, got {checks.shown(body)}"
         )
     if supports:
         raise ValueError("supports=: are for a rotor; a scene has its own connectors")

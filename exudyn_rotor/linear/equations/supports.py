@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
 FRAMES = ("inertial", "rotor")
+COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
+_SHAPES = ((), (2, 2), (3, 3))
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
@@ -27,9 +30,9 @@ class Support:
     stiffness, damping : float, array_like, (speeds, values), or callable
         A number k stands for k in both directions across the axis; a 2 × 2 matrix acts across the
         axis, a 3 × 3 matrix also along it, both in the axes (n1, n2[, e]) of
-        :attr:`SpinAxis.plane` [N/m], [N s/m]. A pair (speeds (s,), values (s,), (s, 2, 2) or
-        (s, 3, 3)) is interpolated linearly over the spin speed [rad/s]; a callable takes the spin
-        speed.
+        :attr:`SpinAxis.plane` [N/m], [N s/m]. A tuple of two, the speeds (s,) and the values
+        (s,), (s, 2, 2) or (s, 3, 3), is a table: interpolated linearly over the spin speed
+        [rad/s], constant beyond its ends. A callable takes the spin speed. Arrays are copied.
     tilt_stiffness, tilt_damping : same, optional
         Against the mean rotation of the interface about (n1, n2[, e]) [N m/rad], [N m s/rad].
     frame : {'inertial', 'rotor'}
@@ -37,8 +40,12 @@ class Support:
 
     Raises
     ------
+    TypeError
+        If the interface is no name, the frame no word, or a coefficient not of these kinds.
     ValueError
-        For an unknown frame, or coefficients of the wrong shape or not finite.
+        For an unknown frame, coefficients of the wrong shape or not finite, speeds of a table that
+        do not ascend, and ``((a, b), (c, d))``, which may mean a matrix or a table: write a matrix
+        as ``[[a, b], [c, d]]`` and a table as ``([a, b], [c, d])``.
     """
 
     interface: str
@@ -49,11 +56,11 @@ class Support:
     frame: str = "inertial"
 
     def __post_init__(self) -> None:
-        if self.frame not in FRAMES:
-            raise ValueError(f"support frame {self.frame!r} is unknown; use 'inertial' or 'rotor'")
-        for name in ("stiffness", "damping", "tilt_stiffness", "tilt_damping"):
-            if not callable(getattr(self, name)):
-                self._matrix(name, 0.0)
+        checks.label(self.interface, "interface")
+        checks.choice(self.frame, "frame", FRAMES)
+        for name in COEFFICIENTS:
+            value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}")
+            object.__setattr__(self, name, value)
 
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping at a spin speed [rad/s], each (6, 6).
@@ -79,27 +86,62 @@ class Support:
         carried = stiffness + speed * damping @ np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))
         return turned_harmonics(damping), turned_harmonics(carried)
 
+    @property
+    def stiffness_varies(self) -> bool:
+        """True when a stiffness depends on the spin speed."""
+        values = (self.stiffness, self.tilt_stiffness)
+        return any(callable(value) or isinstance(value, tuple) for value in values)
+
     def _matrix(self, name: str, speed: float) -> np.ndarray:
         """Return one coefficient as a 3 × 3 matrix in the axes (n1, n2, e)."""
         value = getattr(self, name)
         if callable(value):
-            value = value(speed)
+            where = f"support at {self.interface!r}: {name} at {speed:g} rad/s"
+            value = _coefficient(value(speed), where)
         elif isinstance(value, tuple):
             value = _interpolate(*value, speed)
-        array = np.asarray(value, dtype=float)
-        full = np.zeros((3, 3))
-        if array.shape == ():
-            full[0, 0] = full[1, 1] = array
-        elif array.shape in ((2, 2), (3, 3)):
-            full[: len(array), : len(array)] = array
-        else:
-            raise ValueError(
-                f"support at {self.interface!r}: {name} needs a number, a 2 × 2 or a 3 × 3 "
-                f"matrix, got shape {array.shape}"
-            )
-        if not np.all(np.isfinite(full)):
-            raise ValueError(f"support at {self.interface!r}: {name} {value!r} is not finite")
-        return full
+        return _in_three_axes(value)
+
+
+def _kept(value: Coefficient, name: str) -> Coefficient:
+    """Return a coefficient as it is kept: a function, a table, a number or a matrix."""
+    if callable(value):
+        return value
+    if not isinstance(value, tuple) or len(value) != 2:
+        return _coefficient(value, name)
+    if all(isinstance(row, tuple) and len(row) == 2 for row in value):
+        raise ValueError(
+            f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
+            "matrix as [[a, b], [c, d]] and a table as ([speed, speed], [value, value])"
+        )
+    speeds = checks.ascending(value[0], f"{name}: the speeds of its table", "rad/s")
+    values = checks.array(value[1], f"{name}: the values of its table")
+    if values.shape[:1] != speeds.shape or values.shape[1:] not in _SHAPES:
+        raise ValueError(
+            f"{name}: the values of its table need {len(speeds)} numbers, 2 × 2 or 3 × 3 matrices, "
+            f"as many as speeds, got shape {values.shape}"
+        )
+    return speeds, values
+
+
+def _coefficient(value: ArrayLike, name: str) -> float | np.ndarray:
+    """Return a number, or a matrix as a read-only array."""
+    array = checks.array(value, name)
+    if array.shape not in _SHAPES:
+        raise ValueError(
+            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}"
+        )
+    return array if array.ndim else float(array)
+
+
+def _in_three_axes(value: float | np.ndarray) -> np.ndarray:
+    """Return a number or a matrix across the axis as a 3 × 3 matrix."""
+    full = np.zeros((3, 3))
+    if np.ndim(value) == 0:
+        full[0, 0] = full[1, 1] = value
+    else:
+        full[: len(value), : len(value)] = value
+    return full
 
 
 def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
@@ -117,16 +159,8 @@ def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
             )
 
 
-def _interpolate(speeds: ArrayLike, values: ArrayLike, speed: float) -> np.ndarray:
+def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.ndarray:
     """Interpolate a table over the spin speed; constant beyond its ends."""
-    speeds, values = np.asarray(speeds, dtype=float), np.asarray(values, dtype=float)
-    if not (np.all(np.isfinite(speeds)) and np.all(np.isfinite(values))):
-        raise ValueError("support table: speeds and values must be finite numbers")
-    if speeds.ndim != 1 or len(speeds) != len(values) or np.any(np.diff(speeds) <= 0.0):
-        raise ValueError(
-            f"support table: needs ascending speeds (s,) and as many values, got shapes "
-            f"{speeds.shape} and {values.shape}"
-        )
     flat = values.reshape(len(values), -1)
     columns = [np.interp(speed, speeds, column) for column in flat.T]
     return np.array(columns).reshape(values.shape[1:])

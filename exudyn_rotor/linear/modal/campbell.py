@@ -11,7 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.checks import ascending
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.free import free_motions
 from exudyn_rotor.linear.equations.full import FullRotor, Subspace
 from exudyn_rotor.linear.equations.source import linear_source
@@ -116,12 +118,13 @@ class Campbell(Result):
         """
         from exudyn_rotor.linear.modal.diagram import draw_campbell
 
-        if frame not in FRAMES:
-            raise ValueError(f"frame {frame!r} is unknown; use one of {', '.join(FRAMES)}")
-        return draw_campbell(self, ax, frame)
+        checks.choice(frame, "frame", FRAMES)
+        return draw_campbell(self, options.axes_or_none(ax, "ax"), frame)
 
     def table(self, count: int | None = None) -> str:
         """Return the lowest `count` modes at every speed as lines of text, frequencies in Hz."""
+        if count is not None:
+            count = checks.count(count, "count", least=1)
         hertz = 1.0 / (2.0 * np.pi)
         lines = [
             "  speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl",
@@ -212,7 +215,11 @@ def campbell(
     that stand still with a distance between them, are complete, with the stiffness of the spin by
     their steady forces; tilts lack that stiffness.
     """
-    values = _checked_speeds(speeds, allow_negative)
+    values = _checked_speeds(speeds, checks.flag(allow_negative, "allow_negative"))
+    if modes is not None:
+        checks.count(modes, "modes", least=1)
+    tolerance = options.accuracy(tolerance, "tolerance")
+    options.check_sweep(executor, progress)
     source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
     count = _checked_count(modes, source)
     content = WhirlContent.of(source)
@@ -312,8 +319,6 @@ def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
 def _checked_count(modes: int | None, source: Source) -> int:
     if modes is None:
         return _FULL_MODES if isinstance(source, FullRotor) else source.size
-    if isinstance(modes, bool) or not isinstance(modes, int | np.integer):
-        raise TypeError(f"modes: needs a whole number, got {modes!r}")
-    if not 1 <= modes <= source.size:
+    if modes > source.size:
         raise ValueError(f"modes: {modes} is not between 1 and the {source.size} there are")
     return int(modes)

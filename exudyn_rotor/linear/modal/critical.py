@@ -15,7 +15,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import plotting
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import checked_supports, linear_source
 from exudyn_rotor.linear.equations.supports import Support
@@ -26,6 +27,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, storable
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import sweep
+from exudyn_rotor.theory.stiffening import LEVELS
 
 Target = ReducedRotor | SolidRotor | exudyn.MainSystem
 
@@ -108,19 +110,16 @@ def critical_speeds(
         For an order or speed that is negative or not finite, a missing `max_speed`, an unknown
         interface, or harmonics that do not die away.
     """
-    if not (np.isfinite(order) and order >= 0.0):
-        raise ValueError(f"order: needs a finite number ≥ 0, got {order!r}")
-    if max_speed is not None and not (np.isfinite(max_speed) and max_speed > 0.0):
-        raise ValueError(f"max_speed: needs a finite number > 0 [rad/s], got {max_speed!r}")
+    order, max_speed, waves = _checked(order, max_speed, nodal_diameters)
+    tolerance = options.accuracy(tolerance, "tolerance")
     held = tuple(map(_undamped, checked_supports(supports)))
     source = linear_source(target, body=body, supports=held, stiffening=stiffening)
-    waves = _waves(nodal_diameters, order)
     content = WhirlContent.of(source)
     if isinstance(source, FullRotor):
         found = full_resonances(source, order, waves, max_speed, tolerance)
     else:
         found = resonances(source, content, order, waves, max_speed)
-    return _collected(found, content, float(order), source.size)
+    return _collected(found, content, order, source.size)
 
 
 @storable
@@ -146,6 +145,7 @@ class CriticalSpeedMap(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
+        ax = options.axes_or_none(ax, "ax")
         if ax is None:
             _, ax = plotting.figure()
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
@@ -197,17 +197,26 @@ def critical_speed_map(
     ValueError
         For stiffnesses that are not positive and finite, or an unknown interface.
     """
-    values = np.atleast_1d(np.asarray(stiffnesses, dtype=float))
-    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values) & (values > 0.0)):
-        raise ValueError(f"stiffnesses: needs positive finite numbers [N/m], got {stiffnesses!r}")
-    names = (interfaces,) if isinstance(interfaces, str) else tuple(interfaces)
-    options = {
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    values = np.atleast_1d(checks.array(stiffnesses, "stiffnesses", "N/m"))
+    if values.ndim != 1 or values.size == 0 or np.any(values <= 0.0):
+        raise ValueError(
+            "stiffnesses: needs positive finite numbers [N/m], got " + checks.shown(stiffnesses)
+        )
+    names = checks.labels(interfaces, "interfaces", target.interfaces)
+    if not names:
+        raise ValueError("interfaces: needs at least one name, got none")
+    supports = checked_supports(supports)
+    order, max_speed, _ = _checked(order, max_speed, nodal_diameters)
+    checks.choice(stiffening, "stiffening", LEVELS)
+    options.check_sweep(executor, progress)
+    given = {
         "order": order,
         "max_speed": max_speed,
-        "nodal_diameters": tuple(nodal_diameters),
+        "nodal_diameters": nodal_diameters,
         "stiffening": stiffening,
     }
-    task = partial(_at_stiffness, target, names, tuple(supports), options)
+    task = partial(_at_stiffness, target, names, supports, given)
     found = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
     most = max(len(entry.speeds) for entry in found)
     speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
@@ -215,38 +224,45 @@ def critical_speed_map(
         count = len(entry.speeds)
         speeds[row, :count] = entry.speeds
         codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), float(order))
+    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), order)
 
 
 def _at_stiffness(
     target: ReducedRotor | SolidRotor,
     names: tuple[str, ...],
     supports: tuple[Support, ...],
-    options: dict,
+    given: dict,
     stiffness: float,
 ) -> CriticalSpeeds:
     varied = tuple(Support(name, stiffness) for name in names)
-    return critical_speeds(target, supports=supports + varied, **options)
+    return critical_speeds(target, supports=supports + varied, **given)
+
+
+def _checked(
+    order: float, max_speed: float | None, nodal_diameters: Sequence[int]
+) -> tuple[float, float | None, list[int]]:
+    """Return order and largest speed, and the signed waves to look for."""
+    order = checks.number(order, "order", least=0.0)
+    if max_speed is not None:
+        max_speed = checks.number(max_speed, "max_speed", "rad/s", above=0.0)
+    return order, max_speed, _waves(nodal_diameters, order)
 
 
 def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
     """Return the signed waves to look for; at order 0 a motion and its conjugate are one."""
-    counts = sorted({int(n) for n in nodal_diameters})
-    if not counts or counts[0] < 0 or counts[-1] > 4:
-        raise ValueError(f"nodal_diameters: needs numbers from 0 to 4, got {nodal_diameters!r}")
+    values = checks.whole_numbers(nodal_diameters, "nodal_diameters", most=4)
+    if not values.size:
+        raise ValueError("nodal_diameters: needs at least one whole number from 0 to 4, got none")
+    counts = sorted({int(n) for n in values})
     backward = [-n for n in counts if n > 0 and order > 0.0]
     return counts + backward
 
 
 def _undamped(support: Support) -> Support:
     """Return the support without damping and circulatory stiffness."""
-    varies = any(
-        callable(value) or isinstance(value, tuple)
-        for value in (support.stiffness, support.tilt_stiffness)
-    )
     given = {
         name: partial(_symmetric_part, support, part)
-        if varies
+        if support.stiffness_varies
         else _symmetric_part(support, part, 0.0)
         for name, part in (("stiffness", 0), ("tilt_stiffness", 3))
     }

@@ -13,6 +13,8 @@ import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import FRAMES, Support
@@ -26,7 +28,7 @@ from exudyn_rotor.linear.response.loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, Source, places
+from exudyn_rotor.linear.response.places import At, Place, Source, checked_places, places
 from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -98,10 +100,14 @@ def unbalance_response(
         speed without a steady motion, or a `residual` that is not reached.
     """
     values = ascending_from_zero(speeds, "speeds")
-    source = _source(target, body, supports, stiffening)
+    unbalances = checks.instances(unbalances, "unbalances", Unbalance)
+    checks.flag(own, "own")
     _check(frame, tolerance, residual)
+    options.check_sweep(executor, progress)
+    at = checked_places(at)
+    source = _source(target, body, supports, stiffening)
     found = places(source, at)
-    load = unbalance_load(source, _all_of(unbalances, Unbalance, "unbalances"), own)
+    load = unbalance_load(source, unbalances, own)
     rows = np.array([one.motion for one in found])
     watch = _Watch(rows, frame, tolerance, _driven(source))
     if isinstance(source, FullRotor):
@@ -154,25 +160,26 @@ def harmonic_response(
     values = ascending_from_zero(
         frequencies, "frequencies", "conjugate the loads: a negative frequency is that"
     )
-    if not np.isfinite(speed):
-        raise ValueError(f"speed: needs a finite number [rad/s], got {speed!r}")
-    source = _source(target, body, supports, stiffening)
+    speed = checks.number(speed, "speed", "rad/s")
+    loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
     _check(frame, tolerance, residual)
+    options.check_sweep(executor, progress)
+    at = checked_places(at)
+    source = _source(target, body, supports, stiffening)
     found = places(source, at)
-    kinds = (HarmonicForce, BaseAcceleration)
-    load = total(_all_of(loads, kinds, "loads"), source)
+    load = total(loads, source)
     rows = np.array([one.motion for one in found])
     watch = _Watch(rows, frame, tolerance, _driven(source))
     if isinstance(source, FullRotor):
         fastest = max(values[-1], abs(speed))
         solver, executor = FullSteady(source, load.values(), fastest, residual), None
     else:
-        solver = _Tabulated({float(speed): source.at(speed)})
-    task = _HarmonicTask(solver, float(speed), load, watch)
+        solver = _Tabulated({speed: source.at(speed)})
+    task = _HarmonicTask(solver, speed, load, watch)
     motions = sweep(task, values, executor=executor, progress=progress, label="harmonic response")
     labels = tuple(one.label for one in found)
     collected = _collected(motions, found, tolerance, _length(source))
-    return HarmonicResponse(labels, *collected, frame, values, float(speed))
+    return HarmonicResponse(labels, *collected, frame, values, speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,18 +306,7 @@ def _light(source: Source, speeds: np.ndarray) -> LinearRotor | _Tabulated:
 Solver = LinearRotor | _Tabulated | FullSteady
 
 
-def _all_of(given: object, kinds: type | tuple[type, ...], name: str) -> list:
-    items = [given] if isinstance(given, kinds) else list(given)
-    for item in items:
-        if not isinstance(item, kinds):
-            raise TypeError(f"{name}: a {type(item).__name__} cannot be used here, got {item!r}")
-    return items
-
-
 def _check(frame: str, tolerance: float, residual: float) -> None:
-    if frame not in FRAMES:
-        raise ValueError(f"frame {frame!r} is unknown; use 'inertial' or 'rotor'")
-    if not 1e-13 <= tolerance <= 0.1:
-        raise ValueError(f"tolerance: needs a number from 1e-13 to 0.1, got {tolerance!r}")
-    if not 1e-13 <= residual <= 0.1:
-        raise ValueError(f"residual: needs a number from 1e-13 to 0.1, got {residual!r}")
+    checks.choice(frame, "frame", FRAMES)
+    options.accuracy(tolerance, "tolerance")
+    options.accuracy(residual, "residual")

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
+
 
 def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
     """Return the permissible residual unbalance of a rotor, ``U = G m / Ω`` [kg m].
@@ -27,13 +30,12 @@ def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If one of them is not a positive number.
     """
-    for name, value, unit in (("grade", grade, "mm/s"), ("mass", mass, "kg"),
-                              ("speed", speed, "rad/s")):  # fmt: skip
-        if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"balance {name}: needs a positive number [{unit}], got {value!r}")
+    grade = checks.number(grade, "grade", "mm/s", above=0.0)
+    mass = checks.number(mass, "mass", "kg", above=0.0)
+    speed = checks.number(speed, "speed", "rad/s", above=0.0)
     return 1e-3 * grade * mass / speed
 
 
@@ -54,8 +56,8 @@ class Unbalance:
 
     Raises
     ------
-    ValueError
-        If the amount is not positive or a number is not finite.
+    TypeError, ValueError
+        If the place is of another kind, the amount not positive, or a number not finite.
     """
 
     at: str | int | Sequence[float]
@@ -63,15 +65,17 @@ class Unbalance:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.amount) and self.amount > 0.0):
+        object.__setattr__(self, "at", options.place(self.at, "at"))
+        where = f"unbalance at {self.at!r}"
+        amount = checks.number(self.amount, f"{where}: amount", "kg m")
+        if amount <= 0.0:
             raise ValueError(
-                f"unbalance at {self.at!r}: the amount needs a positive number [kg m], got "
-                f"{self.amount!r}; turn it by its angle, leave it out if there is none"
+                f"{where}: amount needs a positive number [kg m], got {self.amount!r}; turn it by "
+                "its angle, leave it out if there is none"
             )
-        if not np.isfinite(self.angle):
-            raise ValueError(
-                f"unbalance at {self.at!r}: the angle {self.angle!r} is not a finite number [rad]"
-            )
+        object.__setattr__(self, "amount", amount)
+        angle = checks.number(self.angle, f"{where}: angle", "rad")
+        object.__setattr__(self, "angle", angle)
 
     @classmethod
     def from_grade(
@@ -96,7 +100,13 @@ class Unbalance:
         share : float, optional
             Part of the whole in this plane: 0.5 where two tolerance planes lie at equal distances
             from the centre of mass (ISO 21940-11:2016, Sect. 7).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `share` is not between 0 and 1, or another argument is refused.
         """
+        share = checks.number(share, "share", above=0.0, most=1.0)
         return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
 
     @property

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.supports import FRAMES, axes_of
 from exudyn_rotor.linear.response.balance import Unbalance
 from exudyn_rotor.linear.response.forced import into_rotor_frame
@@ -36,8 +38,9 @@ class HarmonicForce:
 
     Raises
     ------
-    ValueError
-        For an unknown frame, a wrong shape, or an entry that is not finite.
+    TypeError, ValueError
+        For an unknown frame, a place of another kind, a wrong shape, or an entry that is not
+        finite.
     """
 
     at: At
@@ -46,11 +49,11 @@ class HarmonicForce:
     frame: str = "inertial"
 
     def __post_init__(self) -> None:
-        if self.frame not in FRAMES:
-            raise ValueError(f"force frame {self.frame!r} is unknown; use 'inertial' or 'rotor'")
-        label = f"at {self.at!r}"
-        object.__setattr__(self, "force", _vector(self.force, f"force {label}"))
-        object.__setattr__(self, "moment", _vector(self.moment, f"moment {label}"))
+        checks.choice(self.frame, "frame", FRAMES)
+        object.__setattr__(self, "at", options.place(self.at, "at"))
+        for name, unit in (("force", "N"), ("moment", "N m")):
+            vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
+            object.__setattr__(self, name, vector)
 
     def harmonics(self, source: Source) -> dict[int, np.ndarray]:
         """Return the harmonics (k,) of the load in the rotor frame."""
@@ -79,14 +82,14 @@ class BaseAcceleration:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         For a wrong shape or an entry that is not finite.
     """
 
     acceleration: ArrayLike
 
     def __post_init__(self) -> None:
-        vector = _vector(self.acceleration, "base acceleration")
+        vector = _vector(self.acceleration, "acceleration", "m/s²")
         object.__setattr__(self, "acceleration", vector)
 
     def harmonics(self, source: Source) -> dict[int, np.ndarray]:
@@ -154,11 +157,12 @@ def _pulled(point: Place, wrench: np.ndarray) -> np.ndarray:
     return point.motion.T @ wrench
 
 
-def _vector(value: ArrayLike, name: str) -> np.ndarray:
-    vector = np.atleast_1d(np.asarray(value, dtype=complex))
-    if vector.shape not in ((2,), (3,)) or not np.all(np.isfinite(vector)):
-        raise ValueError(f"{name}: needs two or three finite numbers along (n1, n2[, e])")
-    full = np.zeros(3, dtype=complex)
-    full[: len(vector)] = vector
-    full.flags.writeable = False
-    return full
+def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:
+    """Return an amplitude along (n1, n2, e), shape (3,), complex and read-only."""
+    vector = checks.array(value, name, unit, dtype=complex)
+    if vector.shape not in ((2,), (3,)):
+        raise ValueError(
+            f"{name}: needs two or three numbers [{unit}] along (n1, n2[, e]), got "
+            f"{checks.shown(value)}"
+        )
+    return checks.read_only(np.r_[vector, np.zeros(3 - len(vector))], complex)

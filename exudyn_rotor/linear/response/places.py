@@ -8,6 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.supports import axes_of
 from exudyn_rotor.linear.equations.system import PeriodicSystem
 
@@ -71,13 +73,25 @@ def place(source: Source, at: At) -> Place:
     return Place(f"node {number}", np.vstack([rows, 0.0 * rows]), is_node=True)
 
 
-def places(source: Source, at: Sequence[At] | At | None) -> list[Place]:
-    """Return the places asked for; by default all interfaces."""
+def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
+    """Return places as a tuple; None for all interfaces.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one is neither a name, nor a number, nor a position.
+    """
     if at is None:
-        at = interface_names(source)
-    elif isinstance(at, str | int | np.integer):
-        at = [at]
-    found = [place(source, one) for one in at]
+        return None
+    if isinstance(at, str | int | np.integer):
+        at = (at,)
+    listed = checks.items(at, "at", "places of the rotor in a sequence")
+    return tuple(options.place(one, f"at[{index}]") for index, one in enumerate(listed))
+
+
+def places(source: Source, at: Sequence[At] | None) -> list[Place]:
+    """Return the places asked for; by default all interfaces."""
+    found = [place(source, one) for one in (interface_names(source) if at is None else at)]
     if not found:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
     labels = [one.label for one in found]
@@ -104,17 +118,8 @@ def _interface(source: Source, name: str) -> Place:
 
 def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
     """Return a node's number; the nearest one to a position."""
-    if isinstance(at, int | np.integer) and not isinstance(at, bool):
-        if not 0 <= at < len(nodes):
+    if isinstance(at, int):
+        if at >= len(nodes):
             raise ValueError(f"place {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
-        return int(at)
-    try:
-        position = np.asarray(at, dtype=float)
-    except (TypeError, ValueError):
-        position = np.zeros(0)
-    if position.shape != (3,) or not np.all(np.isfinite(position)):
-        raise ValueError(
-            f"place {at!r}: needs the name of an interface, a node number or a position of three "
-            "finite numbers [m]"
-        )
-    return int(np.argmin(np.linalg.norm(nodes - position, axis=1)))
+        return at
+    return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))

@@ -9,6 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.response.results import DIRECTIONS
 from exudyn_rotor.plotting import COLORS, LINES, figure
 
 if TYPE_CHECKING:
@@ -41,11 +44,18 @@ def plot_bode(
     log : bool, optional
         Logarithmic sizes.
     """
-    size, phase = figure(2, 1, size=(7.0, 5.5), sharex=True)[1] if axes is None else axes
+    names = checks.labels(directions, "directions", (*DIRECTIONS, "forward", "backward"))
+    checks.flag(log, "log")
+    if axes is None:
+        axes = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
+    pair = checks.instances(list(axes) if isinstance(axes, np.ndarray) else axes, "axes", Axes)
+    if len(pair) != 2:
+        raise ValueError(f"axes: needs two, for size and phase, got {len(pair)}")
+    size, phase = pair
     forward, backward = response.whirl(place, order)
     circular = {"forward": forward, "backward": backward}
     hertz = HERTZ * response.abscissa
-    for name, color, line in zip(directions, COLORS, LINES, strict=False):
+    for name, color, line in zip(names, COLORS, LINES, strict=False):
         values = circular[name] if name in circular else response.phasor(place, name, order)
         size.plot(hertz, 1e6 * np.abs(values), ls=line, color=color, lw=1.4, label=name)
         phase.plot(hertz, _phase(values), ls=line, color=color, lw=1.4)
@@ -83,7 +93,9 @@ def plot_polar(
     marks : int, optional
         How many points are labelled with their speed or frequency [Hz].
     """
-    axes = figure(size=(5.5, 5.5))[1] if axes is None else axes
+    checks.choice(direction, "direction", (*DIRECTIONS, "forward", "backward"))
+    marks = checks.count(marks, "marks")
+    axes = options.axes_or_none(axes, "axes") or figure(size=(5.5, 5.5))[1]
     forward, backward = response.whirl(place, order)
     circular = {"forward": forward, "backward": backward}
     values = circular.get(direction)
@@ -126,8 +138,11 @@ def plot_orbit(
         All by default.
     axes : matplotlib Axes, optional
     """
-    axes = figure(size=(5.5, 5.5))[1] if axes is None else axes
-    names = response.places if places is None else places
+    value = checks.number(value, "value", "rad/s")
+    names = response.places
+    if places is not None:
+        names = checks.labels(places, "places", response.places)
+    axes = options.axes_or_none(axes, "axes") or figure(size=(5.5, 5.5))[1]
     for name, color, line in zip(names, COLORS, LINES, strict=False):
         x, y = 1e6 * response.orbit(value, name, order).T
         axes.plot(x, y, ls=line, color=color, lw=1.4, label=name)

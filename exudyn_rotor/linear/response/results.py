@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.results import Result, storable
 
 if TYPE_CHECKING:
@@ -69,8 +70,7 @@ class Response(Result):
         ValueError
             For an unknown place or direction, or a harmonic that does not matter.
         """
-        if direction not in DIRECTIONS:
-            raise ValueError(f"direction {direction!r} is unknown; use {', '.join(DIRECTIONS)}")
+        checks.choice(direction, "direction", DIRECTIONS)
         return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
 
     def whirl(
@@ -81,7 +81,7 @@ class Response(Result):
         ``u_n1 + i u_n2 = forward exp(i|rate|t) + backward exp(−i|rate|t)``; forward is from n1 to
         n2, the sense of a positive spin.
         """
-        order = self.main_order if order is None else order
+        order = self._order(order)
         motion = self._harmonic(place, order)
         turned = (self.rates(order) < 0.0)[:, None]
         a, b = np.where(turned, motion.conj(), motion)[:, :2].T
@@ -116,8 +116,10 @@ class Response(Result):
             See :meth:`phasor`.
         points : int, optional
         """
+        value = checks.number(value, "value", "rad/s")
+        points = checks.count(points, "points", least=2)
         index = int(np.argmin(np.abs(self.abscissa - value)))
-        order = self.main_order if order is None else order
+        order = self._order(order)
         motion = self._harmonic(place, order)[index, :2]
         sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
@@ -125,8 +127,7 @@ class Response(Result):
 
     def table(self, place: str | None = None, order: int | None = None) -> str:
         """Return sizes and phases at one place as text."""
-        place = self.places[0] if place is None else place
-        order = self.main_order if order is None else order
+        place, order = self._place(place), self._order(order)
         a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
         forward, backward = self.whirl(place, order)
         lines = [
@@ -168,14 +169,22 @@ class Response(Result):
 
     def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
         """Return the amplitudes (s, 6) of one harmonic at one place."""
-        place = self.places[0] if place is None else place
-        if place not in self.places:
-            raise ValueError(f"place {place!r}: no such place; there are {', '.join(self.places)}")
-        order = self.main_order if order is None else order
+        index = list(self.orders).index(self._order(order))
+        return self.motion[:, self.places.index(self._place(place)), index]
+
+    def _place(self, place: str | None) -> str:
+        """Return the name of a place, the first one by default."""
+        return self.places[0] if place is None else checks.choice(place, "place", self.places)
+
+    def _order(self, order: int | None) -> int:
+        """Return a harmonic that matters, the main one by default."""
+        if order is None:
+            return self.main_order
+        order = checks.whole_number(order, "order")
         if order not in self.orders:
             known = ", ".join(str(n) for n in self.orders)
-            raise ValueError(f"order {order}: no such harmonic; there are {known}")
-        return self.motion[:, self.places.index(place), list(self.orders).index(order)]
+            raise ValueError(f"order: there is no harmonic {order}; there are {known}")
+        return order
 
 
 @storable

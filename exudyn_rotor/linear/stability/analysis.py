@@ -18,7 +18,8 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from exudyn_rotor import plotting
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.full import FullRotor
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import Support
@@ -68,7 +69,7 @@ class Stability(Result):
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the growth over the spin speed; unstable speeds are shaded."""
-        axes = plotting.figure()[1] if axes is None else axes
+        axes = options.axes_or_none(axes, "axes") or plotting.figure()[1]
         hertz = self.speeds / (2.0 * np.pi)
         axes.plot(hertz, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
         low, high = axes.get_ylim()
@@ -147,7 +148,8 @@ def stability(
         For bad input, and where `tolerance` or `residual` is not reached.
     """
     values = ascending_from_zero(speeds, "speeds")
-    check_method(method, tolerance)
+    _check(method, tolerance, modes, residual)
+    options.check_sweep(executor, progress)
     source = source_of(target, supports, body, stiffening)
     if isinstance(source, FullRotor):
         full = _full(source, modes, values[-1], residual, method, tolerance)
@@ -252,20 +254,21 @@ def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) 
     return float(np.max(values.real - margin))
 
 
-def stability_threshold(target: object, low: float, high: float, **options) -> float:
+def stability_threshold(target: object, low: float, high: float, **given) -> float:
     """Return the speed between `low` and `high` [rad/s] where the stability changes.
 
     By root finding on the growth, to 1e-8 of `high`. The growth counts from `tolerance` times the
     speed on, so a threshold that is crossed slowly is found late by that over the slope.
-    `options` are those of :func:`stability`.
+    `given` are further arguments of :func:`stability`.
 
     Raises
     ------
     ValueError
         If both ends are stable, or both unstable.
     """
-    ascending_from_zero([low, high], "speeds")
-    excess = _excess_function(target, options, high)
+    low = checks.number(low, "low", "rad/s", least=0.0)
+    high = checks.number(high, "high", "rad/s", above=low)
+    excess = _excess_function(target, given, high)
     ends = excess(low), excess(high)
     if (ends[0] > 0.0) == (ends[1] > 0.0):
         verdict = "unstable" if ends[0] > 0.0 else "stable"
@@ -273,15 +276,15 @@ def stability_threshold(target: object, low: float, high: float, **options) -> f
     return float(brentq(excess, low, high, xtol=1e-8 * high))
 
 
-def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
+def unstable_ranges(target: object, speeds: ArrayLike, **given) -> np.ndarray:
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
     Every change between two neighbours of `speeds` is found to 1e-8 of the highest speed; a range
     narrower than their spacing can be missed. A range that is open at the first or last speed ends
-    there. `options` are those of :func:`stability`.
+    there. `given` are further arguments of :func:`stability`.
     """
     values = ascending_from_zero(speeds, "speeds")
-    excess = _excess_function(target, options, values[-1])
+    excess = _excess_function(target, given, values[-1])
     unstable = [excess(speed) > 0.0 for speed in values]
     edges = [values[0]] if unstable[0] else []
     for i in np.flatnonzero(np.diff(unstable)):
@@ -290,15 +293,15 @@ def unstable_ranges(target: object, speeds: ArrayLike, **options) -> np.ndarray:
     return np.array(edges).reshape(-1, 2)
 
 
-def _excess_function(target: object, options: dict, highest: float) -> Callable[[float], float]:
-    method, tolerance = options.pop("method", "auto"), options.pop("tolerance", 1e-9)
-    modes, residual = options.pop("modes", None), options.pop("residual", 1e-7)
-    check_method(method, tolerance)
+def _excess_function(target: object, given: dict, highest: float) -> Callable[[float], float]:
+    method, tolerance = given.pop("method", "auto"), given.pop("tolerance", 1e-9)
+    modes, residual = given.pop("modes", None), given.pop("residual", 1e-7)
+    _check(method, tolerance, modes, residual)
     arguments = {"supports": (), "body": None, "stiffening": "tilt"}
-    unknown = set(options) - set(arguments)
+    unknown = set(given) - set(arguments)
     if unknown:
         raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
-    source = source_of(target, **(arguments | options))
+    source = source_of(target, **(arguments | given))
     if isinstance(source, FullRotor):
         full = _full(source, modes, highest, residual, method, tolerance)
         return lambda speed: excess_growth(_full_exponents(speed, full), full.at(speed), tolerance)
@@ -330,7 +333,7 @@ class _HeldSpin:
 
 def source_of(target: object, supports: Sequence[Support], body: object, stiffening: str) -> object:
     """Return what has ``at(speed)``; a free spin is held."""
-    if hasattr(target, "at"):
+    if callable(getattr(target, "at", None)) and not isinstance(target, type):
         source = target
     else:
         source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
@@ -341,7 +344,12 @@ def source_of(target: object, supports: Sequence[Support], body: object, stiffen
 
 def check_method(method: str, tolerance: float) -> None:
     """Refuse an unknown method and an impossible tolerance."""
-    if method not in METHODS:
-        raise ValueError(f"method {method!r} is unknown; use one of {', '.join(METHODS)}")
-    if not 0.0 < tolerance < 1.0:
-        raise ValueError(f"tolerance: needs a number between 0 and 1, got {tolerance}")
+    checks.choice(method, "method", METHODS)
+    options.accuracy(tolerance, "tolerance")
+
+
+def _check(method: str, tolerance: float, modes: int | None, residual: float) -> None:
+    check_method(method, tolerance)
+    options.accuracy(residual, "residual")
+    if modes is not None:
+        checks.count(modes, "modes", least=1)

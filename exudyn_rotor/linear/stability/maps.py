@@ -11,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import plotting
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations.system import PeriodicSystem
 from exudyn_rotor.linear.stability.analysis import (
     check_method,
@@ -47,7 +48,7 @@ class StabilityMap(Result):
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line."""
-        axes = plotting.figure()[1] if axes is None else axes
+        axes = options.axes_or_none(axes, "axes") or plotting.figure()[1]
         growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
         largest = np.abs(growth).max() or 1.0
         levels = np.linspace(-largest, largest, 21)
@@ -88,21 +89,30 @@ def stability_map(
     method, tolerance, executor, progress
         See :func:`stability`.
     """
+    checks.function(build, "build")
     check_method(method, tolerance)
+    options.check_sweep(executor, progress)
+    names = checks.labels(labels, "labels")
+    if len(names) != 2:
+        raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     points = [(a, b) for a in grid[0] for b in grid[1]]
     point = partial(_map_point, build=build, method=method, tolerance=tolerance)
     found = sweep(point, points, executor=executor, progress=progress, label="stability map")
     growth, excess = np.array(found).T.reshape(2, len(grid[0]), len(grid[1]))
-    return StabilityMap(*grid, growth, excess <= 0.0, tuple(labels))
+    return StabilityMap(*grid, growth, excess <= 0.0, names)
 
 
 def _map_point(
     point: tuple[float, float], build: Callable, method: str, tolerance: float
 ) -> tuple[float, float]:
     system = build(*point)
-    if isinstance(system, tuple):
+    if isinstance(system, tuple) and len(system) == 2:
         target, speed = system
+        speed = checks.number(speed, "build: the speed it returns", "rad/s", least=0.0)
         system = source_of(target, (), None, "tilt").at(speed)
+    checks.instance(
+        system, "build", PeriodicSystem, "it returns a target of stability and the speed"
+    )
     values = exponents(system, method, tolerance)
     return values.real.max(), excess_growth(values, system, tolerance)

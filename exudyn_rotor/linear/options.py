@@ -1,0 +1,53 @@
+"""Checks of the options that all linear analyses share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from exudyn_rotor import checks
+
+Place = str | int | Sequence[float]
+
+# below is rounding, above nothing is computed
+_LEAST, _MOST = 1e-13, 0.1
+
+
+def accuracy(value: float, name: str) -> float:
+    """Return a tolerance or residual from 1e-13 to 0.1."""
+    return checks.number(value, name, least=_LEAST, most=_MOST)
+
+
+def check_sweep(executor: Executor | None, progress: bool) -> None:
+    """Check how values are computed: `executor` and `progress`."""
+    checks.executor(executor)
+    checks.flag(progress, "progress")
+
+
+def axes_or_none(value: Axes | None, name: str) -> Axes | None:
+    """Return axes to draw in; None for new ones."""
+    return None if value is None else checks.instance(value, name, Axes)
+
+
+def place(value: Place, name: str) -> str | int | tuple[float, float, float]:
+    """Return a place of the rotor: an interface's name, a node's number or a position [m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For anything else.
+    """
+    if isinstance(value, str):
+        return checks.label(value, name)
+    if isinstance(value, int | np.integer):
+        return checks.count(value, name)
+    try:
+        return tuple(checks.vector(value, name, "m").tolist())
+    except (TypeError, ValueError) as error:
+        raise type(error)(
+            f"{name}: needs the name of an interface, a node number or a position of three finite "
+            f"numbers [m], got {checks.shown(value)}"
+        ) from error
