@@ -1,0 +1,241 @@
+"""Bad input of linear analyses: refused before anything is computed, by the argument's name."""
+
+import inspect
+import re
+
+import exudyn as exu
+import numpy as np
+import pytest
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    BaseAcceleration,
+    HarmonicForce,
+    Support,
+    Unbalance,
+    campbell,
+    critical_speed_map,
+    critical_speeds,
+    harmonic_response,
+    permissible_unbalance,
+    stability,
+    stability_map,
+    stability_threshold,
+    unbalance_response,
+    unstable_ranges,
+)
+from exudyn_rotor.linear.equations import source
+
+ROTOR = (
+    ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
+)
+SUPPORTS = [Support("left", 1e6, 10.0), Support("right", 1e6, 10.0)]
+MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
+
+FORCE = HarmonicForce("left", (1.0, 0.0))
+UNBALANCE = Unbalance("left", 1e-5)
+
+CALLS = {
+    campbell: ([0.0, 10.0],),
+    critical_speeds: (),
+    critical_speed_map: (["left"], [1e6, 1e7]),
+    unbalance_response: ([10.0, 20.0], [UNBALANCE]),
+    harmonic_response: ([10.0, 20.0], [FORCE]),
+    stability: ([0.0, 10.0],),
+    stability_threshold: (0.0, 10.0),
+    unstable_ranges: ([0.0, 10.0],),
+}
+
+NUMBERS = (np.nan, -1.0, "x", None, [0.1], 1j, True, lambda: 1.0)
+WORDS = ("no", 1, None, ["inertial"], {}, np.ones(3))
+SERIES = (np.nan, [1.0, np.inf], [2.0, 1.0], "x", [[1.0, 2.0]], MASKED, [1j], {}, None, [])
+
+BAD = {
+    "speeds": SERIES,
+    "frequencies": SERIES,
+    "stiffnesses": (np.nan, [0.0], [-1.0], "x", MASKED, [1j], {}, None, []),
+    "supports": ("", "left", 3, ["left"], {"left": 1e6}, None, [None], np.array(3.0), Support),
+    "tolerance": (*NUMBERS, 0.0, 0.2, 1e-20),
+    "residual": (*NUMBERS, 0.0, 0.2, 1e-20),
+    "stiffening": WORDS,
+    "frame": WORDS,
+    "method": WORDS,
+    "modes": (0, -1, 2.5, "x", True, [1]),
+    "order": (np.nan, -1.0, "x", None, [1.0], True),
+    "max_speed": (np.nan, -1.0, 0.0, "x", [1.0], True),
+    "nodal_diameters": ([5], [-1], [1.0], "x", 1, [], None, {}),
+    "own": ("no", 1, None, []),
+    "allow_negative": ("no", 1, None, []),
+    "progress": ("no", 1, None, []),
+    "executor": (3, "threads", ROTOR),
+    "unbalances": (3, "left", None, [3], {"left": 1.0}, FORCE),
+    "loads": (3, "left", None, [3], {"left": 1.0}, UNBALANCE),
+    "at": (3.5, ["left", 2.5], {}, [(0.0, np.nan, 0.0)], [None], "", [-1]),
+    "interfaces": (3, None, [], ["top"], [3], {"left": 1}, ""),
+    "speed": (np.nan, "x", None, [1.0], True),
+    "low": (np.nan, -1.0, "x", None),
+    "high": (np.nan, 0.0, "x", None),
+    "body": (3, ROTOR),
+    "target": (3, None, "rotor", np.eye(3), UNBALANCE, Support),
+}  # fmt: skip
+
+
+def _refused(call, given: dict, name: str, values: tuple) -> list[str]:
+    """Return what is said, or not said, of values that are not refused by the argument's name."""
+    wrong = []
+    for value in values:
+        try:
+            call(**(given | {name: value}))
+            wrong.append(f"{value!r}: accepted")
+        except (TypeError, ValueError) as error:
+            if not re.search(rf"\b{name}\b.* (needs?|is|may be) ", str(error)):
+                wrong.append(f"{value!r}: {error}")
+        except Exception as error:
+            wrong.append(f"{value!r}: {error!r}")
+    return wrong
+
+
+def _arguments(call) -> list[str]:
+    names = list(inspect.signature(call).parameters)
+    if names[-1] == "given":
+        names[-1:] = ["supports", "tolerance", "residual", "modes", "stiffening", "method"]
+    return names
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [(call, name) for call in CALLS for name in _arguments(call)],
+    ids=lambda value: getattr(value, "__name__", value),
+)
+def test_argument_is_refused_by_its_name(call, name, monkeypatch):
+    if name not in ("at", "body"):  # those are looked up in the rotor's equations
+        monkeypatch.setattr(source.LinearRotor, "of", None)
+    given = dict(zip(inspect.signature(call).parameters, (ROTOR, *CALLS[call]), strict=False))
+    assert _refused(call, given | {"supports": SUPPORTS}, name, BAD[name]) == []
+
+
+MAKERS = [
+    (Support, {"interface": "left", "stiffness": 1.0}, {
+        "interface": ("", None, 3, ["left"], {}),
+        "stiffness": ("x", np.nan, [1.0, 2.0], 1j, MASKED, None, {}, np.eye(4),
+                      ((0.0, 1e5), (-1e5, 0.0)), ([1.0, 0.0], [1.0, 2.0]), ([0.0, 1.0], [1.0]),
+                      (1.0, 2.0), ([0.0, 1.0], "ab"), True),
+        "tilt_damping": ("x", np.inf, [1.0], None),
+        "frame": WORDS,
+    }),
+    (Unbalance, {"at": "left", "amount": 1.0}, {
+        "at": (None, "", -1, 2.5, (0.0, 1.0), {}, MASKED),
+        "amount": (*NUMBERS, 0.0),
+        "angle": (np.nan, "x", None, [1.0]),
+    }),
+    (Unbalance.from_grade, {"at": "left", "grade": 2.5, "mass": 1.0, "speed": 10.0}, {
+        "grade": (*NUMBERS, 0.0), "mass": (*NUMBERS, 0.0), "speed": (*NUMBERS, 0.0),
+        "share": (*NUMBERS, 0.0, 1.5), "angle": (np.nan, "x"), "at": (None, ""),
+    }),
+    (permissible_unbalance, {"grade": 2.5, "mass": 1.0, "speed": 10.0}, {
+        "grade": (*NUMBERS, 0.0), "mass": (*NUMBERS, 0.0), "speed": (*NUMBERS, 0.0),
+    }),
+    (HarmonicForce, {"at": "left"}, {
+        "at": (None, "", -1, 2.5, (0.0, 1.0)),
+        "force": ("x", (1.0,), np.nan, (np.nan, 0.0), None, {}, np.eye(3)),
+        "moment": ("x", (1.0,), np.nan, (np.nan, 0.0), None),
+        "frame": WORDS,
+    }),
+    (BaseAcceleration, {"acceleration": (1.0, 0.0)}, {
+        "acceleration": ("x", (1.0,), np.nan, (np.nan, 0.0), None, {}),
+    }),
+    (stability_map, {"build": max, "x": [1.0], "y": [1.0]}, {
+        "build": (3, None, "x"), "x": SERIES, "y": SERIES, "labels": ("x", (1, 2), None, ["x"]),
+        "method": WORDS, "tolerance": (*NUMBERS, 0.0), "executor": (3,), "progress": ("no",),
+    }),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("make", "given", "bad"), MAKERS, ids=lambda value: getattr(value, "__name__", "")
+)
+def test_constructor_refuses(make, given, bad):
+    assert [_refused(make, given, name, values) for name, values in bad.items()] == [[]] * len(bad)
+
+
+def test_what_is_kept_is_copied():
+    """Changing the caller's arrays later changes nothing."""
+    stiffness, speeds, position = np.eye(2), np.array([0.0, 1.0]), np.array([0.0, 0.0, 0.1])
+    support = Support("left", stiffness, (speeds, [1.0, 2.0]))
+    unbalance = Unbalance(position, 1.0)
+    stiffness[:], speeds[:], position[:] = 9.0, 0.0, 7.0
+    np.testing.assert_array_equal(support.matrices(0.5)[0][:2, :2], np.eye(2))
+    assert support.matrices(0.5)[1][0, 0] == 1.5
+    assert unbalance.at == (0.0, 0.0, 0.1)
+    for kept in (support.stiffness, *support.damping, FORCE.force):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[0] = 1.0
+
+
+def test_tables_and_matrices_are_told_apart():
+    """Lists in a tuple are a table, nested lists a matrix, three tuples of three a matrix."""
+    table = Support("left", ([0.0, 10.0], [1.0, 3.0]))
+    assert table.matrices(5.0)[0][0, 0] == 2.0
+    cross = Support("left", [[0.0, 1e5], [-1e5, 0.0]])
+    np.testing.assert_array_equal(cross.matrices(5.0)[0][:2, :2], [[0.0, 1e5], [-1e5, 0.0]])
+    whole = Support("left", ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)))
+    assert whole.matrices(5.0)[0][1, 2] == 6.0
+    with pytest.raises(TypeError, match=r"stiffness at 5 rad/s: needs finite"):
+        Support("left", lambda speed: "x").matrices(5.0)
+
+
+def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
+    monkeypatch.setattr(source, "DENSE_SIZE", 0)
+    monkeypatch.setattr(source.FullRotor, "of", None)
+    for call, given in ((campbell, {}), (stability, {}), (critical_speeds, {"max_speed": 9.0})):
+        arguments = () if call is critical_speeds else ([1.0],)
+        with pytest.raises(ValueError, match=r"^tolerance: needs"):
+            call(ROTOR, *arguments, tolerance=0.0, **given)
+
+
+def test_scenes_need_their_body():
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(TypeError, match=r"^body: a scene needs"):
+        campbell(mbs, [1.0])
+
+
+@pytest.mark.parametrize(
+    ("use", "name"),
+    [
+        (lambda r: r.orbit("x"), "value"),
+        (lambda r: r.orbit(np.nan), "value"),
+        (lambda r: r.orbit(10.0, points=0), "points"),
+        (lambda r: r.phasor(3), "place"),
+        (lambda r: r.phasor(["left"]), "place"),
+        (lambda r: r.phasor(direction=[1]), "direction"),
+        (lambda r: r.whirl(order="x"), "order"),
+        (lambda r: r.whirl(order=0.5), "order"),
+        (lambda r: r.plot(directions=3), "directions"),
+        (lambda r: r.plot(directions=["up"]), "directions"),
+        (lambda r: r.plot(log="no"), "log"),
+        (lambda r: r.plot(axes=3), "axes"),
+        (lambda r: r.plot_polar(direction="up"), "direction"),
+        (lambda r: r.plot_polar(marks=-1), "marks"),
+        (lambda r: r.plot_polar(axes="x"), "axes"),
+        (lambda r: r.plot_orbit(None), "value"),
+        (lambda r: r.plot_orbit(10.0, places=["top"]), "places"),
+    ],
+)
+def test_methods_of_a_response_refuse(use, name):
+    response = unbalance_response(ROTOR, [10.0], UNBALANCE, supports=SUPPORTS)
+    with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
+        use(response)
+
+
+def test_methods_of_other_results_refuse():
+    result = campbell(ROTOR, [10.0], supports=SUPPORTS)
+    margins = stability(ROTOR, [10.0], supports=SUPPORTS)
+    for call, name in (
+        (lambda: result.table(-1), "count"),
+        (lambda: result.table("x"), "count"),
+        (lambda: result.plot(3), "ax"),
+        (lambda: result.plot(frame=["inertial"]), "frame"),
+        (lambda: margins.plot("x"), "axes"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
+            call()
