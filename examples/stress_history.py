@@ -15,7 +15,7 @@ from exudyn_rotor import (
     SolidRotor,
     StressField,
     add_rotor,
-    plots,
+    plotting,
     recommended_settings,
     stress_history,
 )
@@ -65,8 +65,8 @@ speed = np.array([run_up.rate(t) for t in time])
 field = StressField.of(reduced, body.selection)
 history = stress_history(field, time, zeta, speed, count=5)
 print(history.table())
-plots.save(history.plot(), "stress_history.png")
-plots.save(history.plot_peak(), "stress_peak.png")
+plotting.save(history.plot(), "stress_history.png")
+plotting.save(history.plot_peak(), "stress_peak.png")
 
 # the hoop stress at the bore of a plain annulus; the tube stiffens the bore of this one
 ratio = steel["poissonsRatio"]

@@ -184,8 +184,8 @@ def array(
 ) -> np.ndarray:
     """Return numbers as a read-only array of the wanted shape; None in `shape` is any length.
 
-    `dtype` is float, complex or int. Text, masks, imaginary parts of numbers that must be real,
-    and fractions of numbers that must be whole are refused. What can be written to is copied.
+    `dtype` is float, complex, int or bool. Text, masks, imaginary parts of numbers that must be
+    real, and fractions of numbers that must be whole are refused. What can be written to is copied.
     """
     needed = f"{_kind_of(dtype, finite)}{_unit(unit)}{_of_shape(shape)}"
     result = read_only(_numbers(values, name, needed, dtype), dtype)
@@ -281,7 +281,7 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
             raise ValueError(f"{name}: needs real numbers, got imaginary parts: {shown(values)}")
         return result.real
     # flags are no numbers: True for a stiffness is a slip
-    if result.dtype.kind not in ("uifc" if dtype is complex else "uif"):
+    if result.dtype.kind not in {complex: "uifc", bool: "b"}.get(dtype, "uif"):
         raise TypeError(f"{name}: needs {needed}, got {shown(values)}")
     if dtype is int and result.dtype.kind == "f":
         if not np.all(np.isfinite(result)) or np.any(result != np.round(result)):
@@ -291,8 +291,10 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
 
 
 def _kind_of(dtype: type, finite: bool) -> str:
-    kind = {float: "numbers", complex: "complex numbers", int: "whole numbers"}[dtype]
-    return f"finite {kind}" if finite and dtype is not int else kind
+    if dtype in (int, bool):
+        return {int: "whole numbers", bool: "flags (True, False)"}[dtype]
+    kind = {float: "numbers", complex: "complex numbers"}[dtype]
+    return f"finite {kind}" if finite else kind
 
 
 def _of_shape(shape: Shape | None) -> str:

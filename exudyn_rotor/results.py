@@ -1,41 +1,90 @@
-"""Results of linear analyses: small objects, stored without pickle.
+"""Results of analyses: small immutable objects, stored without pickle.
 
-A result is a frozen dataclass of arrays, numbers, words and tuples of words. Its class is made
-storable by a decorator; a file names its class, and only registered classes are made from it, so
-loading never executes code from the file.
+A result is a frozen dataclass of arrays, numbers, words and tuples of words. It says of every
+array, by :func:`numbers`, which type and shape it has; the constructor checks that, when a result
+is made and when it is loaded. Its class is made storable by a decorator; a file names its class,
+and only registered classes are made from it, so loading never executes code from the file.
 """
 
 from __future__ import annotations
 
-from dataclasses import MISSING, fields, is_dataclass
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, field, fields, is_dataclass
+from functools import cache
 from os import PathLike
-from typing import TypeVar
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 _LONGEST = 60  # characters of one value in a repr
-_FORMAT = "exudyn_rotor result 1"
-_REGISTERED: dict[str, type] = {}
+_KIND = "result"
+_REGISTERED: dict[str, type[Result]] = {}
 
 Class = TypeVar("Class", bound=type)
+Kind = TypeVar("Kind", bound="Result")
+
+
+def numbers(
+    *shape: int | str,
+    dtype: type = float,
+    finite: bool = True,
+    least: float | None = None,
+    most: float | None = None,
+) -> Any:
+    """Describe an array of a result, for the body of its class.
+
+    Parameters
+    ----------
+    *shape : int or str
+        Sizes; the same word is the same size in all arrays and rows of words of a result.
+    dtype : type, optional
+        float, complex, int or bool.
+    finite : bool, optional
+        False where NaN or infinity mean something.
+    least, most : float, optional
+        Limits of every value.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, eq=False)
+    ... class Track(Result):
+    ...     time: np.ndarray = numbers("steps")
+    ...     place: np.ndarray = numbers("steps", 3)
+    >>> Track([0.0, 1.0], np.zeros((2, 3)))
+    Track(time=array(2,), place=array(2, 3))
+    """
+    told = {"shape": shape, "dtype": dtype, "finite": finite, "least": least, "most": most}
+    return field(metadata=told)
+
+
+def words(size: int | str, default: Any = MISSING) -> Any:
+    """Describe a row of words of a result by its size, see :func:`numbers`."""
+    return field(default=default, metadata={"shape": (size,)})
 
 
 def storable(cls: Class) -> Class:
-    """Register a result class under its name for :func:`save_result` and :func:`load_result`.
+    """Register a result class under its name for :meth:`Result.save` and :func:`load_result`.
 
     To be put above ``@dataclass(frozen=True, eq=False)``. Fields may be arrays of numbers, numbers,
-    words, tuples of words, and None.
+    flags, words, tuples of words, and None.
 
     Raises
     ------
     TypeError
-        If the class is no dataclass, or another of that name is registered.
+        If the class is no dataclass of kind :class:`Result`, has a field of another type, or
+        another class of that name is registered.
     """
-    if not is_dataclass(cls):
-        raise TypeError(f"{cls.__name__}: only a dataclass can be stored")
+    if not is_dataclass(cls) or not issubclass(cls, Result):
+        raise TypeError(f"{cls.__name__}: only a dataclass with the base Result can be stored")
+    for name, hint in _types(cls).items():
+        if hint not in _CHECKS:
+            raise TypeError(f"{cls.__name__}.{name}: a {hint} cannot be stored")
     known = _REGISTERED.setdefault(cls.__name__, cls)
     if known.__module__ != cls.__module__:
         raise TypeError(f"a result class of the name {cls.__name__} is registered already")
@@ -44,7 +93,7 @@ def storable(cls: Class) -> Class:
 
 
 class Result:
-    """Base of result classes: read-only arrays, and saving and loading as methods."""
+    """Base of result classes: checked, read-only, and saved and loaded by methods."""
 
     def __init_subclass__(cls, **options) -> None:
         """Keep the dataclass decorator from making a repr that prints whole arrays."""
@@ -53,10 +102,18 @@ class Result:
             cls.__repr__ = Result.__repr__
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                object.__setattr__(self, field.name, read_only(value, value.dtype))
+        sizes: dict[str, int] = {}
+        types = _types(type(self))
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is None and item.default is None:
+                continue
+            if types[item.name] is np.ndarray:
+                value = _array(value, item)
+            else:
+                value = _CHECKS[types[item.name]](value, item.name)
+            _check_shape(np.shape(value), item, sizes)
+            object.__setattr__(self, item.name, value)
 
     def __repr__(self) -> str:
         """Return the fields in one line: arrays by their shape, long words and tuples cut."""
@@ -64,11 +121,30 @@ class Result:
         return f"{type(self).__name__}({', '.join(parts)})"
 
     def save(self, path: str | PathLike) -> None:
-        """Write the result to an ``.npz`` file; see :func:`save_result`."""
-        save_result(self, path)
+        """Write the result to an ``.npz`` file, lossless and without pickle.
+
+        A file of that name is replaced only by a complete one.
+
+        Raises
+        ------
+        TypeError
+            If `path` is no path, or the class is not registered.
+        OSError
+            If the folder does not exist, `path` is a folder or read-only, or the disk is full.
+        """
+        name = type(self).__name__
+        if _REGISTERED.get(name) is not type(self):
+            raise TypeError(f"a {name} cannot be stored; results that can: {_known()}")
+        data: dict[str, object] = {"class": name}
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is not None:
+                row = isinstance(value, tuple)
+                data[f"field.{item.name}"] = np.array(value, dtype=str) if row else value
+        write_arrays(path, _KIND, data)
 
     @classmethod
-    def load(cls, path: str | PathLike) -> Result:
+    def load(cls: type[Kind], path: str | PathLike) -> Kind:
         """Read a result of this class; see :func:`load_result`.
 
         Raises
@@ -82,6 +158,65 @@ class Result:
         return result
 
 
+@cache
+def _types(cls: type) -> dict[str, Any]:
+    """Return the types of a result's fields; ``X | None`` counts as X."""
+    found = get_type_hints(cls)
+    return {item.name: _without_none(found[item.name]) for item in fields(cls)}
+
+
+def _without_none(hint: Any) -> Any:
+    given = [kind for kind in get_args(hint) if kind is not NoneType]
+    return given[0] if isinstance(hint, UnionType) and len(given) == 1 else hint
+
+
+def _array(value: object, item: Field) -> np.ndarray:
+    """Return a read-only array of the described type, its values within the limits."""
+    told = item.metadata
+    if not told:
+        kind = getattr(value, "dtype", np.dtype(float)).kind
+        return checks.array(value, item.name, finite=False, dtype=_DTYPES.get(kind, float))
+    result = checks.array(value, item.name, finite=told["finite"], dtype=told["dtype"])
+    low, high = told["least"], told["most"]
+    if (low is not None and np.any(result < low)) or (high is not None and np.any(result > high)):
+        limits = [f"≥ {low}"] * (low is not None) + [f"≤ {high}"] * (high is not None)
+        raise ValueError(f"{item.name}: needs values {' and '.join(limits)}")
+    return result
+
+
+def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> None:
+    """Compare a shape with the described one; learn sizes from it."""
+    told = item.metadata.get("shape")
+    if told is None:
+        return
+    if len(shape) == len(told):
+        for word, size in zip(told, shape, strict=True):
+            if isinstance(word, str):
+                sizes.setdefault(word, size)
+    wanted = tuple(sizes.get(size, size) for size in told)
+    if shape != wanted:
+        raise ValueError(f"{item.name}: needs the shape {wanted}, got {shape}")
+
+
+def _words(value: object, name: str) -> tuple[str, ...]:
+    return checks.labels(checks.instance(value, name, tuple), name)
+
+
+def _whole(value: object, name: str) -> int:
+    return int(checks.number(checks.instance(value, name, (int, np.integer)), name))
+
+
+_DTYPES = {"b": bool, "i": int, "u": int, "c": complex}
+_CHECKS: dict[Any, Any] = {
+    np.ndarray: _array,
+    float: checks.number,
+    int: _whole,
+    bool: checks.flag,
+    str: checks.label,
+    tuple[str, ...]: _words,
+}
+
+
 def _short(value: object) -> str:
     """Return an array's shape, or what `repr` says of a small value."""
     if isinstance(value, np.ndarray):
@@ -90,79 +225,67 @@ def _short(value: object) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
-def save_result(result: object, path: str | PathLike) -> None:
-    """Write a result to an ``.npz`` file, lossless and without pickle.
+def load_result(path: str | PathLike) -> Result:
+    """Read a result written by its method ``save``; never executes code from the file.
 
-    A file of that name is replaced only by a complete one.
-
-    Raises
-    ------
-    TypeError
-        If the class is not registered, or a field cannot be stored.
-    """
-    name = type(result).__name__
-    if _REGISTERED.get(name) is not type(result):
-        raise TypeError(f"a {name} cannot be stored; results that can: {_known()}")
-    data = {"format": np.array(_FORMAT), "class": np.array(name)}
-    for field in fields(result):
-        value = getattr(result, field.name)
-        if value is not None:
-            data[f"field.{field.name}"] = _encoded(value, f"{name}.{field.name}")
-    absent = [field.name for field in fields(result) if getattr(result, field.name) is None]
-    data["none"] = np.array(absent, dtype=str)
-    write_arrays(path, data)
-
-
-def load_result(path: str | PathLike) -> object:
-    """Read a result written by :func:`save_result`; never executes code from the file.
+    Returns
+    -------
+    Result
+        Of the class that was saved: Campbell, UnbalanceResponse, ...
 
     Raises
     ------
+    OSError
+        When there is no such file.
     ValueError
-        When the file holds no result of a registered class, or is damaged.
+        When the file holds no result of a known class, is damaged, was written by another version,
+        or its entries do not make a result.
     """
-    data = read_arrays(path)
-    if str(data.get("format")) != _FORMAT:
-        raise ValueError(f"{path}: holds no result; write one with save_result")
-    cls = _REGISTERED.get(str(data.get("class")))
+    data = read_arrays(path, _KIND)
+    name = data.pop("class", None)
+    cls = _REGISTERED.get(str(name))
     if cls is None:
-        raise ValueError(f"{path}: holds a {data.get('class')}; results that can be: {_known()}")
-    return cls(**_arguments(cls, data, path))
+        raise ValueError(f"{path}: holds a {name}; results that can be: {_known()}")
+    try:
+        return cls(**_arguments(cls, data))
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            f"{path}: describes no {name}, or was written by another version ({error})"
+        ) from error
 
 
-def _arguments(cls: type, data: dict[str, np.ndarray], path: str | PathLike) -> dict[str, object]:
-    """Return the constructor's arguments; only a field with a default may be missing."""
-    absent = {str(name) for name in data.get("none", ())}
-    arguments: dict[str, object] = {}
-    for field in fields(cls):
-        key = f"field.{field.name}"
-        if field.name in absent:
-            arguments[field.name] = None
-        elif key in data:
-            arguments[field.name] = _decoded(data[key])
-        elif field.default is MISSING and field.default_factory is MISSING:
-            raise ValueError(f"{path}: the entry {field.name!r} is missing; the file is damaged")
-    return arguments
+def _arguments(cls: type[Result], data: Mapping[str, np.ndarray]) -> dict[str, object]:
+    """Return the constructor's arguments; only what may be None may be missing."""
+    keys = {f"field.{item.name}": item for item in fields(cls)}
+    unknown = [repr(key) for key in data if key not in keys]
+    if unknown:
+        raise ValueError(f"the entries {', '.join(unknown)} are unknown")
+    for key, item in keys.items():
+        if key not in data and item.default is not None:
+            raise ValueError(f"the entry {item.name!r} is missing")
+    types = _types(cls)
+    return {
+        item.name: _decoded(data[key], types[item.name], item)
+        for key, item in keys.items()
+        if key in data
+    }
 
 
-def _encoded(value: object, name: str) -> np.ndarray:
-    """Return a field's value as an array that its kind can be read from again."""
-    if isinstance(value, tuple) and all(isinstance(item, str) for item in value):
-        return np.array(value, dtype=str)
-    if isinstance(value, str | bool | int | float | complex | np.number | np.bool_):
-        return np.array(value)
-    if isinstance(value, np.ndarray) and value.ndim > 0 and value.dtype.kind in "biufc":
-        return value
-    raise TypeError(
-        f"{name}: a {type(value).__name__} cannot be stored; use an array of numbers, a number, "
-        "a word or a tuple of words"
-    )
-
-
-def _decoded(array: np.ndarray) -> object:
-    if array.dtype.kind == "U":
-        return str(array) if array.ndim == 0 else tuple(str(item) for item in array)
-    return array.item() if array.ndim == 0 else array
+def _decoded(array: np.ndarray, hint: Any, item: Field) -> object:
+    """Return a field's value; its exact type is checked here, the rest by the constructor."""
+    if hint is np.ndarray:
+        wanted = item.metadata.get("dtype")
+        if array.ndim == 0 or (wanted is not None and array.dtype != wanted):
+            raise ValueError(f"{item.name}: needs an array of {wanted}, holds {array.dtype}")
+        return array
+    if hint == tuple[str, ...]:
+        if array.ndim != 1 or array.dtype.kind != "U":
+            raise ValueError(f"{item.name}: needs a row of words")
+        return tuple(str(word) for word in array)
+    kind = "U" if hint is str else np.dtype(hint).kind
+    if array.ndim or array.dtype.kind != kind or (hint is float and array.dtype != float):
+        raise ValueError(f"{item.name}: needs one {hint.__name__}, holds {array.dtype}")
+    return array.item()
 
 
 def _known() -> str:

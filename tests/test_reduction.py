@@ -1,6 +1,5 @@
 """Reduction, selection of modes, storage, and the description of the formulations."""
 
-import os
 from dataclasses import fields, replace
 
 import numpy as np
@@ -377,101 +376,6 @@ def test_storage_of_dropped_columns_and_grounded_rotors(tmp_path):
     assert reduced.dropped == ("column 3",)
     reduced.save(str(tmp_path / "rotor"))  # no suffix is added
     assert_identical(ReducedRotor.load(str(tmp_path / "rotor")), reduced)
-
-
-def saved_arrays(reduced: ReducedRotor, path) -> dict:
-    reduced.save(path)
-    with np.load(path, allow_pickle=False) as file:  # nothing in it needs pickle
-        return {name: file[name] for name in file.files}
-
-
-def test_file_with_an_object_is_refused(reduced, tmp_path):
-    path = tmp_path / "rotor.npz"
-    data = saved_arrays(reduced, path)
-    data["invariants.K"] = np.array([Trap()], dtype=object)
-    np.savez(path, **data)
-    with pytest.raises(ValueError, match="without pickle"):
-        ReducedRotor.load(path)
-    assert not Trap.sprung
-
-
-class Trap:
-    """An object that shows if it was unpickled."""
-
-    sprung = False
-
-    def __reduce__(self):
-        return _spring, ()
-
-
-def _spring():
-    Trap.sprung = True
-
-
-@pytest.mark.parametrize("kept", [0, 100, -200])
-def test_cut_off_file_is_refused(reduced, tmp_path, kept):
-    path = tmp_path / "rotor.npz"
-    reduced.save(path)
-    path.write_bytes(path.read_bytes()[:kept])
-    with pytest.raises(ValueError, match="not a readable"):
-        ReducedRotor.load(path)
-
-
-def test_every_flipped_byte_is_noticed_or_harmless(reduced, tmp_path):
-    path = tmp_path / "rotor.npz"
-    bare = reduced.without_shapes()
-    bare.save(path)
-    whole = path.read_bytes()
-    for place in np.linspace(0, len(whole) - 1, 60).astype(int):
-        damaged = bytearray(whole)
-        damaged[place] ^= 0xFF
-        path.write_bytes(bytes(damaged))
-        try:
-            loaded = ReducedRotor.load(path)
-        except ValueError:
-            continue
-        assert_identical(loaded, bare)
-
-
-@pytest.mark.parametrize("name", ["invariants.K", "mode_mass", "interface1.motion", "axis"])
-def test_file_with_a_missing_entry_is_refused(reduced, tmp_path, name):
-    path = tmp_path / "rotor.npz"
-    data = saved_arrays(reduced, path)
-    del data[name]
-    np.savez(path, **data)
-    with pytest.raises(ValueError, match=f"'{name}' is missing"):
-        ReducedRotor.load(path)
-
-
-def test_other_files_are_refused(tmp_path):
-    path = tmp_path / "other.npz"
-    np.savez(path, K=np.eye(3))
-    with pytest.raises(ValueError, match="holds no reduced rotor"):
-        ReducedRotor.load(path)
-    path.write_text("no archive at all")
-    with pytest.raises(ValueError, match="not a readable"):
-        ReducedRotor.load(path)
-    np.save(tmp_path / "single.npy", np.eye(3))
-    with pytest.raises(ValueError, match=r"single\.npy"):
-        ReducedRotor.load(tmp_path / "single.npy")
-    with pytest.raises(FileNotFoundError):
-        ReducedRotor.load(tmp_path / "missing.npz")
-
-
-def test_interrupted_save_leaves_the_old_file(reduced, tmp_path, monkeypatch):
-    path = tmp_path / "rotor.npz"
-    reduced.save(path)
-    before = path.read_bytes()
-
-    def half_written(file, **data):
-        file.write(b"half")
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr(np, "savez_compressed", half_written)
-    with pytest.raises(OSError, match="no space"):
-        reduced.without_shapes().save(path)
-    assert path.read_bytes() == before
-    assert os.listdir(tmp_path) == ["rotor.npz"]  # and no rubbish beside it
 
 
 # ------------------------------------------------------------------ formulations

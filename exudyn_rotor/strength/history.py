@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
-from exudyn_rotor import plotting
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
 from exudyn_rotor.strength.field import StressField, warn_without_static
 
@@ -44,14 +44,21 @@ class StressHistory(Result):
         Mesh nodes (n, 3) [m] and surface.
     """
 
-    time: np.ndarray
-    speed: np.ndarray
-    nodes: np.ndarray
-    stress: np.ndarray
-    peak: np.ndarray
-    peak_time: np.ndarray
-    positions: np.ndarray
-    triangles: np.ndarray
+    time: np.ndarray = numbers("steps")
+    speed: np.ndarray = numbers("steps")
+    nodes: np.ndarray = numbers("chosen", dtype=int, least=0)
+    stress: np.ndarray = numbers("steps", "chosen", 6)
+    peak: np.ndarray = numbers("nodes", least=0.0)
+    peak_time: np.ndarray = numbers("nodes")
+    positions: np.ndarray = numbers("nodes", 3)
+    triangles: np.ndarray = numbers("triangles", "corners", dtype=int, least=0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("nodes", "triangles"):
+            checks.whole_numbers(getattr(self, name).ravel(), name, most=len(self.positions) - 1)
+        if self.triangles.shape[1] not in (3, 6):
+            raise ValueError(f"triangles: needs 3 or 6 columns, got {self.triangles.shape[1]}")
 
     @property
     def von_mises(self) -> np.ndarray:

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.response.places import Source
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
@@ -66,17 +66,22 @@ class Campbell(Result):
         Rigid motions that nothing holds.
     """
 
-    speeds: np.ndarray
-    frequencies_rotating: np.ndarray
-    growth: np.ndarray
-    frequencies_inertial: np.ndarray
-    damping_ratio: np.ndarray
-    log_decrement: np.ndarray
-    whirl_codes: np.ndarray
-    nodal_diameters: np.ndarray
-    vectors: np.ndarray
-    order: np.ndarray
+    speeds: np.ndarray = numbers("speeds")
+    frequencies_rotating: np.ndarray = numbers("speeds", "modes")
+    growth: np.ndarray = numbers("speeds", "modes")
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes")
+    damping_ratio: np.ndarray = numbers("speeds", "modes")
+    log_decrement: np.ndarray = numbers("speeds", "modes", finite=False)
+    whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
+    vectors: np.ndarray = numbers("speeds", "coordinates", "modes", dtype=complex)
+    order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     free_motions: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
+            raise ValueError("order: needs every column once at each speed")
 
     @property
     def whirl(self) -> np.ndarray:

@@ -24,7 +24,7 @@ from exudyn_rotor.linear.modal.resonance import Resonance, full_resonances, reso
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -53,11 +53,15 @@ class CriticalSpeeds(Result):
     """
 
     order: float
-    speeds: np.ndarray
-    frequencies_rotating: np.ndarray
-    whirl: tuple[str, ...]
-    nodal_diameters: np.ndarray
-    vectors: np.ndarray
+    speeds: np.ndarray = numbers("speeds")
+    frequencies_rotating: np.ndarray = numbers("speeds")
+    whirl: tuple[str, ...] = words("speeds")
+    nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
+    vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.labels(self.whirl, "whirl", WHIRLS)
 
     def table(self) -> str:
         """Return the critical speeds as lines of text."""
@@ -138,9 +142,11 @@ class CriticalSpeedMap(Result):
     order : float
     """
 
-    stiffnesses: np.ndarray
-    speeds: np.ndarray
-    whirl_codes: np.ndarray
+    stiffnesses: np.ndarray = numbers("stiffnesses")
+    speeds: np.ndarray = numbers("stiffnesses", "speeds", finite=False)
+    whirl_codes: np.ndarray = numbers(
+        "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
+    )
     order: float
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor.results import Result, numbers, storable, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,10 +33,14 @@ class Response(Result):
         Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
     """
 
-    places: tuple[str, ...]
-    orders: np.ndarray
-    motion: np.ndarray
+    places: tuple[str, ...] = words("places")
+    orders: np.ndarray = numbers("orders", dtype=int)
+    motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.choice(self.frame, "frame", ("inertial", "rotor"))
 
     @property
     def abscissa(self) -> np.ndarray:
@@ -200,7 +204,7 @@ class UnbalanceResponse(Response):
         Spin speeds Ω [rad/s].
     """
 
-    speeds: np.ndarray
+    speeds: np.ndarray = numbers("abscissa")
 
     @property
     def abscissa(self) -> np.ndarray:
@@ -231,7 +235,7 @@ class HarmonicResponse(Response):
         Spin speed Ω [rad/s].
     """
 
-    frequencies: np.ndarray
+    frequencies: np.ndarray = numbers("abscissa")
     speed: float
 
     @property

@@ -26,7 +26,7 @@ from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.stability import floquet
 from exudyn_rotor.linear.stability.full import FullExponents, projected
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 METHODS = ("auto", "floquet", "hill", "eigen")
@@ -59,12 +59,12 @@ class Stability(Result):
     tolerance : float
     """
 
-    speeds: np.ndarray
-    exponents: np.ndarray
-    multipliers: np.ndarray
-    growth: np.ndarray
-    stable: np.ndarray
-    base: np.ndarray
+    speeds: np.ndarray = numbers("speeds")
+    exponents: np.ndarray = numbers("speeds", "modes", dtype=complex)
+    multipliers: np.ndarray = numbers("speeds", "modes", dtype=complex, finite=False)
+    growth: np.ndarray = numbers("speeds")
+    stable: np.ndarray = numbers("speeds", dtype=bool)
+    base: np.ndarray = numbers("speeds")
     tolerance: float
 
     def plot(self, axes: Axes | None = None) -> Axes:

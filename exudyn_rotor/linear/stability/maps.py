@@ -21,7 +21,7 @@ from exudyn_rotor.linear.stability.analysis import (
     exponents,
     source_of,
 )
-from exudyn_rotor.results import Result, storable
+from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.sweep import sweep
 
 
@@ -40,11 +40,11 @@ class StabilityMap(Result):
         Names of x and y.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    growth: np.ndarray
-    stable: np.ndarray
-    labels: tuple[str, ...] = ("x", "y")
+    x: np.ndarray = numbers("x")
+    y: np.ndarray = numbers("y")
+    growth: np.ndarray = numbers("x", "y")
+    stable: np.ndarray = numbers("x", "y", dtype=bool)
+    labels: tuple[str, ...] = words(2, default=("x", "y"))
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line."""

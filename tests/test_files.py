@@ -1,0 +1,471 @@
+"""Files: saving is atomic and touches nothing else, loading refuses all that is not whole."""
+
+import os
+import stat
+import tracemalloc
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import savers
+from hypothesis import given
+from hypothesis import strategies as st
+from point_rotors import SKEW_AXIS, random_rotor
+
+from exudyn_rotor import (
+    Campbell,
+    CriticalSpeedMap,
+    CriticalSpeeds,
+    HarmonicResponse,
+    ReducedRotor,
+    SpinAxis,
+    Stability,
+    StabilityMap,
+    StressHistory,
+    UnbalanceResponse,
+    load_result,
+    storage,
+)
+from exudyn_rotor.reduction.reduced_rotor import Centrifugal
+from exudyn_rotor.storage import read_arrays, write_arrays
+
+RNG = np.random.default_rng(3)
+TRIANGLES = [[0, 1, 2], [1, 2, 3]]
+
+
+def rotor() -> ReducedRotor:
+    """Return a rotor with everything that a file can hold."""
+    made = random_rotor(
+        11, SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5]), interfaces={"left": [0, 1], "right": [4, 5]},
+        triangles=TRIANGLES,
+    ).reduce(3)  # fmt: skip
+    count, size = len(made.shapes.nodes), made.size
+    square = RNG.normal(size=(size, size))
+    return replace(
+        made,
+        invariants=replace(made.invariants, K2=square + square.T, B=square @ square.T),
+        shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
+        centrifugal=Centrifugal(
+            RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
+        ),
+        dropped=("column 7",),
+    )
+
+
+def results() -> list:
+    """Return one small result of every class."""
+    speeds, table = np.array([10.0, 20.0, 30.0]), RNG.uniform(1.0, 2.0, size=(3, 2))
+    codes = np.array([[0, 1], [1, 0], [2, 3]])
+    motion = RNG.normal(size=(3, 2, 1, 6)) + 1j
+    return [
+        Campbell(speeds, *[table] * 5, codes, codes, RNG.normal(size=(3, 4, 2)) + 0j,
+                 np.array([[0, 1], [1, 0], [0, 1]]), ("spin",)),
+        CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
+                       RNG.normal(size=(4, 3)) + 0j),
+        CriticalSpeedMap(speeds, table, codes, 1.0),
+        UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
+        HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
+        Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, 1e-9),
+        StabilityMap(speeds, speeds[:2], table, table > 1.5, ("k [N/m]", "speed [rad/s]")),
+        StressHistory(speeds, speeds, np.array([2, 0]), RNG.normal(size=(3, 2, 6)), np.ones(4),
+                      np.ones(4), RNG.normal(size=(4, 3)), np.array(TRIANGLES)),
+    ]  # fmt: skip
+
+
+STORED = {"ReducedRotor": rotor(), **{type(item).__name__: item for item in results()}}
+# what a response has at nodes, at rest, without damping or beyond the last critical speed
+MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
+MAY_BE_EMPTY = ("triangles", "field.vectors")
+MAY_BE_NAN = {"field.motion", "field.multipliers", "field.log_decrement"}
+
+
+def load(name: str, path: Path) -> object:
+    return ReducedRotor.load(path) if name == "ReducedRotor" else load_result(path)
+
+
+def entries(path: Path) -> dict[str, np.ndarray]:
+    with np.load(path, allow_pickle=False) as file:  # nothing in it needs pickle
+        return {name: file[name] for name in file.files}
+
+
+def saved(name: str, folder: Path) -> tuple[Path, dict[str, np.ndarray]]:
+    path = folder / "kept.npz"
+    STORED[name].save(path)
+    return path, entries(path)
+
+
+def forge(path: Path, data: dict[str, np.ndarray]) -> None:
+    """Write entries with the checksum that belongs to them, as another program might."""
+    whole = {key: np.asarray(value) for key, value in data.items() if key != "sha256"}
+    np.savez(path, sha256=storage._checksum(whole), **whole)
+
+
+def wrong_values(key: str, value: np.ndarray, owner: str) -> dict[str, np.ndarray]:
+    """Return values that an entry must not have, by what is wrong with them."""
+    wrong = {
+        "type": value.astype(np.float32) if value.dtype.kind == "f" else np.array([1.5 + 1j]),
+        "shape": np.concatenate([np.atleast_1d(value)] * 2),
+        "dimension": value[None],
+        "bytes": np.zeros(value.shape, dtype="S4"),
+    }
+    if key.endswith(MAY_BE_LONGER):
+        del wrong["shape"]
+    if value.dtype.kind == "U":
+        wrong["empty name"] = np.full(np.atleast_1d(value).shape, "")
+        return wrong
+    wrong["text"] = np.full(value.shape, "stiff")
+    may_be_nan = key in MAY_BE_NAN or (owner, key) == ("CriticalSpeedMap", "field.speeds")
+    if value.dtype.kind in "fc" and not may_be_nan:
+        for label, number in (("NaN", np.nan), ("infinite", -np.inf)):
+            wrong[label] = value.copy()
+            wrong[label][(0,) * value.ndim] = number
+    if value.ndim > 1 and not key.endswith(MAY_BE_EMPTY):
+        wrong["emptied"] = value[:0]
+    return wrong
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_no_replaced_entry_loads(name, tmp_path):
+    """Neither beside the old checksum, which tells damage, nor with one of its own."""
+    path, data = saved(name, tmp_path)
+    tried, loaded = 0, []
+    for key, value in data.items():
+        if key in ("sha256", "format"):
+            continue
+        for label, wrong in wrong_values(key, value, name).items():
+            np.savez(path, **data | {key: wrong})
+            with pytest.raises(ValueError, match=r"kept\.npz: damaged"):
+                load(name, path)
+            forge(path, data | {key: wrong})
+            try:
+                load(name, path)
+                loaded.append((key, label))
+            except ValueError as error:
+                assert "kept.npz: " in str(error)  # noqa: PT017
+            tried += 1
+    assert loaded == []
+    assert tried > 4 * (len(data) - 2)
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_no_missing_or_added_entry_loads(name, tmp_path):
+    path, data = saved(name, tmp_path)
+    for key in data:
+        forge(path, {other: value for other, value in data.items() if other != key})
+        if key == "sha256":  # forged again
+            load(name, path)
+            continue
+        optional = key.endswith((".K2", ".B", "shapes.stress")) or "centrifugal." in key
+        if not optional:
+            with pytest.raises(ValueError, match=r"kept\.npz: "):
+                pytest.fail(f"without {key}: loaded as {load(name, path)!r}")
+    for key in ("added", "field.added", "invariants.added", "attached.added"):
+        forge(path, data | {key: np.zeros(3)})
+        with pytest.raises(ValueError, match=r"added' are unknown|added' is unknown"):
+            load(name, path)
+
+
+WRONG_ROTORS = {
+    "M": lambda data: -data["invariants.M"],
+    "K": lambda data: data["invariants.K"] - 2.0 * data["invariants.K"].max() * np.eye(9),
+    "G": lambda data: np.eye(9),
+    "C": lambda data: data["invariants.C"] + np.triu(np.ones((9, 9)), 1),
+    "K2": lambda data: data["invariants.K2"] + np.triu(np.ones((9, 9)), 1),
+    "J": lambda data: -data["invariants.J"],
+    "mass": lambda data: -data["invariants.mass"],
+    "direction": lambda data: np.roll(data["invariants.direction"], 1),
+}
+
+
+@pytest.mark.parametrize("key", WRONG_ROTORS)
+def test_no_impossible_rotor_loads(key, tmp_path):
+    path, data = saved("ReducedRotor", tmp_path)
+    forge(path, data | {f"invariants.{key}": WRONG_ROTORS[key](data)})
+    with pytest.raises(ValueError, match=rf"kept\.npz: .*invariants\.{key}|\({key}: "):
+        ReducedRotor.load(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("ReducedRotor", {"shapes.triangles": np.array([[0, 1, 6]])}),
+        ("ReducedRotor", {"interface_names": np.array(["left", "left"])}),
+        ("ReducedRotor", {"rigid": np.array([f"motion {i}" for i in range(10)])}),
+        ("ReducedRotor", {"centrifugal.yield_stress": np.array(-1.0)}),
+        ("Campbell", {"field.whirl_codes": np.full((3, 2), 8)}),
+        ("Campbell", {"field.order": np.zeros((3, 2), dtype=int)}),
+        ("StressHistory", {"field.nodes": np.array([2, 4])}),
+        ("StressHistory", {"field.triangles": np.array([[0, 1, 4]])}),
+        ("HarmonicResponse", {"field.frame": np.array("space")}),
+        ("UnbalanceResponse", {"field.places": np.array(["left"])}),
+        ("CriticalSpeeds", {"class": np.array("Campbell")}),
+    ],
+)
+def test_values_that_contradict_each_other_are_refused(name, changes, tmp_path):
+    path, data = saved(name, tmp_path)
+    forge(path, data | changes)
+    with pytest.raises(ValueError, match=r"kept\.npz: describes no "):
+        load(name, path)
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_whole_files_come_back_bit_for_bit(name, tmp_path):
+    path, data = saved(name, tmp_path)
+    load(name, path).save(tmp_path / "again.npz")
+    again = entries(tmp_path / "again.npz")
+    assert str(again["sha256"]) == str(data["sha256"])
+
+
+# ------------------------------------------------------------------ damage
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> tuple[Path, bytes, str]:
+    path, data = saved("ReducedRotor", tmp_path_factory.mktemp("whole"))
+    return path, path.read_bytes(), str(data["sha256"])
+
+
+def refused_or_same(path: Path, checksum: str) -> None:
+    """Load a file: it is refused by our message, or what it holds did not change."""
+    try:
+        found = ReducedRotor.load(path)
+    except ValueError as error:
+        assert "kept.npz: " in str(error)  # noqa: PT017
+        return
+    found.save(path.with_name("found.npz"))
+    assert str(entries(path.with_name("found.npz"))["sha256"]) == checksum
+
+
+@given(share=st.floats(0.0, 1.0, exclude_max=True))
+def test_truncated_files_are_refused(whole, share):
+    path, content, _ = whole
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(ValueError, match=r"kept\.npz: damaged"):
+        ReducedRotor.load(path)
+
+
+@given(share=st.floats(0.0, 1.0, exclude_max=True), flip=st.integers(1, 255))
+def test_flipped_bytes_are_noticed_or_harmless(whole, share, flip):
+    path, content, checksum = whole
+    changed = bytearray(content)
+    changed[int(share * len(content))] ^= flip
+    path.write_bytes(bytes(changed))
+    refused_or_same(path, checksum)
+
+
+def bomb(path: Path, size: int) -> None:
+    """Write an array of zeros that compresses to a thousandth."""
+    archive = zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED)
+    with archive, archive.open("values.npy", "w") as stream:
+        header = {"descr": "<f8", "fortran_order": False, "shape": (size // 8,)}
+        np.lib.format.write_array_header_1_0(stream, header)
+        for _ in range(size // 2**20):
+            stream.write(bytes(2**20))
+
+
+def false_header(path: Path, size: int) -> None:
+    """Write an array whose header tells more than there is."""
+    with zipfile.ZipFile(path, "w") as archive, archive.open("values.npy", "w") as stream:
+        header = {"descr": "<f8", "fortran_order": False, "shape": (size // 8,)}
+        np.lib.format.write_array_header_1_0(stream, header)
+        stream.write(bytes(64))
+
+
+@pytest.mark.parametrize(("write", "message"), [(bomb, "larger"), (false_header, "size")])
+def test_small_files_take_no_memory(write, message, tmp_path):
+    path, size = tmp_path / "big.npz", 100 * 2**20
+    write(path, size)
+    assert path.stat().st_size < size / 500
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match=rf"big\.npz: damaged.*{message}"):
+            read_arrays(path, "thing")
+        assert tracemalloc.get_traced_memory()[1] < size / 20
+    finally:
+        tracemalloc.stop()
+
+
+def test_two_entries_of_one_name_are_refused(tmp_path):
+    path = tmp_path / "a.npz"
+    write_arrays(path, "thing", {"a": np.zeros(2)})
+    with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
+        archive.writestr("a.npy", b"")
+    with pytest.raises(ValueError, match="two entries of one name"):
+        read_arrays(path, "thing")
+
+
+def test_arrays_that_compress_well_can_be_read_again(tmp_path, monkeypatch):
+    monkeypatch.setattr(storage, "_FREE_BYTES", 10_000)
+    write_arrays(tmp_path / "a.npz", "thing", {"zeros": np.zeros(100_000)})
+    assert read_arrays(tmp_path / "a.npz", "thing")["zeros"].shape == (100_000,)
+
+
+class Trap:
+    """An object that shows if it was unpickled."""
+
+    sprung = False
+
+    def __reduce__(self):
+        return _spring, ()
+
+
+def _spring():
+    Trap.sprung = True
+
+
+def test_objects_are_neither_read_nor_written(tmp_path):
+    path, data = saved("ReducedRotor", tmp_path)
+    np.savez(path, **data | {"invariants.K": np.array([Trap()], dtype=object)})
+    with pytest.raises(ValueError, match="without pickle"):
+        ReducedRotor.load(path)
+    assert not Trap.sprung
+    with pytest.raises(TypeError, match="a: cannot be stored"):
+        write_arrays(path, "thing", {"a": Trap()})
+
+
+# ------------------------------------------------------------------ other files
+
+
+def test_other_files_are_told_apart(tmp_path):
+    path = tmp_path / "other.npz"
+    np.savez(path, K=np.eye(3))
+    with pytest.raises(ValueError, match="holds no reduced rotor, it was not written by"):
+        ReducedRotor.load(path)
+    STORED["Campbell"].save(path)
+    with pytest.raises(ValueError, match="holds no reduced rotor, but a result"):
+        ReducedRotor.load(path)
+    STORED["ReducedRotor"].save(path)
+    with pytest.raises(ValueError, match="holds no result, but a reduced rotor"):
+        load_result(path)
+    for version in (1, 3):
+        forge(path, entries(path) | {"format": f"exudyn_rotor reduced rotor {version}"})
+        with pytest.raises(ValueError, match="written by another version"):
+            ReducedRotor.load(path)
+    np.savez(path, format="exudyn_rotor reduced rotor 1", mode_mass=np.eye(3))
+    with pytest.raises(ValueError, match="written by another version"):
+        ReducedRotor.load(path)
+    path.write_text("no archive at all")
+    with pytest.raises(ValueError, match="not a readable"):
+        ReducedRotor.load(path)
+    np.save(tmp_path / "single.npy", np.eye(3))
+    with pytest.raises(ValueError, match=r"single\.npy"):
+        ReducedRotor.load(tmp_path / "single.npy")
+
+
+@pytest.mark.parametrize(
+    ("path", "kind", "message"),
+    [
+        ("missing.npz", FileNotFoundError, "path: there is no file"),
+        (".", IsADirectoryError, "path: needs a file"),
+        (3, TypeError, "path: needs the path of a file"),
+        (b"a", TypeError, "path: needs the path of a file"),
+        ("", ValueError, "path: needs the path of a file"),
+    ],
+)
+def test_paths_that_cannot_be_loaded(path, kind, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for call in (ReducedRotor.load, load_result, Campbell.load):
+        with pytest.raises(kind, match=message):
+            call(path)
+
+
+# ------------------------------------------------------------------ saving
+
+
+@pytest.mark.parametrize(
+    ("path", "kind", "message"),
+    [
+        ("none/a.npz", FileNotFoundError, r"path: the folder '.*none' does not exist"),
+        (".", IsADirectoryError, "path: needs the name of a file"),
+        (3, TypeError, "path: needs the path of a file"),
+        ("", ValueError, "path: needs the path of a file"),
+        ("loop", OSError, "path: 'loop' is a link that leads to itself"),
+        ("pipe", OSError, "path: needs the name of a file, 'pipe' is a device"),
+    ],
+)
+@pytest.mark.skipif(os.name == "nt", reason="links and pipes of POSIX")
+def test_paths_that_cannot_be_saved_to(path, kind, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    os.symlink("loop", "loop")
+    os.mkfifo("pipe")
+    for name in ("ReducedRotor", "Campbell"):
+        with pytest.raises(kind, match=message):
+            STORED[name].save(path)
+    assert sorted(os.listdir()) == ["loop", "pipe"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="modes of POSIX")
+def test_new_files_take_the_umask_and_old_ones_keep_their_mode(tmp_path):
+    path, old = tmp_path / "a.npz", os.umask(0o027)
+    try:
+        write_arrays(path, "thing", {})
+        assert stat.S_IMODE(path.stat().st_mode) == 0o640
+        for mode in (0o600, 0o666, 0o755):
+            path.chmod(mode)
+            write_arrays(path, "thing", {})
+            assert stat.S_IMODE(path.stat().st_mode) == mode
+    finally:
+        os.umask(old)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need rights there")
+def test_links_are_followed(tmp_path):
+    (tmp_path / "far").mkdir()
+    target, link = tmp_path / "far" / "target.npz", tmp_path / "link.npz"
+    link.symlink_to("far/target.npz")
+    for _ in range(2):  # the target is made, then replaced
+        write_arrays(link, "thing", {})
+        assert link.is_symlink()
+        assert not target.is_symlink()
+        assert read_arrays(link, "thing") == {}
+    assert sorted(os.listdir(tmp_path)) == ["far", "link.npz"]
+    assert os.listdir(tmp_path / "far") == ["target.npz"]
+
+
+def test_read_only_files_stay(tmp_path, monkeypatch):
+    path = tmp_path / "a.npz"
+    write_arrays(path, "thing", {"a": np.ones(1)})
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anything
+    with pytest.raises(PermissionError, match=r"path: the file '.*a\.npz' is read-only"):
+        write_arrays(path, "thing", {"a": np.zeros(1)})
+    assert read_arrays(path, "thing")["a"] == 1.0
+
+
+def test_other_files_beside_it_are_left_alone(tmp_path):
+    for name in ("u.npz.part", "u.npz.draft", "u.npz.0123456789abcdef.draft"):
+        (tmp_path / name).write_text("mine")
+    write_arrays(tmp_path / "u.npz", "thing", {})
+    assert len(os.listdir(tmp_path)) == 4
+    assert all(file.read_text() == "mine" for file in tmp_path.glob("u.npz.*"))
+
+
+def test_long_names_have_drafts_too(tmp_path):
+    path = tmp_path / ("ä" * 120 + ".npz")
+    write_arrays(path, "thing", {})
+    assert os.listdir(tmp_path) == [path.name]
+
+
+@pytest.mark.parametrize("step", [(np, "savez_compressed"), (os, "fsync"), (os, "replace")])
+def test_interrupted_saves_leave_the_old_file_and_no_draft(step, tmp_path, monkeypatch):
+    path = tmp_path / "a.npz"
+    write_arrays(path, "thing", {"a": np.ones(1)})
+
+    def full(*_, **__):
+        raise OSError("no space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(*step, full)
+        with pytest.raises(OSError, match="no space"):
+            write_arrays(path, "thing", {"a": np.zeros(1)})
+    assert read_arrays(path, "thing")["a"] == 1.0
+    assert os.listdir(tmp_path) == ["a.npz"]
+
+
+def test_killed_savers_and_a_reader_lose_nothing(tmp_path):
+    pairs = savers.killed_pairs(tmp_path, 2)
+    assert (pairs.lost, pairs.unreadable) == (0, 0)
+    reader = savers.beside_a_reader(tmp_path, 1.0)
+    assert (reader.lost, reader.unreadable) == (0, 0)
+    assert min(pairs.saves, reader.saves, reader.loads) >= 3
