@@ -1,5 +1,6 @@
 """Component modes against Exudyn's FEMinterface, beam theory and dense linear algebra."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import netgen.occ as occ
@@ -62,26 +63,18 @@ def short_shaft(short_fem) -> SolidRotor:
     return rotor
 
 
-def with_interfaces(rotor, interfaces) -> SimpleNamespace:
-    """Return what the mode functions read of a rotor, with other interfaces."""
-    return SimpleNamespace(
-        nodes=rotor.nodes,
-        mass=rotor.mass,
-        stiffness=rotor.stiffness,
-        rigid_motions=rotor.rigid_motions,
-        interfaces=dict(interfaces),
-    )
+def with_interfaces(rotor, interfaces) -> SolidRotor:
+    """Return the rotor with other interfaces."""
+    return replace(rotor, interfaces=interfaces)
 
 
-def supported(rotor, springs: dict[int, float], rigid_motions: int) -> SimpleNamespace:
+def supported(rotor, springs: dict[int, float], rigid_motions: int) -> SolidRotor:
     """Return the rotor with springs [N/m] from nodes to ground in x, y and z."""
     diagonal = np.zeros(rotor.mass.shape[0])
     for node, value in springs.items():
         diagonal[3 * node : 3 * node + 3] = value
-    held = with_interfaces(rotor, rotor.interfaces)
-    held.stiffness = sp.csr_array(rotor.stiffness + sp.diags_array(diagonal))
-    held.rigid_motions = rigid_motions
-    return held
+    stiffness = sp.csr_array(rotor.stiffness + sp.diags_array(diagonal))
+    return replace(rotor, stiffness=stiffness, rigid_motions=rigid_motions)
 
 
 def nearest(rotor, point) -> int:
@@ -275,12 +268,12 @@ def test_single_nodes_have_translations_only(coupling):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"interfaces": ["middle"]}, "no interface 'middle'; the rotor has left, right"),
+        ({"interfaces": ["middle"]}, "'middle' is unknown; there are: 'left', 'right'"),
         ({"interfaces": ["left", "left"]}, "each of them once"),
-        ({"interfaces": []}, "at least one interface"),
+        ({"interfaces": []}, "interfaces: name at least one"),
         ({"coupling": "RBE4"}, "use 'RBE2' or 'RBE3'"),
         ({"count": 100_000}, "100000 eigenmodes asked for"),
-        ({"count": -1}, "between 0 and"),
+        ({"count": -1}, "count: needs a whole number ≥ 0, got -1"),
     ],
 )
 def test_wrong_requests_are_refused(shaft, change, message):
@@ -309,8 +302,7 @@ def test_interfaces_that_cannot_hold_the_rotor_are_refused(shaft, coupling):
 
 
 def test_wrong_number_of_rigid_motions_is_refused(shaft):
-    loose = with_interfaces(shaft.rotor, {})
-    loose.rigid_motions = 5
+    loose = replace(shaft.rotor, rigid_motions=5)
     with pytest.raises(ValueError, match="loose parts"):
         free_modes(loose, 2)
     held = supported(shaft.rotor, {0: 1e8}, rigid_motions=6)
@@ -339,11 +331,9 @@ def test_unfit_fem_interface_modes_are_refused(shaft):
     with pytest.raises(ValueError, match="ComputeEigenmodes"):
         fem_interface_modes(shaft.rotor, FEMinterface())
     nodes = shaft.rotor.nodes
-    fem = SimpleNamespace(
-        modeBasis={"matrix": np.ones((nodes.size, 2))},
-        nodes={"Position": nodes + 1e-6},
-        postProcessingModes={},
-    )
+    fem = FEMinterface()
+    fem.modeBasis = {"matrix": np.ones((nodes.size, 2))}
+    fem.nodes = {"Position": nodes + 1e-6}
     with pytest.raises(ValueError, match="modal basis from another mesh: node positions"):
         fem_interface_modes(shaft.rotor, fem)
     fem.nodes = {"Position": nodes[1:]}

@@ -1,5 +1,6 @@
 """Reduction, selection of modes, storage, and the description of the formulations."""
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -289,7 +290,7 @@ def all_arrays(value, prefix: str = "") -> dict[str, np.ndarray]:
             found[name] = entry
         elif hasattr(entry, "__dataclass_fields__"):
             found |= all_arrays(entry, f"{name}.")
-        elif isinstance(entry, dict):
+        elif isinstance(entry, Mapping):
             for key, item in entry.items():
                 found |= all_arrays(item, f"{name}.{key}.")
     return found
@@ -433,22 +434,22 @@ def test_a_number_is_a_constant_speed():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"translation": "plane"}, "translation 'plane' is unknown"),
-        ({"translation": None}, "translation None is unknown"),
-        ({"spin": "constant"}, "spin 'constant' is unknown"),
-        ({"spin": True}, "spin True is unknown"),
-        ({"spin": float("nan")}, "must be finite"),
-        ({"spin": 1.0, "drive": "soft"}, "drive 'soft' is unknown"),
+        ({"translation": "plane"}, "translation.*: 'plane' is unknown"),
+        ({"translation": None}, "translation.*: needs one of .*, got None"),
+        ({"spin": "constant"}, "spin.*: 'constant' is unknown"),
+        ({"spin": True}, "spin: .* got True"),
+        ({"spin": float("nan")}, "spin: .* got nan"),
+        ({"spin": 1.0, "drive": "soft"}, "drive: 'soft' is unknown"),
         ({"drive": "elastic"}, "needs a prescribed spin"),
     ],
 )
 def test_wrong_formulations_are_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((TypeError, ValueError), match=message):
         Formulation(**arguments)
 
 
 def test_wrong_prescribed_motions_are_refused():
-    with pytest.raises(TypeError, match="'rate' must be a function of time"):
+    with pytest.raises(TypeError, match="rate over time: needs a function, got 1.0"):
         PrescribedMotion(np.sin, 1.0, np.cos)
-    with pytest.raises(ValueError, match="duration must be positive"):
+    with pytest.raises(ValueError, match="duration: needs .* > 0, got 0.0"):
         PrescribedMotion.run_up(0.0, 10.0, 0.0)

@@ -138,7 +138,7 @@ def test_modes_at_speed_refuse(rotor):
         spinning_modes(rotor, 2, [100.0])
     carrying = rotor.with_prestress(rotor.prestress())
     for speeds in ([0.0], [np.nan], 5.0, []):
-        with pytest.raises(ValueError, match="speeds: need a list of positive numbers"):
+        with pytest.raises(ValueError, match="speeds: need"):
             spinning_modes(carrying, 2, speeds)
     with pytest.raises(ValueError, match="makes the rotor buckle"):
         spinning_modes(carrying, 2, [1e7])

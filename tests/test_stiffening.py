@@ -62,7 +62,9 @@ def test_level_none_has_no_terms():
 
 def test_unknown_level_is_refused():
     invariants, _, _ = random_invariants(1)
-    with pytest.raises(ValueError, match="'bend' is unknown; use one of none, tilt, full"):
+    with pytest.raises(
+        ValueError, match="stiffening: 'bend' is unknown; use one of 'none', 'tilt', 'full'"
+    ):
         stiffening(invariants, "bend")
 
 

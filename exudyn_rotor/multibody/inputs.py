@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.theory.formulation import Formulation, PrescribedMotion
+from exudyn_rotor.theory.formulation import Formulation, start_values
 
 MARKER_KINDS = ("rigid", "position")
 
@@ -58,7 +58,7 @@ def placement(
             raise ValueError(
                 "velocity given twice: by initial_velocity and by the translation τ(t)"
             )
-        _, velocity, _ = _start(formulation.translation, "translation", 3)
+        _, velocity, _ = start_values(formulation.translation, "translation")
     else:
         _check_direction(formulation, velocity, turn @ direction)
     if formulation.has_spin:
@@ -70,16 +70,8 @@ def placement(
             raise ValueError(
                 f"spin given twice: {name}={value} and a prescribed spin; leave {name} out"
             )
-    angle, speed, _ = _start(formulation.spin, "spin", None)
-    return Placement(place, turn, velocity, float(angle), float(speed))
-
-
-def _start(motion: PrescribedMotion, name: str, size: int | None) -> list[np.ndarray]:
-    """Return value, rate and acceleration of a prescribed motion at t = 0, checked."""
-    return [
-        _finite(getattr(motion, part)(0.0), f"{name}: its {part} at t = 0", "SI", size)
-        for part in ("value", "rate", "acceleration")
-    ]
+    angle, speed, _ = start_values(formulation.spin, "spin")
+    return Placement(place, turn, velocity, angle, speed)
 
 
 def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.inertia_relief import (
@@ -39,7 +39,7 @@ class ModeBasis:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If shapes do not fit or a number that must be finite is not.
     """
 
@@ -50,32 +50,23 @@ class ModeBasis:
     stress: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "labels", tuple(self.labels))
-        if self.frequencies is None:
-            object.__setattr__(self, "frequencies", np.full(len(self.labels), np.nan))
-        for key in ("matrix", "nodes", "frequencies", "stress"):
-            if getattr(self, key) is not None:
-                object.__setattr__(self, key, read_only(getattr(self, key)))
-        self._check_shapes()
-        for key in ("matrix", "nodes", "stress"):
-            if getattr(self, key) is not None and not np.all(np.isfinite(getattr(self, key))):
-                raise ValueError(f"mode basis: {key} has entries that are not finite")
-
-    def _check_shapes(self) -> None:
-        nodes, modes = len(self.nodes), len(self.labels)
-        expected = {
-            "matrix": (3 * nodes, modes),
-            "nodes": (nodes, 3),
-            "frequencies": (modes,),
-            "stress": (nodes, 6, modes),
+        labels = checks.labels(self.labels, "mode basis: labels")
+        nodes = checks.array(self.nodes, "mode basis: nodes", "m", shape=(None, 3))
+        modes, frequencies = len(labels), self.frequencies
+        frequencies = np.full(modes, np.nan) if frequencies is None else frequencies
+        checked = {
+            "labels": labels,
+            "nodes": nodes,
+            "matrix": checks.array(self.matrix, "mode basis: matrix", shape=(nodes.size, modes)),
+            "frequencies": checks.array(
+                frequencies, "mode basis: frequencies", "rad/s", shape=(modes,), finite=False
+            ),
         }
-        for key, shape in expected.items():
-            value = getattr(self, key)
-            if value is not None and value.shape != shape:
-                raise ValueError(
-                    f"mode basis: {key} has the shape {value.shape}, but {nodes} nodes and "
-                    f"{modes} labels need {shape}"
-                )
+        if self.stress is not None:
+            shape = (len(nodes), 6, modes)
+            checked["stress"] = checks.array(self.stress, "mode basis: stress", shape=shape)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
 
 def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-10) -> ModeBasis:
@@ -99,7 +90,7 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If there are not that many modes, parts are loose, or the iteration misses the tolerance.
 
     Notes
@@ -107,6 +98,8 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     The iteration needs ``K⁻¹`` on the motions without a rigid part. Inertia relief gives it with
     no shift, so that nothing depends on a guess of the lowest frequency.
     """
+    check_rotor(rotor)
+    checks.tolerance(tolerance)
     stiffness, mass = rotor.stiffness, rotor.mass
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
     size, rigid_count = rigid.shape
@@ -133,7 +126,13 @@ def eigenmode_labels(count: int) -> tuple[str, ...]:
 
 def check_count(count: int, available: int, *, smallest: int) -> None:
     """Refuse a number of eigenmodes that the model cannot have."""
-    if not smallest <= count <= available:
+    if not smallest <= checks.count(count, "count", least=smallest) <= available:
         raise ValueError(
-            f"{count} eigenmodes asked for; this model has between {smallest} and {available}"
+            f"count: {count} eigenmodes asked for; this model has between {smallest} and "
+            f"{available}"
         )
+
+
+def check_rotor(rotor: FiniteElementRotor) -> None:
+    """Refuse anything that is not a solid rotor."""
+    checks.instance(rotor, "rotor", FiniteElementRotor, "SolidRotor.from_ngsolve(…) makes one")

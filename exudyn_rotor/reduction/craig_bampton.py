@@ -11,7 +11,8 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from exudyn_rotor.reduction.component import ModeBasis, check_count, eigenmode_labels
+from exudyn_rotor import checks
+from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, eigenmode_labels
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
@@ -68,13 +69,15 @@ def craig_bampton_modes(
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If an interface or coupling is unknown, RBE2 interfaces share nodes, an interface has its
         nodes on one line, the interfaces do not hold the rotor, or there are fewer eigenmodes.
     """
+    check_rotor(rotor)
+    checks.count(count, "count")
+    checks.choice(coupling, "coupling", _COUPLINGS)
+    checks.tolerance(tolerance)
     chosen = _choose(rotor.interfaces, interfaces)
-    if coupling not in _COUPLINGS:
-        raise ValueError(f"coupling {coupling!r} is unknown; use 'RBE2' or 'RBE3'")
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen, tolerance)
     labels = sum((_labels(interface) for interface in chosen), ()) + eigenmode_labels(count)
     return ModeBasis(
@@ -86,12 +89,9 @@ def craig_bampton_modes(
 
 
 def _choose(known: Mapping[str, Interface], names: Iterable[str] | None) -> list[Interface]:
-    names = list(known) if names is None else list(names)
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        raise ValueError(f"no interface {unknown[0]!r}; the rotor has {', '.join(known) or 'none'}")
+    names = checks.labels(list(known) if names is None else names, "interfaces", known)
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"name at least one interface, and each of them once; got {names}")
+        raise ValueError(f"interfaces: name at least one, and each of them once; got {list(names)}")
     return [known[name] for name in names]
 
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from exudyn.FEM import FEMinterface
 
-from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor import checks
+from exudyn_rotor.reduction.component import ModeBasis, check_rotor
 from exudyn_rotor.solid.matrices import check_same_mesh
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-
-if TYPE_CHECKING:
-    from exudyn.FEM import FEMinterface
 
 
 def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBasis:
@@ -30,15 +27,17 @@ def fem_interface_modes(rotor: FiniteElementRotor, fem: FEMinterface) -> ModeBas
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If there is no basis, it belongs to another mesh, or the stress to another basis.
     """
+    check_rotor(rotor)
+    checks.instance(fem, "fem", FEMinterface)
     if "matrix" not in fem.modeBasis:
         raise ValueError(
             "the FEMinterface holds no modes; call fem.ComputeEigenmodes(…) or "
             "fem.ComputeHurtyCraigBamptonModes(…) first"
         )
-    matrix = np.asarray(fem.modeBasis["matrix"], dtype=float)
+    matrix = checks.matrix(fem.modeBasis["matrix"], "fem: its modes")
     check_same_mesh(rotor.nodes, np.asarray(fem.nodes.get("Position", ()), dtype=float))
     if matrix.shape[0] != rotor.nodes.size:
         raise ValueError(

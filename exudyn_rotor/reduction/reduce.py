@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg
 from exudyn.FEM import FEMinterface
 
+from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attachment import attachment_modes
@@ -39,9 +40,10 @@ def reduce_rotor(
     prestress: Prestress | bool | None = None,
 ) -> ReducedRotor:
     """Reduce `rotor`; see :meth:`exudyn_rotor.SolidRotor.reduce`."""
+    checks.flag(stress, "stress")
+    checks.flag(keep_shapes, "keep_shapes")
+    checks.tolerance(rank_tolerance, "rank_tolerance")
     rotor = with_chosen_prestress(rotor, prestress)
-    if not 0.0 <= rank_tolerance < 1.0:
-        raise ValueError(f"rank_tolerance: needs a share from 0 to below 1, got {rank_tolerance!r}")
     return _reduced(rotor, _component_modes(rotor, modes), stress, keep_shapes, rank_tolerance)
 
 
@@ -67,14 +69,14 @@ def _reduced(
         rotor.axis.direction,
     )
     _check_stable(invariants, len(basis.rigid))
-    raw_mass = component.matrix.T @ (rotor.mass @ component.matrix)
+    own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
         invariants=_stiffened(rotor, _cleaned(invariants, len(basis.rigid)), basis.matrix),
         rigid=basis.rigid,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=basis.from_modes.T @ raw_mass @ basis.from_modes,
+        mode_mass=own_share.T @ (rotor.mass @ own_share),
         dropped=basis.dropped,
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
@@ -104,15 +106,16 @@ def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
     if isinstance(modes, FEMinterface):
         return fem_interface_modes(rotor, modes)
     if isinstance(modes, np.ndarray):
-        labels = tuple(f"column {i + 1}" for i in range(modes.shape[-1]))
-        return ModeBasis(modes, labels, nodes=rotor.nodes)
+        columns = checks.array(modes, "modes", shape=(rotor.nodes.size, None))
+        labels = tuple(f"column {i + 1}" for i in range(columns.shape[1]))
+        return ModeBasis(columns, labels, nodes=rotor.nodes)
     if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
         if modes == 0:  # a rigid rotor
             return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
         return free_modes(rotor, int(modes))
     raise TypeError(
         f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
-        f"an array of displacement columns, got {type(modes).__name__}"
+        f"an array of displacement columns, got {checks.shown(modes)}"
     )
 
 

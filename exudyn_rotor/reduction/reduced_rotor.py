@@ -9,9 +9,11 @@ from os import PathLike
 
 import numpy as np
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
+
+_SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +28,11 @@ class ReducedInterface:
         Root mean square radius of the nodes [m].
     motion : ndarray, shape (6, k)
         Displacement of the reference point and rotation vector per column, mesh axes.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, an entry is not finite, or the radius is negative.
     """
 
     reference: np.ndarray
@@ -34,7 +41,13 @@ class ReducedInterface:
     motion: np.ndarray
 
     def __post_init__(self) -> None:
-        _freeze(self, "reference", "center", "motion")
+        _set(
+            self,
+            reference=checks.vector(self.reference, "interface: reference", "m"),
+            center=checks.vector(self.center, "interface: center", "m"),
+            radius=checks.number(self.radius, "interface: radius", "m", least=0.0),
+            motion=checks.array(self.motion, "interface: motion", shape=(6, None)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +63,11 @@ class ModeShapes:
     triangles : ndarray of int, shape (t, 3) or (t, 6)
     stress : ndarray or None, shape (n, 6, k)
         Stress columns xx, yy, zz, yz, xz, xy, mesh axes [Pa].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, an entry is not finite, or a triangle names a node that is not there.
     """
 
     nodes: np.ndarray
@@ -58,8 +76,21 @@ class ModeShapes:
     stress: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        _freeze(self, "nodes", "matrix", "stress")
-        object.__setattr__(self, "triangles", read_only(self.triangles, np.int64))
+        nodes = checks.array(self.nodes, "shapes: nodes", "m", shape=(None, 3))
+        matrix = checks.array(self.matrix, "shapes: matrix", shape=(nodes.size, None))
+        triangles = checks.array(self.triangles, "shapes: triangles", shape=(None, None), dtype=int)
+        if triangles.shape[1] not in (3, 6):
+            raise ValueError(f"shapes: triangles need 3 or 6 nodes, got {triangles.shape[1]}")
+        if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(nodes):
+            raise ValueError(
+                f"shapes: triangles need nodes 0 to {len(nodes) - 1}, got {triangles.min()} to "
+                f"{triangles.max()}"
+            )
+        stress = self.stress
+        if stress is not None:
+            shape = (len(nodes), 6, matrix.shape[1])
+            stress = checks.array(stress, "shapes: stress", "Pa", shape=shape)
+        _set(self, nodes=nodes, matrix=matrix, triangles=triangles, stress=stress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +107,11 @@ class Centrifugal:
         Yield stress of the material [Pa].
     constant_stress : ndarray or None, shape (n, 6)
         Stress at rest, which does not depend on the speed, components as in `stress` [Pa].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, an entry is not finite, or the yield stress is not positive.
     """
 
     displacement: np.ndarray | None = None
@@ -84,10 +120,36 @@ class Centrifugal:
     constant_stress: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        _freeze(self, "displacement", "stress", "constant_stress")
+        fields = {}
+        if self.displacement is not None:
+            name = "centrifugal: displacement"
+            fields["displacement"] = checks.vector(self.displacement, name, "m s²", size=None)
+        for name in ("stress", "constant_stress"):
+            if getattr(self, name) is not None:
+                values = checks.array(getattr(self, name), f"centrifugal: {name}", shape=(None, 6))
+                fields[name] = values
+        counts = {name: f.size // (3 if f.ndim == 1 else 6) for name, f in fields.items()}
+        if len(set(counts.values())) > 1:
+            raise ValueError(f"centrifugal: all fields need the same nodes, got {counts}")
+        if self.yield_stress is not None:
+            name = "centrifugal: yield_stress"
+            fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
+        _set(self, **fields)
+
+    @property
+    def node_count(self) -> int | None:
+        """Number of nodes n; None where all fields are None."""
+        for field, width in ((self.displacement, 3), (self.stress, 6), (self.constant_stress, 6)):
+            if field is not None:
+                return field.size // width
+        return None
 
     def stress_at(self, speed: float) -> np.ndarray | None:
-        """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa]."""
+        """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa].
+
+        None where the stress per ω² is not known.
+        """
+        speed = checks.number(speed, "speed", "rad/s")
         if self.stress is None:
             return None
         by_spin = speed**2 * self.stress
@@ -125,6 +187,13 @@ class ReducedRotor:
     with_attachments : ReducedRotor or None
         The same rotor with static responses to loads at its interfaces beside the modes, without
         shapes: what says how much the modes leave out. None where that is not known.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If something is of another kind, shapes do not fit, an entry is not finite, or a matrix that
+        must be symmetric is not. With the checks of :class:`Invariants` that makes sure of a file,
+        too.
     """
 
     axis: SpinAxis
@@ -140,7 +209,43 @@ class ReducedRotor:
     with_attachments: ReducedRotor | None = None
 
     def __post_init__(self) -> None:
-        _freeze(self, "center_of_mass", "mode_mass")
+        checks.instance(self.axis, "axis", SpinAxis)
+        size = checks.instance(self.invariants, "invariants", Invariants).size
+        away = np.abs(self.invariants.direction - self.axis.direction).max()
+        if away > _SAME_DIRECTION:
+            raise ValueError(f"axis: differs from the direction of the invariants by {away:.3g}")
+        checks.mapping(self.interfaces, "interfaces", "ReducedInterface")
+        for name, interface in self.interfaces.items():
+            checks.instance(interface, f"interfaces[{name!r}]", ReducedInterface)
+            _check_columns(interface.motion, f"interfaces[{name!r}]: motion", size)
+        rigid = checks.labels(self.rigid, "rigid")
+        if len(rigid) > size:
+            raise ValueError(f"rigid: names {len(rigid)} of {size} columns")
+        _set(
+            self,
+            center_of_mass=checks.vector(self.center_of_mass, "center_of_mass", "m"),
+            rigid=rigid,
+            interfaces=checks.read_only_mapping(self.interfaces),
+            mode_mass=checks.symmetric(self.mode_mass, "mode_mass", size=size),
+            dropped=checks.labels(self.dropped, "dropped"),
+            grounded=checks.flag(self.grounded, "grounded"),
+        )
+        self._check_fields()
+
+    def _check_fields(self) -> None:
+        """Check what may be None."""
+        if self.shapes is not None:
+            checks.instance(self.shapes, "shapes", ModeShapes)
+            _check_columns(self.shapes.matrix, "shapes: matrix", self.size)
+        if self.centrifugal is not None:
+            checks.instance(self.centrifugal, "centrifugal", Centrifugal)
+            nodes = self.centrifugal.node_count
+            if self.shapes is None or nodes != len(self.shapes.nodes):
+                raise ValueError(f"centrifugal: needs shapes of its {nodes} nodes")
+        if self.with_attachments is not None:
+            added = checks.instance(self.with_attachments, "with_attachments", ReducedRotor)
+            if added.interfaces.keys() != self.interfaces.keys():
+                raise ValueError("with_attachments: needs the interfaces of the rotor")
 
     @property
     def size(self) -> int:
@@ -150,7 +255,7 @@ class ReducedRotor:
     @cached_property
     def frequencies(self) -> np.ndarray:
         """Eigenfrequencies at rest of the columns [rad/s], shape (k,); zero for rigid motions."""
-        return np.sqrt(np.maximum(np.diag(self.invariants.K), 0.0))
+        return checks.read_only(np.sqrt(np.maximum(np.diag(self.invariants.K), 0.0)))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -186,7 +291,8 @@ class ReducedRotor:
         ValueError
             If the speed is not finite, or the rotor was reduced without a computed prestress.
         """
-        return _speed(speed) ** 2 * self._static("displacement").reshape(-1, 3)
+        speed = checks.number(speed, "speed", "rad/s")
+        return speed**2 * self._static("displacement").reshape(-1, 3)
 
     def static_stress(self, speed: float) -> np.ndarray:
         """Return the static stress at a spin speed ω [rad/s], shape (n, 6) [Pa].
@@ -195,7 +301,7 @@ class ReducedRotor:
         xx, yy, zz, yz, xz, xy at the nodes in mesh axes; accuracy and errors as
         :meth:`static_displacement`.
         """
-        speed = _speed(speed)
+        speed = checks.number(speed, "speed", "rad/s")
         self._static("stress")
         return self.centrifugal.stress_at(speed)
 
@@ -228,17 +334,12 @@ class ReducedRotor:
         )
 
 
-def _speed(value: object) -> float:
-    """Return a spin speed that is one finite number."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise TypeError(f"speed: needs one number [rad/s], got {value!r}")
-    if not np.isfinite(value):
-        raise ValueError(f"speed: needs a finite number [rad/s], got {value!r}")
-    return float(value)
+def _check_columns(matrix: np.ndarray, name: str, size: int) -> None:
+    if matrix.shape[1] != size:
+        raise ValueError(f"{name}: needs one column for each of {size}, got {matrix.shape[1]}")
 
 
-def _freeze(owner: object, *names: str) -> None:
-    """Make arrays of a frozen dataclass read-only; None stays."""
-    for name in names:
-        if getattr(owner, name) is not None:
-            object.__setattr__(owner, name, read_only(getattr(owner, name)))
+def _set(owner: object, **values: object) -> None:
+    """Set checked fields of a frozen dataclass."""
+    for name, value in values.items():
+        object.__setattr__(owner, name, value)

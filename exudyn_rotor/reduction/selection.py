@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from numbers import Real
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.reduction.basis import RIGID
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.formulation import Formulation
@@ -46,6 +46,7 @@ class Selection:
         Stored and loaded, with or without shapes, it is the same rotor. Columns that changed their
         sign are another basis.
         """
+        checks.instance(reduced, "reduced", ReducedRotor)
         return _same_basis(self.source, reduced)
 
     def __repr__(self) -> str:
@@ -71,12 +72,13 @@ def select_modes(
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
     """
+    checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
+    checks.instance(formulation, "formulation", Formulation)
+    negligible = checks.number(negligible, "negligible", least=0.0, below=1.0)
     _check_possible(reduced, formulation)
-    if not (isinstance(negligible, Real) and 0.0 <= negligible < 1.0):
-        raise ValueError(f"negligible: needs a share from 0 to below 1, got {negligible!r}")
     if formulation.translation_count:
         origin = reduced.center_of_mass
     else:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.reduction.component import ModeBasis, check_count, free_modes
+from exudyn_rotor import checks
+from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, free_modes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
@@ -45,22 +46,19 @@ def spinning_modes(
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If the rotor carries no prestress, no speed is given or one is not positive, there are not
         that many modes, or the prestress makes the rotor unstable at a speed.
     """
+    check_rotor(rotor)
+    checks.tolerance(tolerance)
     if rotor.carried_prestress is None:
         raise ValueError(
             "spinning_modes: the rotor carries no prestress; use "
             "rotor.with_prestress(rotor.prestress())"
         )
-    speeds = np.asarray(speeds, dtype=float)
-    if (
-        speeds.ndim != 1
-        or speeds.size == 0
-        or not np.all(np.isfinite(speeds))
-        or np.any(speeds <= 0.0)
-    ):
+    speeds = checks.vector(speeds, "speeds", "rad/s", size=None)
+    if speeds.size == 0 or np.any(speeds <= 0.0):
         raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
     rest = free_modes(rotor, count, tolerance=tolerance)
     found, labels = [rest.matrix], list(rest.labels)

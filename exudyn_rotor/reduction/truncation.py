@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 
@@ -28,12 +29,11 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
     Raises
     ------
     TypeError
-        If `reduced` is not a ReducedRotor.
+        If `reduced` is not a ReducedRotor, or an index no whole number.
     ValueError
-        If an index is no whole number, does not exist or is given twice, or nothing would be left.
+        If an index does not exist or is given twice, or nothing would be left.
     """
-    if not isinstance(reduced, ReducedRotor):
-        raise TypeError(f"keep_modes: needs a ReducedRotor, got {type(reduced).__name__}")
+    checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     rigid = len(reduced.rigid)
     chosen = _checked(indices, reduced.size - rigid)
     columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
@@ -56,17 +56,12 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
 
 
 def _checked(indices: Sequence[int], count: int) -> np.ndarray:
-    array = np.asarray(indices)
-    if array.size == 0 and array.ndim == 1:
-        return np.zeros(0, dtype=int)
-    if array.ndim != 1 or array.dtype.kind not in "iu":
-        raise ValueError(f"keep_modes: needs a list of whole numbers, got {indices!r}")
-    if array.min() < 0 or array.max() >= count:
-        raise ValueError(
-            f"keep_modes: the rotor has flexible modes 0 to {count - 1}, got {indices!r}"
-            if count
-            else f"keep_modes: the rotor has no flexible modes, got {indices!r}"
-        )
-    if len(np.unique(array)) < len(array):
-        raise ValueError(f"keep_modes: a mode is named twice: {indices!r}")
-    return np.sort(array)
+    if not np.size(indices):
+        indices = np.zeros(0, dtype=int)
+    chosen = np.sort(checks.whole_numbers(indices, "indices"))
+    if chosen.size and chosen[-1] >= count:
+        there = f"flexible modes 0 to {count - 1}" if count else "no flexible modes"
+        raise ValueError(f"indices: the rotor has {there}, got {chosen[-1]}")
+    if len(np.unique(chosen)) < len(chosen):
+        raise ValueError(f"indices: a mode is named twice: {chosen.tolist()}")
+    return chosen

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.theory.nodal import skew
 
 _NAMED_DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -28,20 +28,16 @@ class SpinAxis:
 
     Raises
     ------
-    ValueError
-        If the direction has no length, or an entry is not finite.
+    TypeError, ValueError
+        If the direction has no length, or they are not three finite numbers each.
     """
 
     direction: np.ndarray
     point: np.ndarray = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        direction, point = read_only(self.direction), read_only(self.point)
-        for label, vector in (("direction", direction), ("point", point)):
-            if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-                raise ValueError(
-                    f"spin axis: the {label} needs three finite numbers, got {vector.tolist()}"
-                )
+        direction = checks.vector(self.direction, "spin axis: direction")
+        point = checks.vector(self.point, "spin axis: point", "m")
         largest = np.abs(direction).max()
         if largest == 0.0:
             raise ValueError(
@@ -50,32 +46,31 @@ class SpinAxis:
             )
         # scaled first: the squares of very long and very short vectors leave the range of floats
         scaled = direction / largest
-        object.__setattr__(self, "direction", read_only(scaled / np.linalg.norm(scaled)))
+        object.__setattr__(self, "direction", checks.read_only(scaled / np.linalg.norm(scaled)))
         object.__setattr__(self, "point", point)
 
     @classmethod
     def of(cls, axis: SpinAxis | str | ArrayLike) -> SpinAxis:
-        """Read an axis: a SpinAxis, 'x', 'y', 'z', a direction, or (direction, point)."""
+        """Read an axis: a SpinAxis, 'x', 'y', 'z', a direction, or (direction, point).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is none of these.
+        """
         if isinstance(axis, SpinAxis):
             return axis
         if isinstance(axis, str):
             if axis not in _NAMED_DIRECTIONS:
                 raise ValueError(f"spin axis {axis!r} is unknown; use 'x', 'y', 'z' or a vector")
             return cls(_NAMED_DIRECTIONS[axis])
-        try:
-            values = np.asarray(axis, dtype=float)
-        except (TypeError, ValueError) as error:
-            raise ValueError(
-                f"spin axis {axis!r} is neither a direction nor (direction, point)"
-            ) from error
-        if values.shape == (2, 3):
-            return cls(values[0], values[1])
-        return cls(values)
+        values = checks.array(axis, "axis: a direction, or (direction, point)")
+        return cls(*values) if values.shape == (2, 3) else cls(values)
 
     @cached_property
     def skew(self) -> np.ndarray:
         """``ẽ``, shape (3, 3)."""
-        return read_only(skew(self.direction))
+        return checks.read_only(skew(self.direction))
 
     @cached_property
     def _along(self) -> np.ndarray:
@@ -103,18 +98,28 @@ class SpinAxis:
         return np.column_stack([first, np.cross(e, first)])
 
     def rotation(self, angle: float) -> np.ndarray:
-        """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3)."""
+        """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3); θ in rad."""
+        angle = checks.number(angle, "angle", "rad")
         return self._along + np.cos(angle) * self._across + np.sin(angle) * self.skew
 
     def project(self, points: ArrayLike) -> np.ndarray:
-        """Return the feet of the perpendiculars from `points` (…, 3) to the axis."""
-        arms = np.asarray(points, dtype=float) - self.point
+        """Return the feet of the perpendiculars from `points` (…, 3) to the axis [m]."""
+        arms = _points(points) - self.point
         return self.point + (arms @ self.direction)[..., None] * self.direction
 
     def radial(self, points: ArrayLike) -> np.ndarray:
-        """Return the offsets (…, 3) of `points` from the axis, ``x_⊥ = −ẽẽ(x − p)``."""
-        return np.asarray(points, dtype=float) - self.project(points)
+        """Return the offsets (…, 3) of `points` from the axis, ``x_⊥ = −ẽẽ(x − p)`` [m]."""
+        points = _points(points)
+        return points - self.project(points)
 
     def turned(self, rotation: ArrayLike) -> SpinAxis:
         """Return this axis after the rotation matrix `rotation` (3, 3) about the origin."""
-        return SpinAxis(rotation @ self.direction, rotation @ self.point)
+        turn = checks.rotation(rotation)
+        return SpinAxis(turn @ self.direction, turn @ self.point)
+
+
+def _points(points: ArrayLike) -> np.ndarray:
+    values = checks.array(points, "points", "m")
+    if values.ndim == 0 or values.shape[-1] != 3:
+        raise ValueError(f"points: need three coordinates each, got an array of {values.shape}")
+    return values

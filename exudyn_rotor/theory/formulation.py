@@ -17,11 +17,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 
+from exudyn_rotor import checks
+
 TRANSLATIONS = ("free", "in-plane", "none")
+DRIVES = ("rigid", "elastic")
+_RATES = ("value", "rate", "acceleration")
 
 
 @dataclass(frozen=True)
@@ -39,9 +42,8 @@ class PrescribedMotion:
     acceleration: Callable[[float], float | np.ndarray]
 
     def __post_init__(self) -> None:
-        for name in ("value", "rate", "acceleration"):
-            if not callable(getattr(self, name)):
-                raise TypeError(f"prescribed motion: {name!r} must be a function of time")
+        for name in _RATES:
+            checks.function(getattr(self, name), f"prescribed motion: {name} over time")
 
     @classmethod
     def run_up(
@@ -50,12 +52,17 @@ class PrescribedMotion:
         """Smooth change of spin speed [rad/s] within `duration` [s], constant before and after.
 
         ``ω(t) = Ω₀ + ΔΩ (s − sin(2πs)/2π)`` with s = t/duration, so that ω̇ starts and ends at
-        zero and is continuous.
+        zero and is continuous. `angle` is θ(0) [rad].
+
+        Raises
+        ------
+        TypeError, ValueError
+            If one of them is not a finite number, or the duration not positive.
         """
-        if not duration > 0.0:
-            raise ValueError(f"run-up: the duration must be positive, got {duration}")
-        if not np.all(np.isfinite([start_speed, end_speed, duration, angle])):
-            raise ValueError("run-up: speeds, duration and angle must be finite numbers")
+        start_speed = checks.number(start_speed, "start_speed", "rad/s")
+        end_speed = checks.number(end_speed, "end_speed", "rad/s")
+        duration = checks.number(duration, "duration", "s", above=0.0)
+        angle = checks.number(angle, "angle", "rad")
         gain = end_speed - start_speed
 
         def share(t: float) -> float:
@@ -85,10 +92,8 @@ class ConstantSpeed:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.speed) and np.isfinite(self.angle)):
-            raise ValueError(
-                f"constant spin: speed {self.speed} and angle {self.angle} must be finite"
-            )
+        object.__setattr__(self, "speed", checks.number(self.speed, "spin: speed", "rad/s"))
+        object.__setattr__(self, "angle", checks.number(self.angle, "spin: angle", "rad"))
 
     def value(self, t: float) -> float:
         """Spin angle [rad]."""
@@ -101,6 +106,20 @@ class ConstantSpeed:
     def acceleration(self, t: float) -> float:
         """Zero [rad/s²]."""
         return 0.0
+
+
+def start_values(
+    motion: PrescribedMotion | ConstantSpeed, name: str
+) -> list[float] | list[np.ndarray]:
+    """Return value, rate and acceleration at t = 0 of what is 'spin' or 'translation'.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are no finite numbers, or for a translation not three.
+    """
+    check = checks.number if name == "spin" else checks.vector
+    return [check(getattr(motion, rate)(0.0), f"{name}: its {rate} at t = 0") for rate in _RATES]
 
 
 @dataclass(frozen=True)
@@ -121,8 +140,9 @@ class Formulation:
 
     Raises
     ------
-    ValueError, TypeError
-        For an unknown keyword or a spin that is not finite.
+    TypeError, ValueError
+        For an unknown keyword, a spin that is not finite, or a prescribed motion that gives no
+        finite numbers at t = 0.
     """
 
     translation: str | PrescribedMotion = "free"
@@ -130,21 +150,20 @@ class Formulation:
     drive: str = "rigid"
 
     def __post_init__(self) -> None:
-        known = isinstance(self.translation, PrescribedMotion) or self.translation in TRANSLATIONS
-        if not known:
-            raise ValueError(
-                f"translation {self.translation!r} is unknown; "
-                f"use one of {', '.join(TRANSLATIONS)} or a PrescribedMotion"
+        if isinstance(self.translation, PrescribedMotion):
+            start_values(self.translation, "translation")
+        else:
+            checks.choice(self.translation, "translation, if no PrescribedMotion", TRANSLATIONS)
+        if isinstance(self.spin, str):
+            checks.choice(self.spin, "spin, if no number or PrescribedMotion", ("free",))
+        elif isinstance(self.spin, PrescribedMotion):
+            start_values(self.spin, "spin")
+        elif not isinstance(self.spin, ConstantSpeed):
+            needed = "spin: 'free', a PrescribedMotion, or a constant speed"
+            object.__setattr__(
+                self, "spin", ConstantSpeed(checks.number(self.spin, needed, "rad/s"))
             )
-        if isinstance(self.spin, Real) and not isinstance(self.spin, bool):
-            object.__setattr__(self, "spin", ConstantSpeed(float(self.spin)))
-        if self.spin != "free" and not isinstance(self.spin, (ConstantSpeed, PrescribedMotion)):
-            raise ValueError(
-                f"spin {self.spin!r} is unknown; "
-                "use 'free', a constant speed in rad/s, or a PrescribedMotion"
-            )
-        if self.drive not in ("rigid", "elastic"):
-            raise ValueError(f"drive {self.drive!r} is unknown; use 'rigid' or 'elastic'")
+        checks.choice(self.drive, "drive", DRIVES)
         if self.drive == "elastic" and self.spin == "free":
             raise ValueError(
                 "drive='elastic' needs a prescribed spin; with spin='free' leave it out"

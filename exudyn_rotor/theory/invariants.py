@@ -9,16 +9,18 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.theory.nodal import block_diagonal, skew
 
 Matrix = np.ndarray | sp.csr_array
+
+_UNIT = 1e-9  # a direction may differ from unit length by this much
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,14 @@ class Invariants:
     K2, B : shape (k, k), optional
         Stiffness per ω² and per ω̇ of a static prestress, see
         :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
+        definite, the direction is no unit vector, M, K, C, J, K2 or B is not symmetric, or G not
+        skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
+        checked them: of them only shape and entries are looked at.
     """
 
     direction: np.ndarray
@@ -68,12 +78,29 @@ class Invariants:
     B: Matrix | None = None
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                object.__setattr__(self, field.name, read_only(value))
-            elif sp.issparse(value):
-                value.data.flags.writeable = False
+        direction = checks.vector(self.direction, "direction")
+        if abs(np.linalg.norm(direction) - 1.0) > _UNIT:
+            raise ValueError(f"direction: needs a unit vector, got {checks.shown(direction)}")
+        S = checks.array(self.S, "S", "kg", shape=(3, None))
+        size = S.shape[1]
+        checked = {
+            "direction": direction,
+            "mass": checks.number(self.mass, "mass", "kg", above=0.0),
+            "center": checks.vector(self.center, "center", "m"),
+            "J": checks.symmetric(self.J, "J", "kg m²", size=3),
+            "S": S,
+            "P": checks.array(self.P, "P", "kg m", shape=(3, 3, size)),
+            "D": checks.matrix(self.D, "D", shape=(size, size)),
+            "G": checks.symmetric(self.G, "G", size=size, sign=-1),
+        }
+        for name in ("M", "K", "C", "K2", "B"):
+            matrix = getattr(self, name)
+            if matrix is not None or name in "MKC":
+                checked[name] = checks.symmetric(matrix, name, size=size)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        if not self.is_sparse:
+            _check_definite(self.M)
 
     @classmethod
     def of(
@@ -89,25 +116,38 @@ class Invariants:
 
         The basis is a dense array of component modes or a sparse matrix; the identity gives the
         full formulations. The origin is that of `nodes`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If shapes do not fit, an entry is not finite, a dense matrix is not symmetric, or the
+            columns of the basis depend on each other.
         """
+        nodes = checks.array(nodes, "nodes", "m", shape=(None, 3))
+        mass = checks.symmetric(mass, "mass", "kg", size=nodes.size)
+        stiffness = checks.symmetric(stiffness, "stiffness", "N/m", size=nodes.size)
+        basis = checks.matrix(basis, "basis", shape=(nodes.size, None))
+        direction = checks.vector(direction, "direction")
+        none = sp.csr_array(mass.shape)
+        if damping is not None:
+            none = checks.matrix(damping, "damping", "N s/m", shape=mass.shape)
         scalar_mass = mass[::3, ::3]
         mass_x = scalar_mass @ nodes
         turned = block_diagonal(skew(direction), len(nodes)) @ basis
         mass_basis = mass @ basis
         total = float(scalar_mass.sum())
-        none = sp.csr_array(mass.shape) if damping is None else damping
         return cls(
-            direction=np.asarray(direction, dtype=float),
+            direction=direction,
             mass=total,
             center=mass_x.sum(axis=0) / total,
             J=nodes.T @ mass_x,
             S=np.vstack([_row_sum(mass_basis[a::3]) for a in range(3)]),
             P=np.stack([_dense(mass_x.T @ basis[b::3]) for b in range(3)], axis=1),
-            M=basis.T @ mass_basis,
-            K=basis.T @ (stiffness @ basis),
+            M=_mean(basis.T @ mass_basis),
+            K=_mean(basis.T @ (stiffness @ basis)),
             D=basis.T @ (none @ basis),
-            G=mass_basis.T @ turned,
-            C=turned.T @ (mass @ turned),
+            G=_mean(mass_basis.T @ turned, -1),
+            C=_mean(turned.T @ (mass @ turned)),
         )
 
     @property
@@ -133,16 +173,16 @@ class Invariants:
     @cached_property
     def g(self) -> np.ndarray:
         """``−M*_x̃ψ = ΨᵀM X_e`` (82), shape (k,): zero in a Tisserand frame."""
-        return np.einsum("ba,abk->k", skew(self.direction), self.P)
+        return checks.read_only(np.einsum("ba,abk->k", skew(self.direction), self.P))
 
     @cached_property
     def h(self) -> np.ndarray:
         """``M*_x̃ψ̃ = Ψ_eᵀM X_e`` (83), shape (k,): centrifugal load per ω²."""
-        return np.einsum("ab,abk->k", self._across, self.P)
+        return checks.read_only(np.einsum("ab,abk->k", self._across, self.P))
 
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""
-        shift = np.asarray(origin, dtype=float)
+        shift = checks.vector(origin, "origin", "m")
         cross = self.mass * np.outer(self.center, shift)
         return replace(
             self,
@@ -153,11 +193,27 @@ class Invariants:
 
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
-
-        names = ("M", "K", "D", "G", "C", "K2", "B")
-        given = {name: getattr(self, name) for name in names}
-        projected = {name: T.T @ (X @ T) for name, X in given.items() if X is not None}
+        T = checks.matrix(T, "T", shape=(self.size, None))
+        projected = {"D": T.T @ (self.D @ T), "G": _mean(T.T @ (self.G @ T), -1)}
+        for name in ("M", "K", "C", "K2", "B"):
+            if getattr(self, name) is not None:
+                projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)
+
+
+def _mean(matrix: Matrix, sign: int = 1) -> Matrix:
+    """Return the (skew-)symmetric part of a dense product, which has rounding beside it."""
+    return matrix if sp.issparse(matrix) else 0.5 * (matrix + sign * matrix.T)
+
+
+def _check_definite(M: np.ndarray) -> None:
+    try:
+        np.linalg.cholesky(M)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            "M: needs a positive definite mass matrix; columns of the basis depend on each other, "
+            "or masses are negative"
+        ) from error
 
 
 def _row_sum(block: Matrix) -> np.ndarray:

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.nodal import skew
 
@@ -41,6 +42,7 @@ class ConstantPart:
 
 def constant_part(motion: Motion) -> ConstantPart:
     """Return the linear terms with constant coefficients of `motion`."""
+    checks.instance(motion, "motion", Motion)
     inv, modes = motion.invariants, motion.modes
     stiffness, damping = np.zeros((2, motion.size, motion.size))
     force = np.zeros(motion.size)
@@ -65,6 +67,11 @@ class Kernel:
         Places of the motion's unknowns among `size` coordinates; the modes come last, in a row.
     size : int
 
+    Raises
+    ------
+    TypeError, ValueError
+        For another motion, or places that do not fit.
+
     Attributes
     ----------
     spin : int
@@ -76,7 +83,18 @@ class Kernel:
     """
 
     def __init__(self, motion: Motion, unknowns: Sequence[int], size: int) -> None:
+        checks.instance(motion, "motion", Motion)
         inv, count = motion.invariants, motion.invariants.size
+        if inv.is_sparse or motion.is_coupled:
+            raise ValueError("motion: needs dense invariants and translations without coupling")
+        size = checks.count(size, "size", least=motion.size)
+        places = checks.whole_numbers(list(unknowns), "unknowns", most=size - 1)
+        modes = np.arange(size - count, size)
+        if len(places) != motion.size or np.any(places[motion.size - count :] != modes):
+            raise ValueError(
+                f"unknowns: need {motion.size} places, the last {count} of {size} for the modes, "
+                f"got {checks.shown(list(unknowns))}"
+            )
         self._motion = motion
         self._first = size - count
         self.spin = int(unknowns[motion.formulation.translation_count])

@@ -13,12 +13,15 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
@@ -70,6 +73,12 @@ class Motion:
         step.
     weight : ndarray
         Gravity on the unknown translations [N].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, an entry is not finite, or the orientation is no rotation. The
+        methods refuse coordinates of a wrong number or kind alike.
     """
 
     def __init__(
@@ -77,14 +86,18 @@ class Motion:
         invariants: Invariants,
         formulation: Formulation,
         second_order: Stiffening,
-        orientation: np.ndarray | None = None,
-        plane: np.ndarray | None = None,
-        gravity: np.ndarray | None = None,
+        orientation: ArrayLike | None = None,
+        plane: ArrayLike | None = None,
+        gravity: ArrayLike | None = None,
     ) -> None:
-        self.invariants = invariants
-        self.formulation = formulation
-        self.orientation = np.eye(3) if orientation is None else np.asarray(orientation, float)
-        self.gravity = np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float)
+        self.invariants = checks.instance(invariants, "invariants", Invariants)
+        self.formulation = checks.instance(formulation, "formulation", Formulation)
+        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
+        checks.matrix(second_order.K2, "second_order: K2", shape=invariants.M.shape)
+        self.orientation = np.eye(3)
+        if orientation is not None:
+            self.orientation = checks.rotation(orientation, "orientation")
+        self.gravity = checks.vector(np.zeros(3) if gravity is None else gravity, "gravity", "m/s²")
         self._e = skew(invariants.direction)
         self._turn = SpinAxis(invariants.direction)
         self.free_directions = self._free_directions(plane)
@@ -103,12 +116,14 @@ class Motion:
         )
         self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
 
-    def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
+    def _free_directions(self, plane: ArrayLike | None) -> np.ndarray:
         count = self.formulation.translation_count
         if count == 3:
             return np.eye(3)
+        if count == 2 and plane is not None:
+            return checks.array(plane, "plane", shape=(3, 2))
         if count == 2:
-            return self.orientation @ self._turn.plane if plane is None else plane
+            return self.orientation @ self._turn.plane
         return np.zeros((3, 0))
 
     @cached_property
@@ -150,7 +165,7 @@ class Motion:
             and not self.is_pushed
         )
 
-    def mass_matrix(self, t: float, q: np.ndarray) -> np.ndarray | sp.csr_array:
+    def mass_matrix(self, t: float, q: ArrayLike) -> np.ndarray | sp.csr_array:
         """Return the mass matrix (65, 41–43, 84, 85), shape (size, size)."""
         inv = self.invariants
         now = self._state(t, q, np.zeros(self.size))
@@ -167,7 +182,7 @@ class Motion:
                 blocks["r", "t"] = blocks["t", "r"].T
         return self._placed(blocks, self._constant_mass)
 
-    def forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    def forces(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
         """Return velocity-dependent, elastic, damping and gravity forces, shape (size,).
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
@@ -192,7 +207,7 @@ class Motion:
         return force
 
     def jacobian(
-        self, t: float, q: np.ndarray, q_t: np.ndarray
+        self, t: float, q: ArrayLike, q_t: ArrayLike
     ) -> tuple[np.ndarray | sp.csr_array, np.ndarray | sp.csr_array]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
         inv = self.invariants
@@ -218,26 +233,28 @@ class Motion:
         empty = 0.0 * self._constant_mass
         return self._placed(by_q, empty), self._placed(by_v, empty)
 
-    def energy(self, t: float, q: np.ndarray, q_t: np.ndarray) -> float:
+    def energy(self, t: float, q: ArrayLike, q_t: ArrayLike) -> float:
         """Return kinetic plus elastic energy [J] of the free motion, gravity left out."""
+        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
         zeta = q[self.modes]
         kinetic = 0.5 * q_t @ (self.mass_matrix(t, q) @ q_t)
         return float(kinetic + 0.5 * zeta @ (self.invariants.K @ zeta))
 
-    def momentum(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    def momentum(self, t: float, q: ArrayLike, q_t: ArrayLike) -> np.ndarray:
         """Return the generalised momenta ``M(q) q̇``, shape (size,).
 
         With a free spin, the entry of θ is the angular momentum about the spin axis relative to
         the frame origin.
         """
-        return self.mass_matrix(t, q) @ q_t
+        return self.mass_matrix(t, q) @ self._coordinates(q_t, "q_t")
 
-    def drive_torque(self, t: float, q: np.ndarray, q_t: np.ndarray, zeta_tt: np.ndarray) -> float:
+    def drive_torque(self, t: float, q: ArrayLike, q_t: ArrayLike, zeta_tt: ArrayLike) -> float:
         """Return the torque about e that a prescribed spin needs, external loads left out [N m].
 
         The row of θ that a prescribed spin removes: (84–86) times the accelerations.
         """
         inv = self.invariants
+        zeta_tt = checks.vector(zeta_tt, "zeta_tt", size=inv.size)
         now = self._state(t, q, q_t)
         inertia = self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self.W @ now.zeta) @ zeta_tt
         coriolis = 2.0 * now.omega * (inv.h + self.C @ now.zeta) @ now.zeta_t
@@ -276,8 +293,18 @@ class Motion:
             by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self.S1 @ now.zeta_t)
             by_v["t", "r"] = -(now.A @ by_rate)[:, None]
 
-    def _state(self, t: float, q: np.ndarray, q_t: np.ndarray) -> _State:
+    def _coordinates(self, values: ArrayLike, name: str) -> np.ndarray:
+        """Return one finite number per unknown; quick where there is nothing to refuse."""
+        right = type(values) is np.ndarray and values.shape == (self.size,)
+        if right and values.dtype == float and math.isfinite(values.dot(values)):
+            return values
+        return checks.vector(values, name, size=self.size)
+
+    def _state(self, t: float, q: ArrayLike, q_t: ArrayLike) -> _State:
         form = self.formulation
+        q, q_t = self._coordinates(q, "q"), self._coordinates(q_t, "q_t")
+        if type(t) is not float or not math.isfinite(t):
+            t = checks.number(t, "t", "s")
         if form.has_spin:
             theta, omega, omega_t = float(q[self._r][0]), float(q_t[self._r][0]), 0.0
         else:

@@ -29,6 +29,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
 
@@ -53,10 +54,21 @@ class Stiffening:
     B : ndarray, shape (k, k)
         Symmetric matrix of the Euler field: stiffness ``ω̇ B`` and, where θ is a coordinate,
         ``(Bζ)ᵀ`` added to ``M_θζ``. Zero for the tilts of an axisymmetric rotor.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are not symmetric, finite and of one size.
     """
 
     K2: np.ndarray
     B: np.ndarray
+
+    def __post_init__(self) -> None:
+        K2 = checks.matrix(self.K2, "K2")
+        for name in ("K2", "B"):
+            matrix = checks.symmetric(getattr(self, name), name, size=K2.shape[0])
+            object.__setattr__(self, name, matrix)
 
 
 def stiffening(invariants: Invariants, level: str) -> Stiffening:
@@ -70,11 +82,11 @@ def stiffening(invariants: Invariants, level: str) -> Stiffening:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         For an unknown level, or 'full' without a prestress.
     """
-    if level not in LEVELS:
-        raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
+    checks.instance(invariants, "invariants", Invariants)
+    checks.choice(level, "stiffening", LEVELS)
     if level == "none":
         shape = (invariants.size, invariants.size)
         zero = sp.csr_array(shape) if invariants.is_sparse else np.zeros(shape)

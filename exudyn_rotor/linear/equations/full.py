@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.linear.equations.spin import Spin, seeds, spin_of
 from exudyn_rotor.linear.equations.supports import Support, axes_of, check_interfaces
 from exudyn_rotor.linear.equations.system import LinearRotor, warn_of_eccentricity
@@ -49,8 +50,7 @@ def _second_order(
     ValueError
         For an unknown level, or 'full' with a rotor that carries no prestress.
     """
-    if level not in LEVELS:
-        raise ValueError(f"stiffening {level!r} is unknown; use one of {', '.join(LEVELS)}")
+    checks.choice(level, "stiffening", LEVELS)
     if level == "full":
         if rotor.carried_prestress is None:
             raise ValueError(NO_PRESTRESS)
