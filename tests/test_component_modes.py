@@ -271,7 +271,7 @@ def test_single_nodes_have_translations_only(coupling):
         ({"interfaces": ["middle"]}, "'middle' is unknown; there are: 'left', 'right'"),
         ({"interfaces": ["left", "left"]}, "each of them once"),
         ({"interfaces": []}, "interfaces: name at least one"),
-        ({"coupling": "RBE4"}, "use 'RBE2' or 'RBE3'"),
+        ({"coupling": "RBE4"}, "'RBE4' is unknown; use one of 'RBE2', 'RBE3'"),
         ({"count": 100_000}, "100000 eigenmodes asked for"),
         ({"count": -1}, "count: needs a whole number ≥ 0, got -1"),
     ],

@@ -449,7 +449,7 @@ def test_wrong_formulations_are_refused(arguments, message):
 
 
 def test_wrong_prescribed_motions_are_refused():
-    with pytest.raises(TypeError, match="rate over time: needs a function, got 1.0"):
+    with pytest.raises(TypeError, match="rate over time: needs a function"):
         PrescribedMotion(np.sin, 1.0, np.cos)
-    with pytest.raises(ValueError, match="duration: needs .* > 0, got 0.0"):
+    with pytest.raises(ValueError, match="duration: needs a finite number"):
         PrescribedMotion.run_up(0.0, 10.0, 0.0)
