@@ -1,0 +1,1 @@
+"""Bad calls made from signatures, and how each of them was answered."""

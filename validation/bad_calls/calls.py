@@ -1,0 +1,292 @@
+"""One valid call of every public function, constructor and method."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from exudyn import OutputVariableType
+
+import exudyn_rotor as er
+from bad_calls.world import SPEEDS, World, arguments
+
+Call = tuple[Callable, dict[str, Any]]
+
+# what has no arguments of its own to refuse
+LEFT_OUT = {"AssumptionWarning": "a warning takes any text, as every exception of Python"}
+
+# instances of public classes, on which methods are called and from which constructors are given
+# their arguments
+INSTANCES: dict[str, Callable[[World], Any]] = {
+    "BaseAcceleration": lambda w: er.BaseAcceleration([1.0, 0.0, 0.0]),
+    "Campbell": lambda w: w.campbell,
+    "ConstantSpeed": lambda w: er.ConstantSpeed(10.0, 0.1),
+    "CriticalSpeedMap": lambda w: w.critical_map,
+    "CriticalSpeeds": lambda w: w.critical,
+    "Formulation": lambda w: er.Formulation("none", 10.0),
+    "HarmonicForce": lambda w: er.HarmonicForce("left", [1.0, 0.0, 0.0]),
+    "HarmonicResponse": lambda w: w.harmonic,
+    "Interface": lambda w: w.solid.interfaces["left"],
+    "Invariants": lambda w: w.selection.invariants,
+    "ModeBasis": lambda w: er.free_modes(w.solid, 2),
+    "Motion": lambda w: w.motion,
+    "PointMass": lambda w: w.solid.add_point_mass([0.0, 0.0, 0.1], 0.1).point_masses[0],
+    "PrescribedMotion": lambda w: er.PrescribedMotion.run_up(0.0, 10.0, 1.0),
+    "Prestress": lambda w: w.prestress,
+    "Proposal": lambda w: w.proposal,
+    "ReducedRotor": lambda w: w.reduced,
+    "RotorBody": lambda w: w.body,
+    "RunCheck": lambda w: w.run_check,
+    "SolidRotor": lambda w: w.solid,
+    "SpinAxis": lambda w: er.SpinAxis([0.0, 0.0, 1.0]),
+    "Stability": lambda w: w.stability,
+    "StabilityMap": lambda w: w.stability_map,
+    "Stiffening": lambda w: er.Stiffening(np.eye(3), np.eye(3)),
+    "StressField": lambda w: w.stress,
+    "StressHistory": lambda w: w.history,
+    "Support": lambda w: w.supports[0],
+    "Unbalance": lambda w: er.Unbalance("left", 1e-4),
+    "UnbalanceResponse": lambda w: w.unbalance,
+}
+
+_ZEROS = np.zeros(3)
+
+
+def _rotor(world: World) -> dict[str, Any]:
+    return {"target": world.reduced, "supports": world.supports}
+
+
+# arguments of valid calls; constructors without an entry take those of their instance
+ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
+    "MainSystemCreateFixedAxisFFRFReducedOrderObject": lambda w: {
+        "mbs": w.mbs,
+        "name": None,
+        "femInterface": w.fem,
+        "axis": "z",
+        "superElementRigidMarkersOffsets": np.zeros((2, 3)),
+    },
+    "add_rotor": lambda w: {
+        "mbs": w.mbs,
+        "reduced": w.reduced,
+        "name": None,
+        "modal_coordinates": np.zeros(6),
+        "modal_velocities": np.zeros(6),
+        "marker_offsets": {"left": [0.0, 0.0, 0.01]},
+        "rotation": np.eye(3),
+    },
+    "campbell": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
+    "check_run": lambda w: {"body": w.body, "limits": {"tilt": 0.1}, "warn": False},
+    "craig_bampton_modes": lambda w: {"rotor": w.solid, "count": 1, "interfaces": ["left"]},
+    "critical_speed_map": lambda w: {
+        "target": w.reduced,
+        "interfaces": ["left", "right"],
+        "stiffnesses": [1e6, 2e6],
+        "supports": w.axial,
+    },
+    "critical_speeds": lambda w: _rotor(w),
+    "free_modes": lambda w: {"rotor": w.solid, "count": 2},
+    "harmonic_response": lambda w: {
+        **_rotor(w),
+        "frequencies": SPEEDS[:2],
+        "loads": [er.HarmonicForce("left", [1.0, 0.0, 0.0])],
+        "at": ["left"],
+    },
+    "keep_modes": lambda w: {"reduced": w.reduced, "indices": [0]},
+    "load_result": lambda w: {"path": w.stored(w.campbell)},
+    "permissible_unbalance": lambda w: {"grade": 2.5, "mass": 10.0, "speed": 300.0},
+    "propose": lambda w: {**_rotor(w), "speeds": (0.0, 40.0), "load_frequencies": (0.0, 10.0)},
+    "recommended_settings": lambda w: {"end_time": 1.0, "step": 1e-3},
+    "select_modes": lambda w: {"reduced": w.reduced, "formulation": er.Formulation()},
+    "spinning_modes": lambda w: {"rotor": w.stressed, "count": 1, "speeds": (5.0, 10.0)},
+    "stability": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
+    "stability_map": lambda w: {"build": w.build, "x": [1e6, 2e6], "y": SPEEDS[:2]},
+    "stability_threshold": lambda w: {
+        "target": w.reduced,
+        "low": 10.0,
+        "high": 2000.0,
+        "supports": w.isotropic,
+    },
+    "stress_history": lambda w: {
+        "field": w.stress,
+        "time": [0.0, 0.1, 0.2, 0.3],
+        "zeta": w.coordinates,
+        "speed": 10.0,
+        "nodes": [0, 1],
+    },
+    "unbalance_response": lambda w: {
+        **_rotor(w),
+        "speeds": SPEEDS[:2],
+        "unbalances": [er.Unbalance("left", 1e-4)],
+        "at": ["left"],
+    },
+    "unstable_ranges": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
+    "Motion": lambda w: {
+        "invariants": w.selection.invariants,
+        "formulation": er.Formulation("none", 10.0),
+        "second_order": w.second_order,
+        "orientation": np.eye(3),
+        "gravity": [0.0, 0.0, -9.81],
+    },
+    "Motion.drive_torque": lambda w: {**_state(w), "zeta_tt": np.zeros(w.motion.size)},
+    "Motion.energy": lambda w: _state(w),
+    "Motion.forces": lambda w: _state(w),
+    "Motion.jacobian": lambda w: _state(w),
+    "Motion.mass_matrix": lambda w: {"t": 0.0, "q": np.zeros(w.motion.size)},
+    "Motion.momentum": lambda w: _state(w),
+    "BaseAcceleration.harmonics": lambda w: {"source": w.linear},
+    "HarmonicForce.harmonics": lambda w: {"source": w.linear},
+    "ConstantSpeed.acceleration": lambda w: {"t": 0.0},
+    "ConstantSpeed.rate": lambda w: {"t": 0.0},
+    "ConstantSpeed.value": lambda w: {"t": 0.0},
+    "Campbell.load": lambda w: {"path": w.stored(w.campbell)},
+    "CriticalSpeedMap.load": lambda w: {"path": w.stored(w.critical_map)},
+    "CriticalSpeeds.load": lambda w: {"path": w.stored(w.critical)},
+    "HarmonicResponse.load": lambda w: {"path": w.stored(w.harmonic)},
+    "ReducedRotor.load": lambda w: {"path": w.stored(w.reduced)},
+    "Stability.load": lambda w: {"path": w.stored(w.stability)},
+    "StabilityMap.load": lambda w: {"path": w.stored(w.stability_map)},
+    "StressHistory.load": lambda w: {"path": w.stored(w.history)},
+    "UnbalanceResponse.load": lambda w: {"path": w.stored(w.unbalance)},
+    "*.save": lambda w: {"path": w.folder / "saved.npz"},
+    "*.orbit": lambda w: {"value": 10.0},
+    "*.plot_orbit": lambda w: {"value": 10.0},
+    "*.rates": lambda w: {"order": 1},
+    "Interface.centered_on": lambda w: {"point": _ZEROS},
+    "Interface.mean_motion": lambda w: {"node_count": w.solid.node_count},
+    "Invariants.in_basis": lambda w: {"T": np.eye(w.selection.invariants.size)},
+    "Invariants.moved": lambda w: {"origin": _ZEROS},
+    "Invariants.of": lambda w: {
+        "nodes": w.solid.nodes,
+        "mass": w.solid.mass,
+        "stiffness": w.solid.stiffness,
+        "damping": None,
+        "basis": np.eye(w.solid.nodes.size)[:, :4],
+        "direction": np.array([0.0, 0.0, 1.0]),
+    },
+    "PrescribedMotion.run_up": lambda w: {"start_speed": 0.0, "end_speed": 9.0, "duration": 1.0},
+    "Prestress.from_matrix": lambda w: {
+        "matrix": w.prestress.matrix,
+        "nodes": w.solid.nodes,
+        "euler": w.prestress.euler,
+    },
+    "Proposal.truncated": lambda w: {"reduced": w.reduced},
+    "ReducedRotor.static_displacement": lambda w: {"speed": 10.0},
+    "ReducedRotor.static_stress": lambda w: {"speed": 10.0},
+    "RotorBody.add_interface_sensor": lambda w: _sensor(interface="left"),
+    "RotorBody.add_node_sensor": lambda w: _sensor(node=0),
+    "RotorBody.marker": lambda w: {"interface": "left"},
+    "SolidRotor.add_point_mass": lambda w: {"position": [0.0, 0.0, 0.1], "mass": 0.1},
+    "SolidRotor.clamped": lambda w: {"names": ["left"]},
+    "SolidRotor.from_fem_interface": lambda w: {"fem": w.fem, "axis": "z"},
+    "SolidRotor.from_matrices": lambda w: {
+        "mass": w.solid.mass,
+        "stiffness": w.solid.stiffness,
+        "nodes": w.solid.nodes,
+        "axis": "z",
+        "damping": 1e-6 * w.solid.stiffness,
+        "interfaces": {"left": [0, 1, 2, 3]},
+        "triangles": w.solid.triangles,
+    },
+    "SolidRotor.from_ngsolve": lambda w: {
+        "mesh": w.mesh,
+        "materials": {"steel": w.steel},
+        "axis": "z",
+        "order": 1,
+        "interfaces": ["left"],
+    },
+    "SolidRotor.nearest_node": lambda w: {"position": _ZEROS},
+    "SolidRotor.prestress": lambda w: {"yield_stress": 1e9, "speed": 10.0},
+    "SolidRotor.reduce": lambda w: {"modes": 2},
+    "SolidRotor.with_interface": lambda w: {
+        "name": "middle",
+        "nodes": [0, 1, 2, 3],
+        "weights": [1.0, 1.0, 1.0, 2.0],
+    },
+    "SolidRotor.with_prestress": lambda w: {"prestress": w.prestress},
+    "SpinAxis.of": lambda w: {"axis": "z"},
+    "SpinAxis.project": lambda w: {"points": np.zeros((4, 3))},
+    "SpinAxis.radial": lambda w: {"points": np.zeros((4, 3))},
+    "SpinAxis.rotation": lambda w: {"angle": 0.1},
+    "SpinAxis.turned": lambda w: {"rotation": np.eye(3)},
+    "StressField.at": lambda w: {"zeta": w.coordinates[0], "speed": 10.0, "nodes": np.arange(3)},
+    "StressField.history": lambda w: {
+        "zeta": w.coordinates,
+        "speed": np.full(4, 10.0),
+        "nodes": np.arange(3),
+    },
+    "StressField.of": lambda w: {"reduced": w.reduced, "selection": w.selection},
+    "StressField.plot": lambda w: {"zeta": w.coordinates[0], "speed": 10.0},
+    "Support.matrices": lambda w: {"speed": 10.0},
+    "Support.terms": lambda w: {"speed": 10.0},
+    "Unbalance.from_grade": lambda w: {"at": "left", "grade": 2.5, "mass": 5.0, "speed": 300.0},
+}
+
+
+def _state(world: World) -> dict[str, Any]:
+    return {"t": 0.0, "q": np.zeros(world.motion.size), "q_t": np.zeros(world.motion.size)}
+
+
+def _sensor(**place: Any) -> dict[str, Any]:
+    return {**place, "output": OutputVariableType.Displacement}
+
+
+def public_calls() -> Iterator[str]:
+    """Yield the names of all that can be called: 'function', 'Class', 'Class.method'."""
+    for name in sorted(er.__all__):
+        if name in LEFT_OUT:
+            continue
+        yield name
+        owner = getattr(er, name)
+        if inspect.isclass(owner):
+            for method in sorted(dir(owner)):
+                static = inspect.getattr_static(owner, method)
+                if not method.startswith("_") and _is_method(static):
+                    yield f"{name}.{method}"
+
+
+def _is_method(static: object) -> bool:
+    return isinstance(static, staticmethod | classmethod) or inspect.isfunction(static)
+
+
+def function_of(name: str) -> Callable:
+    """Return the function or class behind a name of :func:`public_calls`, as its signature says."""
+    owner, _, method = name.partition(".")
+    found = getattr(er, owner)
+    return getattr(found, method) if method else found
+
+
+def parameters(name: str) -> dict[str, inspect.Parameter]:
+    """Return the parameters of a call, without that of its own instance."""
+    found = dict(inspect.signature(function_of(name)).parameters)
+    found.pop("self", None)
+    return found
+
+
+def valid(name: str, world: World) -> Call:
+    """Return a function and the arguments of a valid call, made anew.
+
+    Raises
+    ------
+    KeyError
+        If the call has no entry in the tables above.
+    """
+    owner, _, method = name.partition(".")
+    make = ARGUMENTS.get(name) or ARGUMENTS.get(f"*.{method}")
+    function = getattr(er, owner)
+    if method:
+        static = inspect.getattr_static(function, method)
+        bound = isinstance(static, staticmethod | classmethod)
+        function = getattr(function if bound else INSTANCES[owner](world), method)
+        required = [
+            p
+            for p in parameters(name).values()
+            if p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+        ]
+        if make is None and required:
+            raise KeyError(f"{name}: no arguments of a valid call in the table")
+        return function, make(world) if make else {}
+    if make is None:
+        return function, arguments(INSTANCES[name](world))
+    return function, make(world)

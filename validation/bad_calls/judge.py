@@ -1,0 +1,150 @@
+"""Bad calls made one by one, and how each was answered."""
+
+from __future__ import annotations
+
+import dis
+import inspect
+import re
+import signal
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Any
+
+import exudyn
+from matplotlib import pyplot
+
+import exudyn_rotor as er
+from bad_calls import calls, parameters
+from bad_calls.values import POOL
+from bad_calls.world import World
+
+PACKAGE = str(Path(er.__file__).parent)
+SECONDS = 20.0  # for one call; the slowest valid one takes one second
+
+CLEAR, UNNAMED, FOREIGN = "refused clearly", "not named", "foreign message"
+ACCEPTED, HUNG, HALF_BUILT = "accepted", "hung", "half-built"
+OUTCOMES = (CLEAR, UNNAMED, FOREIGN, ACCEPTED, HUNG, HALF_BUILT)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One bad call: the arguments of the valid one, with a bad value for one of them."""
+
+    call: str
+    argument: str
+    label: str
+
+    def __str__(self) -> str:
+        return f"{self.call}({self.argument}={self.label})"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How a bad call was answered: one of `OUTCOMES`, and what was said."""
+
+    outcome: str
+    said: str
+
+
+def cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
+    """Yield all bad calls, and what makes the bad value of each."""
+    for name in calls.public_calls():
+        _, good = calls.valid(name, world)
+        for argument, parameter in calls.parameters(name).items():
+            if parameter.kind is parameter.VAR_KEYWORD:
+                for label, make in _of_options(name):
+                    yield Case(name, *label.split("=")), make
+                continue
+            optional = parameter.default is None or "None" in str(parameter.annotation).split(" | ")
+            kind = parameters.kind_of(name, argument)
+            default = None if parameter.default is parameter.empty else parameter.default
+            for label, make in kind.bad(good.get(argument, default), optional):
+                yield Case(name, argument, label), make
+
+
+def _of_options(name: str) -> Iterator[tuple[str, Callable[[], Any]]]:
+    yield "nonsense=two", POOL["two"]
+    for option, kind in parameters.OPTIONS.get(name, {}).items():
+        for label, make in kind.bad(None, optional=kind in parameters.OPTIONAL):
+            yield f"{option}={label}", make
+
+
+def answer(case: Case, make: Callable[[], Any], world: World) -> Answer:
+    """Make a bad call, and say how it was answered."""
+    function, good = calls.valid(case.call, world)
+    good[case.argument] = make()
+    scenes = [world.mbs, world.free_mbs]
+    before = [state(mbs) for mbs in scenes]
+    found = _outcome(function, good, (case.argument,))
+    pyplot.close("all")
+    if [state(mbs) for mbs in scenes] != before:
+        world.renew()
+        if found.outcome != ACCEPTED:
+            return Answer(HALF_BUILT, found.said)
+    return found
+
+
+def state(mbs: exudyn.MainSystem) -> tuple[int, ...]:
+    """Return how many items of each kind a scene has, and whether it is ready to be solved."""
+    data = mbs.systemData
+    kinds = ("Nodes", "Objects", "Markers", "Loads", "Sensors")
+    counts = (getattr(data, f"NumberOf{kind}")() for kind in kinds)
+    return (*counts, mbs.systemIsConsistent)
+
+
+def _outcome(function: Callable, given: dict[str, Any], names: tuple[str, ...]) -> Answer:
+    signal.signal(signal.SIGALRM, _stop)
+    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            function(**given)
+    except TimeoutError:
+        return Answer(HUNG, f"more than {SECONDS:g} s")
+    # whatever it is, it is judged
+    except BaseException as error:
+        return _judged(error, names)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+    return Answer(ACCEPTED, "")
+
+
+def _judged(error: BaseException, names: tuple[str, ...]) -> Answer:
+    """Say whether an error is one of ours and names the argument."""
+    said = f"{type(error).__name__}: {error}"
+    place = innermost(error)
+    if place is None or not isinstance(error, TypeError | ValueError | LookupError):
+        return Answer(FOREIGN, said)
+    if not any(re.search(rf"\b{name}\b", str(error)) for name in names):
+        return Answer(UNNAMED, said)
+    return Answer(CLEAR, said)
+
+
+def innermost(error: BaseException) -> str | None:
+    """Return where an error was raised by a ``raise`` of this package, else None.
+
+    Errors of compiled code have the calling line as their innermost one, but no ``raise`` there.
+    """
+    last: TracebackType | None = error.__traceback__
+    while last is not None and last.tb_next is not None:
+        last = last.tb_next
+    if last is None:
+        return None
+    code = last.tb_frame.f_code
+    raised = dis.opname[code.co_code[last.tb_lasti]] == "RAISE_VARARGS"
+    if not raised or not code.co_filename.startswith(PACKAGE):
+        return None
+    return f"{Path(code.co_filename).relative_to(PACKAGE)}:{last.tb_lineno}"
+
+
+def home(name: str) -> str:
+    """Return the folder of the package in which a call is defined."""
+    function = inspect.unwrap(calls.function_of(name))
+    return function.__module__.removeprefix("exudyn_rotor.").split(".")[0]
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    raise TimeoutError

@@ -1,0 +1,160 @@
+"""All bad calls in processes of their own, so that a crash or a hang is seen, and a table."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import multiprocessing
+import os
+import random
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.connection import Connection
+
+from tqdm import tqdm
+
+from bad_calls.judge import (
+    CLEAR,
+    HALF_BUILT,
+    HUNG,
+    OUTCOMES,
+    SECONDS,
+    Answer,
+    Case,
+    answer,
+    cases,
+    home,
+)
+from bad_calls.world import World
+
+CRASHED = "crashed"
+WANTED = 0.99  # share of bad calls that are refused clearly
+MEMORY = 12e9  # bytes for one process: a list of 10^10 numbers is refused by the system
+Answers = list[tuple[Case, Answer]]
+
+
+def chosen(total: int, count: int | None, seed: int = 0) -> list[int]:
+    """Return the numbers of all cases, or of `count` of them drawn at random."""
+    if count is None or count >= total:
+        return list(range(total))
+    return sorted(random.Random(seed).sample(range(total), count))
+
+
+def answers(numbers: list[int], all_cases: list[Case], processes: int = 1) -> Answers:
+    """Make the bad calls of these numbers in processes of their own."""
+    shares = [numbers[start::processes] for start in range(processes)]
+    with tqdm(total=len(numbers), desc="bad calls") as bar, ThreadPoolExecutor(processes) as pool:
+        found = pool.map(lambda share: _answers_of(share, all_cases, bar), shares)
+        return list(itertools.chain.from_iterable(found))
+
+
+def _answers_of(numbers: list[int], all_cases: list[Case], bar: tqdm) -> Answers:
+    """Make bad calls in one process after another: a new one after each crash or hang."""
+    found: Answers = []
+    while len(found) < len(numbers):
+        left = numbers[len(found) :]
+        context = multiprocessing.get_context("spawn")
+        here, there = context.Pipe()
+        process = context.Process(target=_work, args=(left, there), daemon=True)
+        process.start()
+        there.close()
+        for number in left:
+            end = _received(here, process)
+            found.append((all_cases[number], end))
+            bar.update()
+            if end.outcome in (CRASHED, HUNG):
+                break
+        process.kill()
+        process.join()
+    return found
+
+
+def _received(here: Connection, process: multiprocessing.process.BaseProcess) -> Answer:
+    # the first one waits for the models, too
+    if not here.poll(10.0 * SECONDS):
+        return Answer(HUNG, "no answer")
+    try:
+        return here.recv()
+    except EOFError:
+        process.join()
+        return Answer(CRASHED, f"exit code {process.exitcode}")
+
+
+def _work(numbers: list[int], there: Connection) -> None:
+    """Send the answers of bad calls; what Exudyn prints is dropped."""
+    _limit_memory()
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    world = World()
+    os.chdir(world.folder)
+    wanted = set(numbers)
+    for number, (case, make) in enumerate(cases(world)):
+        if number in wanted:
+            there.send(answer(case, make, world))
+
+
+def _limit_memory() -> None:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (int(MEMORY), most))
+
+
+def printed(found: Answers) -> str:
+    """Return a table of the answers, one line per call."""
+    kinds = [*OUTCOMES, CRASHED]
+    counts: dict[tuple[str, str], Counter] = {}
+    for case, end in found:
+        counts.setdefault((home(case.call), case.call), Counter())[end.outcome] += 1
+    width = max(len(call) for _, call in counts)
+    lines = [f"{'':{width}} {'calls':>7}" + "".join(f"{kind:>16}" for kind in kinds)]
+    folder = ""
+    for (place, call), of_call in sorted(counts.items()):
+        if place != folder:
+            folder = place
+            lines.append(f"\n{folder}")
+        lines.append(
+            f"{call:{width}} {of_call.total():7}" + "".join(f"{of_call[k]:16}" for k in kinds)
+        )
+    total = sum(counts.values(), Counter())
+    lines.append(f"\n{'all':{width}} {total.total():7}" + "".join(f"{total[k]:16}" for k in kinds))
+    lines.append(f"refused clearly: {share(found):.2%}")
+    return "\n".join(lines)
+
+
+def share(found: Answers) -> float:
+    """Return the share of bad calls that were refused clearly."""
+    return sum(end.outcome == CLEAR for _, end in found) / max(len(found), 1)
+
+
+def listed(found: Answers) -> str:
+    """Return what was not refused clearly, one line each, by folder of the package."""
+    failed = [(home(case.call), str(case), end) for case, end in found if end.outcome != CLEAR]
+    failed.sort(key=lambda entry: entry[:2])
+    return "\n".join(
+        f"{place}: {case}: {end.outcome}: {' '.join(end.said.split())[:160]}"
+        for place, case, end in failed
+    )
+
+
+def main() -> None:
+    """Make the bad calls; ends with an error code if too many are not refused clearly."""
+    parser = argparse.ArgumentParser(description="Is every bad call refused clearly?")
+    parser.add_argument("--quick", action="store_true", help="two thousand of them only")
+    parser.add_argument("--list", metavar="FILE", help="write what was not refused clearly")
+    parser.add_argument("--call", metavar="NAME", help="only calls whose name begins so")
+    parser.add_argument("--processes", type=int, default=1, help="how many at a time")
+    options = parser.parse_args()
+    all_cases = [case for case, _ in cases(World())]
+    numbers = chosen(len(all_cases), 2000 if options.quick else None)
+    if options.call:
+        numbers = [n for n in numbers if all_cases[n].call.startswith(options.call)]
+    found = answers(numbers, all_cases, options.processes)
+    print(printed(found))
+    if options.list:
+        with open(options.list, "w", encoding="utf-8") as file:
+            file.write(listed(found) + "\n")
+    worst = sum(end.outcome in (CRASHED, HUNG, HALF_BUILT) for _, end in found)
+    if worst or share(found) < WANTED:
+        raise SystemExit(f"{share(found):.2%} refused clearly, {worst} crashed, hung or half-built")

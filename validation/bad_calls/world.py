@@ -1,0 +1,243 @@
+"""A small rotor, its scenes and its results, on which the valid calls are made."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from dataclasses import fields
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import exudyn
+import matplotlib
+import ngsolve
+import numpy as np
+from exudyn.FEM import FEMinterface
+from netgen.occ import Box, OCCGeometry, Pnt, Z
+
+import exudyn_rotor as er
+from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.theory.stiffening import stiffening
+
+STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
+SPEEDS = (10.0, 20.0, 30.0, 40.0)
+
+
+class World:
+    """Everything is made when it is first asked for, and once; scenes can be renewed."""
+
+    def __init__(self) -> None:
+        matplotlib.use("Agg")
+        self.folder = Path(tempfile.mkdtemp(prefix="bad_calls"))
+
+    @cached_property
+    def mesh(self) -> ngsolve.Mesh:
+        """A bar along z with the end faces 'left' and 'right'."""
+        bar = Box(Pnt(-0.02, -0.03, 0), Pnt(0.02, 0.03, 0.3))
+        bar.mat("steel")
+        bar.faces.Min(Z).name, bar.faces.Max(Z).name = "left", "right"
+        return ngsolve.Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.15))
+
+    @cached_property
+    def solid(self) -> er.SolidRotor:
+        """The bar with linear elements: some dozen nodes."""
+        return er.SolidRotor.from_ngsolve(self.mesh, STEEL, "z", order=1)
+
+    @cached_property
+    def prestress(self) -> er.Prestress:
+        """Its static stress at speed."""
+        return self.solid.prestress(euler=True)
+
+    @cached_property
+    def reduced(self) -> er.ReducedRotor:
+        """The bar with two elastic modes, stress and prestress."""
+        return self.solid.reduce(2, stress=True, prestress=self.prestress)
+
+    @cached_property
+    def selection(self) -> Any:
+        """Its modes at constant speed."""
+        return er.select_modes(self.reduced, er.Formulation("none", 10.0))
+
+    @cached_property
+    def motion(self) -> er.Motion:
+        """Its equations of motion at constant speed."""
+        return self.body.motion
+
+    @cached_property
+    def second_order(self) -> er.Stiffening:
+        """Its second-order terms at the level 'tilt'."""
+        return stiffening(self.selection.invariants, "tilt")
+
+    @cached_property
+    def stressed(self) -> er.SolidRotor:
+        """The bar that carries its prestress."""
+        return self.solid.with_prestress(self.prestress)
+
+    @property
+    def steel(self) -> dict[str, float]:
+        """The material, a copy."""
+        return dict(STEEL)
+
+    @cached_property
+    def fem(self) -> FEMinterface:
+        """The bar as Exudyn's FE model, with its modes."""
+        fem = FEMinterface()
+        fem.ImportMeshFromNGsolve(
+            self.mesh, materials={"steel": STEEL}, boundaryNamesList=["left", "right"], meshOrder=1
+        )
+        fem.ComputeEigenmodes(2, 6)
+        return fem
+
+    @cached_property
+    def supports(self) -> tuple[er.Support, ...]:
+        """Two bearings; the first also holds the rotor along its axis."""
+        return (
+            er.Support("left", np.diag([1e6, 1e6, 1e6]), 100.0),
+            er.Support("right", 1e6, 100.0),
+        )
+
+    @cached_property
+    def isotropic(self) -> tuple[er.Support, ...]:
+        """Bearings whose damper turns with the rotor, too: unstable above some speed."""
+        return (
+            er.Support("left", np.diag([1e6, 1e6, 1e6]), 10.0),
+            er.Support("right", 1e6, 10.0),
+            er.Support("left", damping=100.0, frame="rotor"),
+            er.Support("right", damping=100.0, frame="rotor"),
+        )
+
+    @cached_property
+    def linear(self) -> LinearRotor:
+        """Linear equations of the bar on its bearings."""
+        return LinearRotor.of(self.reduced, self.supports)
+
+    # -------------------------------------------------------------- scenes
+
+    @cached_property
+    def mbs(self) -> exudyn.MainSystem:
+        """An empty scene, for calls that add to it."""
+        return exudyn.SystemContainer().AddSystem()
+
+    @cached_property
+    def free_mbs(self) -> exudyn.MainSystem:
+        """The scene of `body`: the bar at constant speed on two springs, assembled."""
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = er.add_rotor(mbs, self.reduced, spin=10.0, translation="none")
+        ground = mbs.CreateGround()
+        for name, z in (("left", 0.0), ("right", 0.3)):
+            mbs.CreateCartesianSpringDamper(
+                itemNumbers=[ground, body.marker(name)],
+                localPosition0=[0, 0, z],
+                stiffness=[1e6] * 3,
+                damping=[100.0] * 3,
+            )
+        mbs.Assemble()
+        self._body = body
+        return mbs
+
+    @property
+    def body(self) -> er.RotorBody:
+        """The rotor in `free_mbs`."""
+        _ = self.free_mbs
+        return self._body
+
+    def renew(self) -> None:
+        """Forget the scenes, after a call that should have been refused has changed them."""
+        for name in ("mbs", "free_mbs", "motion", "run_check"):
+            self.__dict__.pop(name, None)
+
+    # -------------------------------------------------------------- results
+
+    @cached_property
+    def run_check(self) -> er.RunCheck:
+        """The check of the scene at rest."""
+        return er.check_run(self.body, warn=False)
+
+    @cached_property
+    def proposal(self) -> er.Proposal:
+        """A proposal for the bar."""
+        return er.propose(self.reduced, speeds=(0.0, 40.0), supports=self.supports)
+
+    @cached_property
+    def campbell(self) -> er.Campbell:
+        """Frequencies over four speeds."""
+        return er.campbell(self.reduced, SPEEDS, supports=self.supports)
+
+    @cached_property
+    def critical(self) -> er.CriticalSpeeds:
+        """Critical speeds."""
+        return er.critical_speeds(self.reduced, supports=self.supports)
+
+    @cached_property
+    def critical_map(self) -> er.CriticalSpeedMap:
+        """Critical speeds over the stiffness of the bearings."""
+        return er.critical_speed_map(
+            self.reduced, ["left", "right"], [1e6, 2e6], supports=self.axial
+        )
+
+    @cached_property
+    def axial(self) -> tuple[er.Support, ...]:
+        """A spring along the axis and against the spin."""
+        return (er.Support("left", np.diag([0.0, 0.0, 1e6])),)
+
+    @cached_property
+    def unbalance(self) -> er.UnbalanceResponse:
+        """The response to an unbalance over four speeds."""
+        load = er.Unbalance("left", 1e-4)
+        return er.unbalance_response(self.reduced, SPEEDS, [load], supports=self.supports)
+
+    @cached_property
+    def harmonic(self) -> er.HarmonicResponse:
+        """The response to a force over four frequencies."""
+        load = er.HarmonicForce("left", [1.0, 0.0, 0.0])
+        return er.harmonic_response(self.reduced, SPEEDS, load, supports=self.supports)
+
+    @cached_property
+    def stability(self) -> er.Stability:
+        """Exponents over four speeds."""
+        return er.stability(self.reduced, SPEEDS, supports=self.supports)
+
+    @cached_property
+    def stability_map(self) -> er.StabilityMap:
+        """Growth over stiffness and speed."""
+        return er.stability_map(self.build, [1e6, 2e6], SPEEDS)
+
+    def build(self, stiffness: float, speed: float) -> tuple[Any, float]:
+        """Return a target of the stability map."""
+        supports = (*self.axial, er.Support("left", stiffness), er.Support("right", stiffness))
+        return LinearRotor.of(self.reduced, supports), speed
+
+    @cached_property
+    def stress(self) -> er.StressField:
+        """The stress of the bar."""
+        return er.StressField.of(self.reduced, self.selection)
+
+    @cached_property
+    def coordinates(self) -> np.ndarray:
+        """Modal coordinates at four instants."""
+        return 1e-6 * np.ones((4, len(self.selection.labels)))
+
+    @cached_property
+    def history(self) -> er.StressHistory:
+        """Its stress at four instants."""
+        return er.stress_history(self.stress, [0.0, 0.1, 0.2, 0.3], self.coordinates, 10.0)
+
+    def stored(self, result: Any) -> Path:
+        """Return the path of a file that holds a result."""
+        path = self.folder / f"{type(result).__name__}.npz"
+        if not path.exists():
+            result.save(path)
+        return path
+
+
+def arguments(instance: Any) -> dict[str, Any]:
+    """Return the arguments that make a dataclass instance again."""
+    return {field.name: getattr(instance, field.name) for field in fields(instance) if field.init}
+
+
+def quietly(function: Any, *given: Any, **options: Any) -> Any:
+    """Call a function without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return function(*given, **options)
