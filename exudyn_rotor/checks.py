@@ -21,8 +21,9 @@ Kind = TypeVar("Kind")
 Shape = tuple[int | None, ...]
 
 _LONGEST = 80  # characters of a value in a message
+_LARGEST = 1e150  # squares of numbers stay finite
+_MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
 _SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
-_NUMBERS = "buif"
 
 
 def shown(value: object) -> str:
@@ -44,6 +45,10 @@ def shown(value: object) -> str:
 _PLAIN = (str, bool, int, float, complex, type(None), list, tuple, np.ndarray, np.number)
 
 
+def _told(name: str, needed: str, value: object) -> str:
+    return f"{name}: needs {needed}, got {shown(value)}"
+
+
 def _unit(unit: str) -> str:
     return f" [{unit}]" if unit else ""
 
@@ -62,12 +67,9 @@ def number(
     most: float | None = None,
 ) -> float:
     """Return a finite real number; `above` and `below` are excluded, `least` and `most` not."""
-    limits = [
-        f"{sign} {limit:g}"
-        for sign, limit in ((">", above), ("≥", least), ("<", below), ("≤", most))
-        if limit is not None
-    ]
-    needed = f"a finite number{_unit(unit)}" + (f" {' and '.join(limits)}" if limits else "")
+    signs = {">": above, "≥": least, "<": below, "≤": most}
+    limits = " and ".join(f"{sign} {n:g}" for sign, n in signs.items() if n is not None)
+    needed = f"a finite number{_unit(unit)}{' ' if limits else ''}{limits}"
     result = _scalar(value, name, needed)
     outside = (
         (above is not None and not result > above)
@@ -76,22 +78,24 @@ def number(
         or (most is not None and not result <= most)
     )
     if outside or not np.isfinite(result):
-        raise ValueError(f"{name}: needs {needed}, got {shown(value)}")
+        raise ValueError(_told(name, needed, value))
+    if abs(result) > _LARGEST:
+        raise ValueError(f"{name}: needs a number below {_LARGEST:g} in size, got {shown(value)}")
     return result
 
 
 def _scalar(value: object, name: str, needed: str) -> float:
-    if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.ndarray):
-        if not isinstance(value, np.integer | np.floating):
-            raise TypeError(f"{name}: needs {needed}, got {shown(value)}")
-    elif isinstance(value, np.ndarray) and (value.ndim or value.dtype.kind not in "uif"):
-        raise TypeError(f"{name}: needs {needed}, got {shown(value)}")
-    if np.ma.is_masked(value):
+    if value is np.ma.masked:
         raise ValueError(f"{name}: needs {needed}, got a masked value")
+    if isinstance(value, np.ndarray | np.generic):
+        if value.ndim or value.dtype.kind not in "uif":
+            raise TypeError(_told(name, needed, value))
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError(_told(name, needed, value))
     try:
         return float(value)
     except OverflowError as error:
-        raise ValueError(f"{name}: needs {needed}, got {shown(value)}") from error
+        raise ValueError(_told(name, needed, value)) from error
 
 
 def tolerance(value: float, name: str = "tolerance") -> float:
@@ -99,33 +103,33 @@ def tolerance(value: float, name: str = "tolerance") -> float:
     return number(value, name, above=0.0, below=1.0)
 
 
-def count(value: int, name: str, *, least: int = 0, most: int | None = None) -> int:
+def count(value: int, name: str, *, least: int = 0, most: int = _MOST) -> int:
     """Return a whole number within limits, both included."""
-    upper = "" if most is None else f" and ≤ {most}"
-    needed = f"a whole number ≥ {least}{upper}"
-    value = _whole(value, name, needed)
-    if value < least or (most is not None and value > most):
-        raise ValueError(f"{name}: needs {needed}, got {shown(value)}")
-    return value
+    limits = f" ≥ {least}" + (f" and ≤ {most}" if most < _MOST else "")
+    return _whole(value, name, f"a whole number{limits}", least, most)
 
 
 def whole_number(value: int, name: str) -> int:
     """Return a whole number of either sign."""
-    return _whole(value, name, "a whole number")
+    return _whole(value, name, "a whole number", -_MOST, _MOST)
 
 
-def _whole(value: object, name: str, needed: str) -> int:
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
-    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name}: needs {needed}, got {shown(value)}")
+def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
+    if isinstance(value, np.ndarray | np.generic):
+        whole = value.ndim == 0 and value.dtype.kind in "ui" and not np.ma.is_masked(value)
+    else:
+        whole = isinstance(value, int) and not isinstance(value, bool)
+    if not whole:
+        raise TypeError(_told(name, needed, value))
+    if not least <= value <= most:
+        raise ValueError(_told(name, needed, value))
     return int(value)
 
 
 def flag(value: bool, name: str) -> bool:
     """Return True or False; words and numbers are refused."""
     if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{name}: needs True or False, got {shown(value)}")
+        raise TypeError(_told(name, "True or False", value))
     return bool(value)
 
 
@@ -145,9 +149,9 @@ def choice(value: str, name: str, options: Iterable[str]) -> str:
 def label(value: str, name: str) -> str:
     """Return a name: text that is not empty."""
     if not isinstance(value, str):
-        raise TypeError(f"{name}: needs a name (text), got {shown(value)}")
+        raise TypeError(_told(name, "a name (text)", value))
     if not value.strip():
-        raise ValueError(f"{name}: needs a name that is not empty, got {shown(value)}")
+        raise ValueError(_told(name, "a name that is not empty", value))
     return str(value)
 
 
@@ -155,18 +159,13 @@ def labels(
     values: Iterable[str] | str, name: str, known: Iterable[str] | None = None
 ) -> tuple[str, ...]:
     """Return names, given as one or as a sequence; each one of `known`, if that is given."""
-    if isinstance(values, str):
-        values = (values,)
-    if isinstance(values, Mapping | bytes) or not isinstance(values, Iterable):
-        raise TypeError(f"{name}: needs names (a sequence of text), got {shown(values)}")
-    result = tuple(label(value, name) for value in values)
-    if known is None:
-        return result
-    there = tuple(known)
+    listed = (values,) if isinstance(values, str) else items(values, name, "names (a sequence)")
+    result = tuple(label(value, name) for value in listed)
+    there = result if known is None else tuple(known)
     for value in result:
         if value not in there:
-            listed = ", ".join(repr(item) for item in there) or "none"
-            raise ValueError(f"{name}: {shown(value)} is unknown; there are: {listed}")
+            names = ", ".join(repr(item) for item in there) or "none"
+            raise ValueError(f"{name}: {shown(value)} is unknown; there are: {names}")
     return result
 
 
@@ -190,9 +189,11 @@ def array(
     needed = f"{_kind_of(dtype, finite)}{_unit(unit)}{_of_shape(shape)}"
     result = read_only(_numbers(values, name, needed, dtype), dtype)
     if shape is not None and not _has_shape(result.shape, shape):
-        raise ValueError(f"{name}: needs {needed}, got {shown(values)}{_its_shape(result)}")
+        raise ValueError(_told(name, needed, values) + f" with the shape {result.shape}")
     if finite and not np.all(np.isfinite(result)):
-        raise ValueError(f"{name}: needs {needed}, got {shown(values)}")
+        raise ValueError(_told(name, needed, values))
+    if finite and np.max(np.abs(result), initial=0) > _LARGEST:
+        raise ValueError(f"{name}: needs numbers below {_LARGEST:g} in size, got {shown(values)}")
     return result
 
 
@@ -201,17 +202,13 @@ def vector(values: ArrayLike, name: str, unit: str = "", size: int | None = 3) -
     return array(values, name, unit, shape=(size,))
 
 
-def whole_numbers(
-    values: ArrayLike, name: str, *, least: int = 0, most: int | None = None
-) -> np.ndarray:
+def whole_numbers(values: ArrayLike, name: str, *, least: int = 0, most: int = _MOST) -> np.ndarray:
     """Return a read-only array (k,) of whole numbers within limits, both included."""
     result = array(values, name, shape=(None,), dtype=int)
-    outside = (result < least) | (result > (np.iinfo(int).max if most is None else most))
-    if np.any(outside):
-        upper = "" if most is None else f" and ≤ {most}"
-        raise ValueError(
-            f"{name}: needs whole numbers ≥ {least}{upper}, got {result[np.argmax(outside)]}"
-        )
+    outside = result[(result < least) | (result > most)]
+    if outside.size:
+        upper = f" and ≤ {most}" if most < _MOST else ""
+        raise ValueError(f"{name}: needs whole numbers ≥ {least}{upper}, got {outside[0]}")
     return result
 
 
@@ -231,40 +228,31 @@ def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None
 
 
 def symmetric(values: Any, name: str, unit: str = "", *, size: int, sign: int = 1) -> Any:
-    """Return a symmetric matrix (size, size), for the sign −1 a skew-symmetric one.
-
-    Of a sparse one, entries and shape are looked at only.
-    """
+    """Return a symmetric matrix (sign −1: skew-symmetric); sparse ones are trusted to be so."""
     result = matrix(values, name, unit, shape=(size, size))
     if sp.issparse(result):
         return result
     difference = np.abs(result - sign * result.T).max(initial=0.0)
     largest = np.abs(result).max(initial=0.0)
     if difference > _SYMMETRY * largest:
-        kind = "symmetric" if sign > 0 else "skew-symmetric"
-        raise ValueError(
-            f"{name}: needs a {kind} matrix; entries differ by {difference:.3g}, the largest is "
-            f"{largest:.3g}"
-        )
+        kind = f"a {'symmetric' if sign > 0 else 'skew-symmetric'} matrix"
+        raise ValueError(f"{name}: needs {kind}; {difference:.3g} of {largest:.3g} is not")
     return result
 
 
 def rotation(values: ArrayLike, name: str = "rotation") -> np.ndarray:
     """Return a proper rotation matrix, shape (3, 3), read-only."""
     result = array(values, name, shape=(3, 3))
-    # a user's rounding to nine digits is meant to be a rotation, a scaling by 1 + 1e-6 is not
-    if not np.allclose(result @ result.T, np.eye(3), atol=1e-9) or np.linalg.det(result) < 0.0:
-        raise ValueError(
-            f"{name}: needs a rotation matrix, orthonormal with determinant +1, got "
-            f"{shown(result.tolist())}"
-        )
+    # a user's rounding to nine digits, 2 √3 · 5e-10 in R Rᵀ, is meant to be a rotation
+    if np.abs(result @ result.T - np.eye(3)).max() > 2e-9 or np.linalg.det(result) < 0.0:
+        raise ValueError(_told(name, "a rotation matrix (R Rᵀ = 1, det R = 1)", result.tolist()))
     return result
 
 
 def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
     """Return `values` as an array of numbers that `dtype` can hold without loss."""
     if isinstance(values, str | bytes | Mapping | set | frozenset) or values is None:
-        raise TypeError(f"{name}: needs {needed}, got {shown(values)}")
+        raise TypeError(_told(name, needed, values))
     if sp.issparse(values):
         raise TypeError(f"{name}: needs {needed}, got a sparse matrix; give a dense array")
     if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
@@ -273,8 +261,8 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
         result = np.asarray(values)
     # ragged lists, foreign objects with broken array protocols
     except Exception as error:
-        raise TypeError(f"{name}: needs {needed}, got {shown(values)}") from error
-    if result.size == 0 and result.dtype.kind in _NUMBERS:
+        raise TypeError(_told(name, needed, values)) from error
+    if result.size == 0 and result.dtype.kind in "buif":
         return result
     if result.dtype.kind == "c" and dtype is not complex:
         if np.any(result.imag):
@@ -282,10 +270,10 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
         return result.real
     # flags are no numbers: True for a stiffness is a slip
     if result.dtype.kind not in {complex: "uifc", bool: "b"}.get(dtype, "uif"):
-        raise TypeError(f"{name}: needs {needed}, got {shown(values)}")
+        raise TypeError(_told(name, needed, values))
     if dtype is int and result.dtype.kind == "f":
         if not np.all(np.isfinite(result)) or np.any(result != np.round(result)):
-            raise ValueError(f"{name}: needs {needed}, got {shown(values)}")
+            raise ValueError(_told(name, needed, values))
         raise TypeError(f"{name}: needs {needed} of an integer type, got {shown(values)}")
     return result
 
@@ -304,10 +292,6 @@ def _of_shape(shape: Shape | None) -> str:
     return f" of shape ({', '.join(sizes)}{',' if len(sizes) == 1 else ''})"
 
 
-def _its_shape(result: np.ndarray) -> str:
-    return "" if result.size > 6 else f" of shape {result.shape}"
-
-
 def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
     return len(found) == len(wanted) and all(
         size is None or size == there for there, size in zip(found, wanted, strict=True)
@@ -320,9 +304,7 @@ def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:
 def instance(value: object, name: str, kinds: type[Kind] | tuple[type, ...], how: str = "") -> Kind:
     """Return an object of one of the `kinds`; `how` says how to make one."""
     if not isinstance(value, kinds):
-        raise TypeError(
-            f"{name}: needs {_named(kinds)}, got {shown(value)}" + (f"; {how}" if how else "")
-        )
+        raise TypeError(_told(name, _named(kinds), value) + (f"; {how}" if how else ""))
     return value
 
 
@@ -332,22 +314,22 @@ def instances(
     """Return objects of some kinds, given as one or as a sequence."""
     if isinstance(values, kinds):
         return (values,)
-    needed = f"a {_named(kinds)} or a sequence of them"
-    listed = items(values, name, f"{needed} ({how})" if how else needed)
+    needed = f"a {_named(kinds)} or a sequence of them" + (f" ({how})" if how else "")
     return tuple(
-        instance(value, f"{name}[{index}]", kinds, how) for index, value in enumerate(listed)
+        instance(value, f"{name}[{index}]", kinds, how)
+        for index, value in enumerate(items(values, name, needed))
     )
 
 
 def items(values: Iterable[Any], name: str, needed: str) -> tuple:
     """Return what a sequence holds; text and mappings are none. `needed` is for the message."""
-    if not isinstance(values, str | bytes | Mapping) and isinstance(values, Iterable):
-        try:
+    try:
+        if not isinstance(values, str | bytes | Mapping) and isinstance(values, Iterable):
             return tuple(values)
-        # an array without dimensions, an iterator that breaks off
-        except Exception as error:
-            raise TypeError(f"{name}: needs {needed}, got {shown(values)}") from error
-    raise TypeError(f"{name}: needs {needed}, got {shown(values)}")
+    # an array without dimensions, an iterator that breaks off
+    except Exception as error:
+        raise TypeError(_told(name, needed, values)) from error
+    raise TypeError(_told(name, needed, values))
 
 
 def _named(kinds: type | tuple[type, ...]) -> str:
@@ -358,9 +340,7 @@ def _named(kinds: type | tuple[type, ...]) -> str:
 def mapping(value: Mapping[str, Kind], name: str, what: str = "") -> Mapping[str, Kind]:
     """Return a mapping whose keys are names; `what` says what it maps names to."""
     if not isinstance(value, Mapping):
-        raise TypeError(
-            f"{name}: needs a dictionary of name to {what or 'value'}, got {shown(value)}"
-        )
+        raise TypeError(_told(name, f"a dictionary of name to {what or 'value'}", value))
     for key in value:
         label(key, f"{name}: its key")
     return value
@@ -369,27 +349,25 @@ def mapping(value: Mapping[str, Kind], name: str, what: str = "") -> Mapping[str
 def function(value: Callable, name: str) -> Callable:
     """Return something that can be called."""
     if not callable(value):
-        raise TypeError(f"{name}: needs a function, got {shown(value)}")
+        raise TypeError(_told(name, "a function", value))
     return value
 
 
 def executor(value: Any, name: str = "executor") -> Any:
-    """Return an executor with a ``map`` method, or None."""
-    if value is None or (callable(getattr(value, "map", None)) and not isinstance(value, type)):
+    """Return an executor with a ``submit`` method, or None."""
+    if value is None or (callable(getattr(value, "submit", None)) and not isinstance(value, type)):
         return value
-    raise TypeError(
-        f"{name}: needs an executor with a map method, e.g. of concurrent.futures, or None, got "
-        f"{shown(value)}"
-    )
+    raise TypeError(_told(name, "an executor of concurrent.futures or alike, or None", value))
 
 
 def path(value: str | os.PathLike, name: str = "path") -> Path:
     """Return the path of a file."""
-    if isinstance(value, bytes) or not isinstance(value, str | os.PathLike):
-        raise TypeError(f"{name}: needs the path of a file (text or Path), got {shown(value)}")
-    text = os.fspath(value)
-    if isinstance(text, bytes) or not text or "\0" in text:
-        raise ValueError(f"{name}: needs the path of a file, got {shown(value)}")
+    needed = "the path of a file (text or Path)"
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(text, str):
+        raise TypeError(_told(name, needed, value))
+    if not text or "\0" in text:
+        raise ValueError(_told(name, needed, value))
     return Path(text)
 
 
@@ -418,8 +396,6 @@ def ascending(values: Sequence[float], name: str, unit: str = "") -> np.ndarray:
         values = [values]
     result = vector(values, name, unit, size=None)
     if result.size == 0 or np.any(np.diff(result) <= 0.0):
-        raise ValueError(
-            f"{name}: needs at least one number{_unit(unit)}, in ascending order without "
-            f"repetition (np.unique makes them so), got {shown(values)}"
-        )
+        needed = f"at least one number{_unit(unit)}, in ascending order without repetition"
+        raise ValueError(_told(name, f"{needed} (np.unique makes them so)", values))
     return result
