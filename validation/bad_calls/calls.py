@@ -38,6 +38,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "Proposal": lambda w: w.proposal,
     "ReducedRotor": lambda w: w.reduced,
     "RotorBody": lambda w: w.body,
+    "RotorBody.watch": lambda w: er.add_rotor(w.mbs, w.reduced, name=None),
     "RunCheck": lambda w: w.run_check,
     "SolidRotor": lambda w: w.solid,
     "SpinAxis": lambda w: er.SpinAxis([0.0, 0.0, 1.0]),
@@ -71,8 +72,8 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "mbs": w.mbs,
         "reduced": w.reduced,
         "name": None,
-        "modal_coordinates": np.zeros(6),
-        "modal_velocities": np.zeros(6),
+        "modal_coordinates": np.zeros(4),
+        "modal_velocities": np.zeros(4),
         "marker_offsets": {"left": [0.0, 0.0, 0.01]},
         "rotation": np.eye(3),
     },
@@ -197,6 +198,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "interfaces": ["left"],
     },
     "SolidRotor.nearest_node": lambda w: {"position": _ZEROS},
+    "SolidRotor.of_model": lambda w: {"model": w.model, "axis": "z", "check_units": True},
     "SolidRotor.prestress": lambda w: {"yield_stress": 1e9, "speed": 10.0},
     "SolidRotor.reduce": lambda w: {"modes": 2},
     "SolidRotor.with_interface": lambda w: {
@@ -278,7 +280,8 @@ def valid(name: str, world: World) -> Call:
     if method:
         static = inspect.getattr_static(function, method)
         bound = isinstance(static, staticmethod | classmethod)
-        function = getattr(function if bound else INSTANCES[owner](world), method)
+        instance = INSTANCES.get(name, INSTANCES[owner])
+        function = getattr(function if bound else instance(world), method)
         required = [
             p
             for p in parameters(name).values()

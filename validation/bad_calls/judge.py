@@ -52,7 +52,10 @@ class Answer:
 def cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
     """Yield all bad calls, and what makes the bad value of each."""
     for name in calls.public_calls():
-        _, good = calls.valid(name, world)
+        try:
+            _, good = calls.valid(name, world)
+        except KeyError:  # no entry: a test tells
+            continue
         for argument, parameter in calls.parameters(name).items():
             if parameter.kind is parameter.VAR_KEYWORD:
                 for label, make in _of_options(name):

@@ -130,6 +130,7 @@ BY_NAME: dict[str, Kind] = {
     "modal_coordinates": _FIELD,
     "modal_velocities": _FIELD,
     "mode_mass": _FIELD,
+    "model": v.OBJECT,
     "modes": v.COUNT_FROM_ONE,
     "moment": v.COMPLEX,
     "force": v.COMPLEX,
