@@ -110,9 +110,10 @@ def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
         labels = tuple(f"column {i + 1}" for i in range(columns.shape[1]))
         return ModeBasis(columns, labels, nodes=rotor.nodes)
     if isinstance(modes, (int, np.integer)) and not isinstance(modes, bool):
-        if modes == 0:  # a rigid rotor
+        count = checks.count(modes, "modes")
+        if count == 0:  # a rigid rotor
             return ModeBasis(np.zeros((rotor.nodes.size, 0)), (), nodes=rotor.nodes)
-        return free_modes(rotor, int(modes))
+        return free_modes(rotor, count)
     raise TypeError(
         f"modes: expected a number of free eigenmodes, a ModeBasis, a FEMinterface with modes, or "
         f"an array of displacement columns, got {checks.shown(modes)}"

@@ -52,14 +52,15 @@ def spinning_modes(
     """
     check_rotor(rotor)
     checks.tolerance(tolerance)
+    checks.count(count, "count", least=1)
+    speeds = checks.vector(speeds, "speeds", "rad/s", size=None)
+    if speeds.size == 0 or np.any(speeds <= 0.0):
+        raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
     if rotor.carried_prestress is None:
         raise ValueError(
             "spinning_modes: the rotor carries no prestress; use "
             "rotor.with_prestress(rotor.prestress())"
         )
-    speeds = checks.vector(speeds, "speeds", "rad/s", size=None)
-    if speeds.size == 0 or np.any(speeds <= 0.0):
-        raise ValueError(f"speeds: need a list of positive numbers [rad/s], got {speeds.tolist()}")
     rest = free_modes(rotor, count, tolerance=tolerance)
     found, labels = [rest.matrix], list(rest.labels)
     for speed in speeds:

@@ -56,8 +56,6 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
 
 
 def _checked(indices: Sequence[int], count: int) -> np.ndarray:
-    if not np.size(indices):
-        indices = np.zeros(0, dtype=int)
     chosen = np.sort(checks.whole_numbers(indices, "indices"))
     if chosen.size and chosen[-1] >= count:
         there = f"flexible modes 0 to {count - 1}" if count else "no flexible modes"

@@ -87,7 +87,7 @@ class Invariants:
             "direction": direction,
             "mass": checks.number(self.mass, "mass", "kg", above=0.0),
             "center": checks.vector(self.center, "center", "m"),
-            "J": checks.symmetric(self.J, "J", "kg m²", size=3),
+            "J": checks.symmetric(checks.array(self.J, "J"), "J", "kg m²", size=3),
             "S": S,
             "P": checks.array(self.P, "P", "kg m", shape=(3, 3, size)),
             "D": checks.matrix(self.D, "D", shape=(size, size)),

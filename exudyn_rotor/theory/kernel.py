@@ -88,12 +88,12 @@ class Kernel:
         if inv.is_sparse or motion.is_coupled:
             raise ValueError("motion: needs dense invariants and translations without coupling")
         size = checks.count(size, "size", least=motion.size)
-        places = checks.whole_numbers(list(unknowns), "unknowns", most=size - 1)
+        places = checks.whole_numbers(unknowns, "unknowns", most=size - 1)
         modes = np.arange(size - count, size)
         if len(places) != motion.size or np.any(places[motion.size - count :] != modes):
             raise ValueError(
                 f"unknowns: need {motion.size} places, the last {count} of {size} for the modes, "
-                f"got {checks.shown(list(unknowns))}"
+                f"got {checks.shown(places.tolist())}"
             )
         self._motion = motion
         self._first = size - count

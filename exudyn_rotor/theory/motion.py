@@ -98,6 +98,8 @@ class Motion:
         if orientation is not None:
             self.orientation = checks.rotation(orientation, "orientation")
         self.gravity = checks.vector(np.zeros(3) if gravity is None else gravity, "gravity", "m/s²")
+        if plane is not None:
+            plane = checks.array(plane, "plane", shape=(3, 2))
         self._e = skew(invariants.direction)
         self._turn = SpinAxis(invariants.direction)
         self.free_directions = self._free_directions(plane)
@@ -116,14 +118,14 @@ class Motion:
         )
         self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
 
-    def _free_directions(self, plane: ArrayLike | None) -> np.ndarray:
+    def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
         count = self.formulation.translation_count
         if count == 3:
             return np.eye(3)
-        if count == 2 and plane is not None:
-            return checks.array(plane, "plane", shape=(3, 2))
+        if plane is None:
+            plane = self.orientation @ self._turn.plane
         if count == 2:
-            return self.orientation @ self._turn.plane
+            return plane
         return np.zeros((3, 0))
 
     @cached_property
