@@ -1,0 +1,122 @@
+"""Imports go one way: the order of folders is that of the listing under 'Structure' in README."""
+
+import ast
+import re
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "exudyn_rotor"
+NAME = PACKAGE.name
+
+# edges against the order that still stand, as (importing, imported)
+LEFT = (
+    ("plotting", "linear.modal.campbell"),
+    ("linear.equations.probe", "linear.equations.scene"),
+)
+
+
+def order() -> list[str]:
+    """Return the entries of the listing in README, 'theory/' or 'checks.py', top down."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    listing = text.split("## Structure", 1)[1].split(f"{NAME}/", 1)[1].split("\n    validation/")[0]
+    lines = (re.split(r" {2,}", line.strip())[0] for line in listing.splitlines()[1:])
+    return [
+        entry for line in lines for entry in line.split(", ") if re.match(r"\w+(/|\.py)$", entry)
+    ]
+
+
+def modules() -> dict[str, Path]:
+    """Return all modules of the package by their dotted name below it; '' is the package."""
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        found[".".join(part for part in parts if part != "__init__")] = path
+    return found
+
+
+MODULES = modules()
+
+
+def imports(module: str) -> Iterator[str]:
+    """Yield what a module imports of the package, anywhere: in functions and for types, too."""
+    path = MODULES[module]
+    folder = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (_below(alias.name) for alias in node.names if _is_own(alias.name))
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = [NAME, *filter(None, folder)]
+                base = ".".join([*above[: len(above) - node.level + 1], *filter(None, [base])])
+            if _is_own(base):
+                for alias in node.names:
+                    whole = _below(f"{base}.{alias.name}")
+                    yield whole if whole in MODULES else _below(base)
+
+
+def _is_own(name: str) -> bool:
+    return name == NAME or name.startswith(f"{NAME}.")
+
+
+def _below(name: str) -> str:
+    return name.removeprefix(NAME).removeprefix(".")
+
+
+def place(module: str) -> int:
+    """Return where the entry of a module stands in the listing."""
+    head = module.partition(".")[0] or "__init__"
+    entry = f"{head}/" if (PACKAGE / head).is_dir() else f"{head}.py"
+    assert entry in order(), f"{entry} is not listed under 'Structure' in README"
+    return order().index(entry)
+
+
+def test_every_entry_of_the_listing_exists():
+    entries = order()
+    assert len(entries) == len(set(entries))
+    for entry in entries:
+        assert (PACKAGE / entry).exists(), entry
+    assert {place(module) for module in MODULES} == set(range(len(entries)))
+
+
+@pytest.mark.parametrize("module", sorted(MODULES))
+def test_imports_go_up_the_listing(module):
+    above = {
+        (module, imported)
+        for imported in imports(module)
+        if place(imported) > place(module) and (module, imported) not in LEFT
+    }
+    assert not above
+
+
+def test_no_circle_of_files():
+    graph = {module: set(imports(module)) - {module} for module in MODULES}
+    for importing, imported in LEFT:
+        graph[importing].discard(imported)
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        circle = " → ".join(name or NAME for name in reversed(error.args[1]))
+        pytest.fail(f"files import each other in a circle: {circle}")
+
+
+def test_exceptions_still_exist():
+    """The list of exceptions only shrinks."""
+    assert all(imported in imports(importing) for importing, imported in LEFT)
+
+
+def test_a_circle_and_a_wrong_way_would_be_seen(tmp_path, monkeypatch):
+    """The reading of imports itself: in functions, for types, relative, of whole modules."""
+    (tmp_path / "low.py").write_text(
+        "from typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from exudyn_rotor.high import x\n"
+        "def f():\n    from . import middle\n    import exudyn_rotor.top\n"
+        "from exudyn_rotor import checks\nimport numpy\n"
+    )
+    known = {name: tmp_path / f"{name}.py" for name in ("low", "middle", "high", "top", "checks")}
+    monkeypatch.setattr("test_layout.MODULES", known)
+    assert sorted(imports("low")) == ["checks", "high", "middle", "top"]
