@@ -10,7 +10,15 @@ from models import STEEL, disc_on_shaft
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
-from exudyn_rotor import ModeBasis, SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
+from exudyn_rotor import (
+    ModeBasis,
+    Prestress,
+    SolidRotor,
+    SpinAxis,
+    campbell,
+    free_modes,
+    spinning_modes,
+)
 from exudyn_rotor.theory.stiffening import stiffening
 
 LENGTH, WIDTH, HEIGHT = 1.0, 0.06, 0.02
@@ -116,6 +124,30 @@ def test_modes_at_speed_need_fewer_columns():
     without = ModeBasis(both.matrix[:, :8], both.labels[:8], both.nodes, both.frequencies[:8])
     assert error(without) > 1e-3
     np.testing.assert_array_equal(np.isnan(both.frequencies), np.arange(10) >= 4)
+
+
+@pytest.mark.parametrize("speed", [3.0, 20.0])
+def test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs(speed):
+    """At the radius r; tension mΩ²r holds both sideways motions by mΩ², inertia frees one of them.
+
+    Sideways ``[[k_t, k_c], [k_c, k_a + mΩ²]]``: the lowest motion turns out of the tangential
+    direction by α, ``tan 2α = 2 k_c/(k_t − k_a − mΩ²)``. Its Coriolis force ``m e × φ`` is radial
+    and stretches ``k_r − mΩ²``. To rounding.
+    """
+    mass, radial, along, axial, oblique = 2.0, 9e5, 900.0, 800.0, 300.0
+    nodes = np.array([[0.7, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]])
+    stiffness = 1e8 * np.eye(9)  # of two points on the axis
+    stiffness[:3, :3] = [[radial, 0, 0], [0, along, oblique], [0, oblique, axial]]
+    rotor = SolidRotor.from_matrices(mass * np.eye(9), stiffness, nodes, "z")
+    tension = mass * np.diag([0.0, 1.0, 1.0, *[0.0] * 6])
+    string = Prestress.from_matrix(tension, nodes, balanced=False)
+    basis = spinning_modes(rotor.with_prestress(string), 1, [speed]).matrix[:3]
+    angle = 0.5 * np.arctan2(2 * oblique, along - axial - mass * speed**2)
+    mode = np.array([0.0, -np.sin(angle), np.cos(angle)]) / np.sqrt(mass)
+    mode *= np.sign(mode[np.argmax(np.abs(mode))])
+    np.testing.assert_allclose(basis[:, 1], mode, rtol=0, atol=1e-12)
+    response = mass * np.cross((0, 0, 1), mode) / (radial + mass * speed**2)
+    np.testing.assert_allclose(basis[:, 2], response, rtol=0, atol=1e-9 * abs(response).max())
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,7 @@ from exudyn_rotor import (
     AssumptionWarning,
     PrescribedMotion,
     SolidRotor,
-    Support,
     add_rotor,
-    campbell,
     check_run,
     craig_bampton_modes,
     keep_modes,
@@ -211,42 +209,6 @@ def test_strain_is_that_of_the_static_stretch(solid):
     assert not check["strain"].ok
 
 
-@pytest.mark.parametrize("speed", [20.0, 40.0])
-def test_left_out_stiffening_is_the_change_of_a_frequency(speed):
-    """Two rings on springs, tilting: the change of their frequencies from the Campbell diagram."""
-    ends = {"left": list(range(5)), "right": list(range(5, 10))}
-    rings = ring_rotor(0.2, 0.1, 4.0)
-    for name, nodes in ends.items():
-        rings = rings.with_interface(name, nodes)
-    rotor = rings.reduce(0)
-    mbs = exu.SystemContainer().AddSystem()
-    options = {"translation": "none", "spin": speed, "stiffening": "none"}
-    values = _modal(_labels(rotor, **options), tilt_1=1e-4)
-    body = add_rotor(mbs, rotor, modal_velocities=values, **options)
-    ground = mbs.CreateGround()
-    for name, z in (("left", -0.1), ("right", 0.1)):
-        mbs.CreateCartesianSpringDamper(
-            itemNumbers=[ground, body.marker(name)], localPosition0=[0, 0, z], stiffness=[1e4] * 3
-        )
-    body.watch()
-    mbs.Assemble()
-    solve(mbs, 1000, 0.5)
-    supports = [Support(name, 1e4) for name in ends]
-    exact, wrong = (
-        np.sort(
-            np.abs(
-                campbell(rotor, [speed], supports=supports, stiffening=s).frequencies_rotating[0]
-            )
-        )
-        for s in ("tilt", "none")
-    )
-    conical = np.abs(wrong - exact)
-    conical = (conical / np.maximum(exact, 1.0))[conical > 1e-6 * speed]
-    found = check_run(body, warn=False)["stiffening"].value
-    assert 0.5 * conical.min() < found < 2.0 * conical.max()
-    assert conical.max() < 5.0 * conical.min()
-
-
 def _stretching(frequency):
     """Return two masses of 1 kg on a spring along x, and four more on the axis z."""
     nodes = np.array([[0.1, 0, 0], [-0.1, 0, 0], [0, 0, 0.2], [0, 0, -0.2]])
@@ -261,11 +223,11 @@ def _stretching(frequency):
 
 @pytest.mark.parametrize(("share", "ok"), [(0.65, True), (0.95, False), (1.05, False)])
 def test_divergence_of_masses_on_a_spring(share, ok):
-    """They fly apart where Ω reaches the frequency of the spring."""
+    """They fly apart where Ω reaches the frequency of the spring; looked at in steps of Ω/10."""
     rotor = _stretching(100.0)
     check = check_run(_at_rest(rotor, spin=100.0 * share), warn=False)
     assert check["divergence"].ok == ok
-    assert check["divergence"].value == pytest.approx(share**2, rel=0.25)
+    assert 1.0 / share <= 1.0 / np.sqrt(check["divergence"].value) < 1.0 / share + 0.1
 
 
 def test_steps_too_long_are_found(reduced):
@@ -363,11 +325,14 @@ def test_speed_beyond_the_proposal_is_found(reduced, run):
 
 
 def test_yielding_is_found(solid):
-    carried = solid.prestress(yield_stress=1e6)
-    reduced = solid.reduce(2, prestress=carried)
+    """Von Mises √(3/2 s:s) of the deviator s."""
+    reduced = solid.reduce(2, prestress=solid.prestress(yield_stress=1e6))
     check = check_run(_at_rest(reduced, spin=500.0), reduced=reduced, warn=False)
-    peak = np.abs(reduced.static_stress(500.0)).max()
-    assert 0.5 * peak < check["yield"].value * 1e6 < 2.0 * peak
+    stress = reduced.static_stress(500.0)
+    stress[:, :3] -= stress[:, :3].mean(axis=1, keepdims=True)
+    squares = stress**2 @ np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    expected = np.sqrt(1.5 * squares.max()) / 1e6
+    assert check["yield"].value == pytest.approx(expected, rel=1e-12)
     assert not check["yield"].ok
 
 

@@ -19,6 +19,7 @@ from exudyn_rotor.linear.stability.analysis import (
 )
 from exudyn_rotor.linear.stability.floquet import (
     UnconvergedError,
+    _magnus,
     constant_exponents,
     floquet_exponents,
     fold,
@@ -75,6 +76,26 @@ def test_mathieu_characteristic_values_bound_the_instability(order, q):
     beyond = mathieu(0.5 * (mathieu_a(order, q) + mathieu_b(order + 1, q)), q)
     assert hill_exponents(inside)[0].real.max() > 1e-5
     assert abs(hill_exponents(beyond)[0].real).max() < 1e-9
+
+
+@pytest.mark.parametrize("steps", [16, 32])
+def test_magnus_steps_are_of_sixth_order(steps):
+    """Against a Runge–Kutta solution of Mathieu's equation; halving the step divides by 2⁶.
+
+    Of the same order are terms with h⁸, relative to h⁶ some (h √a)² = 0.2 or less.
+    """
+    a, q = 5.0, 2.0
+
+    def rate(t: float, z: np.ndarray) -> np.ndarray:
+        x, v = z.reshape(2, 2)
+        return np.array([v, -(a - 2.0 * q * np.cos(2.0 * t)) * x]).ravel()
+
+    solved = solve_ivp(rate, (0.0, np.pi), np.eye(2).ravel(), "DOP853", rtol=1e-13, atol=1e-13)
+    exact = solved.y[:, -1].reshape(2, 2)
+    coarse, fine = (
+        np.abs(_magnus(mathieu(a, q), np.pi, n) - exact).max() for n in (steps, 2 * steps)
+    )
+    assert np.log2(coarse / fine) == pytest.approx(6.0, abs=0.4)
 
 
 @pytest.mark.parametrize("seed", range(4))
