@@ -152,6 +152,8 @@ def label(value: str, name: str) -> str:
         raise TypeError(_told(name, "a name (text)", value))
     if not value.strip():
         raise ValueError(_told(name, "a name that is not empty", value))
+    if not value.isprintable():  # line breaks, half characters that no file or library takes
+        raise ValueError(_told(name, "printable characters", value))
     return str(value)
 
 
@@ -337,12 +339,16 @@ def _named(kinds: type | tuple[type, ...]) -> str:
     return " or ".join(kind.__name__ for kind in several)
 
 
-def mapping(value: Mapping[str, Kind], name: str, what: str = "") -> Mapping[str, Kind]:
-    """Return a mapping whose keys are names; `what` says what it maps names to."""
+def mapping(
+    value: Mapping[str, Kind], name: str, what: str = "", known: Iterable[str] | None = None
+) -> Mapping[str, Kind]:
+    """Return a mapping whose keys are names; `what` says what it maps names to.
+
+    The names are those that are `known`, if that is given.
+    """
     if not isinstance(value, Mapping):
         raise TypeError(_told(name, f"a dictionary of name to {what or 'value'}", value))
-    for key in value:
-        label(key, f"{name}: its key")
+    labels(tuple(value), name, known)
     return value
 
 

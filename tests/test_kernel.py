@@ -124,8 +124,8 @@ def test_recommended_settings_follow_the_accuracy():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((0.0, 1e-3), "end_time: must be positive"),
-        ((1.0, -1e-3), "step: must be positive"),
+        ((0.0, 1e-3), r"end_time: needs a finite number \[s\] > 0"),
+        ((1.0, -1e-3), r"step: needs a finite number \[s\] > 0"),
         ((1.0, float("nan")), "step"),
         ((1e-3, 1.0), "longer than end_time"),
     ],
@@ -136,7 +136,7 @@ def test_bad_settings_are_refused(arguments, message):
 
 
 def test_bad_accuracy_is_refused():
-    with pytest.raises(ValueError, match="accuracy: needs a share"):
+    with pytest.raises(ValueError, match="accuracy: needs a finite number > 0 and < 1"):
         recommended_settings(1.0, 1e-3, accuracy=2.0)
 
 

@@ -298,10 +298,10 @@ WRONG = {
         {"axis": "z", "superElementRigidMarkersOffsets": [[0.0], [0.0, 0.0]]},
         "superElementRigidMarkersOffsets",
     ),
-    "color": ({"axis": "z", "color": [1.0, 0.0, 0.0]}, "color: needs 4 finite numbers"),
+    "color": ({"axis": "z", "color": [1.0, 0.0, 0.0]}, r"color: needs finite .* shape \(4,\)"),
     "reflection": (
         {"axis": "z", "referenceRotationMatrix": np.diag([1.0, 1.0, -1.0])},
-        "proper 3 × 3 rotation matrix",
+        "referenceRotationMatrix: needs a rotation matrix",
     ),
     "nan": ({"axis": "z", "initialVelocity": [0.0, np.nan, 0.0]}, "initialVelocity"),
     "held": (
@@ -309,8 +309,12 @@ WRONG = {
         "translation='none' holds the rotor",
     ),
     "taken name": ({"axis": "z", "name": "taken"}, "give the second rotor another name"),
-    "empty name": ({"axis": "z", "name": ""}, "non-empty string or None"),
+    "empty name": ({"axis": "z", "name": ""}, "name: needs a name that is not empty"),
     "no modes": ({"axis": "z", "femInterface": bare_interface}, "holds no modes"),
+    "nothing imported": (
+        {"axis": "z", "femInterface": lambda fem: FEMinterface()},
+        "fem: massMatrix is missing",
+    ),
     "no FEMinterface": ({"axis": "z", "femInterface": lambda fem: "rotor.npz"}, "FEMinterface"),
 }
 
@@ -385,7 +389,7 @@ def test_full_stiffening_with_a_given_prestress(fem, solid, source):
 
 WRONG_PRESTRESS = {
     "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=, made by"),
-    "True": ({"prestress": True}, TypeError, "prestress: expected a Prestress, got True"),
+    "True": ({"prestress": True}, TypeError, "prestress: needs a Prestress, got True"),
 }
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import exudyn
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
 from exudyn_rotor.linear.equations.source import linear_source
 from exudyn_rotor.linear.equations.supports import Support, axes_of
@@ -132,16 +133,14 @@ def candidate(
     TypeError, ValueError
         For a target of another kind, unknown interfaces, or supports given with a scene.
     """
-    if axial not in (None, True, False):
-        raise TypeError(f"axial: needs True, False or None, got {axial!r}")
+    checks.instance(
+        target, "target", (ReducedRotor, exudyn.MainSystem), "a scene needs body=…, too"
+    )
+    if axial is not None:
+        checks.flag(axial, "axial")
     if isinstance(target, ReducedRotor):
         return _of_rotor(target, body, supports, interfaces, axial)
-    if isinstance(target, exudyn.MainSystem):
-        return _of_scene(target, body, supports, interfaces, axial)
-    raise TypeError(
-        "propose: needs a ReducedRotor, or an exudyn.MainSystem with body=…, "
-        f"got {type(target).__name__}"
-    )
+    return _of_scene(target, body, supports, interfaces, axial)
 
 
 def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
@@ -181,10 +180,9 @@ def _acts_along(support: Support) -> bool:
 def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
     from exudyn_rotor.linear.equations.scene import LinearScene
 
-    if not isinstance(body, RotorBody):
-        raise TypeError(f"propose: a scene needs body=…, its RotorBody, got {type(body).__name__}")
+    checks.instance(body, "body", RotorBody, "a scene needs what add_rotor returned")
     if supports is not None:
-        raise ValueError("supports=: are for a rotor; a scene has its own connectors")
+        raise ValueError("supports: are for a rotor; a scene has its own connectors")
     source = LinearScene.of(mbs, body, about="given")
     inv, labels = body.motion.invariants, body.selection.labels
     first = body.motion.formulation.translation_count
@@ -248,12 +246,7 @@ def _named(interfaces: Sequence[str] | None, known: tuple[str, ...]) -> tuple[st
                 "where it is loaded; add some with rotor.with_interface"
             )
         return known
-    if not isinstance(interfaces, Iterable):
-        raise TypeError(f"interfaces: needs a list of names, got {interfaces!r}")
-    names = (interfaces,) if isinstance(interfaces, str) else tuple(interfaces)
-    unknown = [name for name in names if name not in known]
-    if unknown or not names:
-        raise ValueError(
-            f"interfaces {list(names)!r}: needs some of those of the rotor: {', '.join(known)}"
-        )
+    names = checks.labels(interfaces, "interfaces", known)
+    if not names:
+        raise ValueError(f"interfaces: needs some of those of the rotor: {', '.join(known)}")
     return names

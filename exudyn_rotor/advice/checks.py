@@ -5,14 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.advice.lost import lost_load
 from exudyn_rotor.advice.measures import Measures
 from exudyn_rotor.advice.proposal import Proposal
-from exudyn_rotor.advice.request import PERIOD_ERROR, share
+from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -44,6 +44,13 @@ class CheckRow:
     limit: float
     advice: str
 
+    def __post_init__(self) -> None:
+        for name in ("name", "meaning", "advice"):
+            checks.label(getattr(self, name), name)
+        # a run that failed has no finite value
+        for name in ("value", "limit"):
+            checks.array(getattr(self, name), name, shape=(), finite=False)
+
     @property
     def ok(self) -> bool:
         """True if the value is finite and not above the limit."""
@@ -68,6 +75,11 @@ class RunCheck:
 
     rows: tuple[CheckRow, ...]
     instants: int
+
+    def __post_init__(self) -> None:
+        rows = checks.instances(self.rows, "rows", CheckRow, "check_run makes them")
+        object.__setattr__(self, "rows", rows)
+        checks.count(self.instants, "instants", least=1)
 
     @property
     def complete(self) -> bool:
@@ -204,16 +216,16 @@ def check_run(
     ``speed``       1 + a    highest speed over that of the proposal
     ==============  =======  ====================================================================
     """
-    if not isinstance(body, RotorBody):
-        raise TypeError(f"check_run: needs a RotorBody, got {type(body).__name__}")
-    if not body.mbs.systemIsConsistent:
-        raise ValueError("check_run: the system is not assembled; run it first")
-    _check_kinds(reduced, proposal)
+    checks.instance(body, "body", RotorBody, "add_rotor returns one")
+    body.check_assembled()
     if reduced is not None:
-        _check_same(body, reduced)
+        _check_same(body, checks.instance(reduced, "reduced", ReducedRotor))
+    if proposal is not None:
+        checks.instance(proposal, "proposal", Proposal, "propose makes one")
     if accuracy is None:
         accuracy = proposal.accuracy if proposal is not None else 1e-3
-    known = _limits(share(accuracy, "accuracy"), limits)
+    checks.flag(warn, "warn")
+    known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
     record = body.record()
     measures = Measures(body, record)
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
@@ -234,36 +246,23 @@ def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
         yield (f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}")
 
 
-def _check_kinds(reduced: object, proposal: object) -> None:
-    for name, value, kind in (
-        ("reduced", reduced, ReducedRotor),
-        ("proposal", proposal, Proposal),
-    ):
-        if value is not None and not isinstance(value, kind):
-            raise TypeError(f"{name}=: needs a {kind.__name__}, got {type(value).__name__}")
-
-
 def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:
     """Refuse another rotor; one with other modes of the same is all right."""
     own, given = body.selection.source.invariants, reduced.invariants
     change = np.abs(own.J - given.J).max() / np.abs(own.J).max()
     if abs(own.mass - given.mass) > _SAME * own.mass or change > _SAME:
         raise ValueError(
-            f"reduced=: of {given.mass:.6g} kg is another rotor than the body's, {own.mass:.6g} kg "
+            f"reduced: of {given.mass:.6g} kg is another rotor than the body's, {own.mass:.6g} kg "
             "or other moments of inertia; give the one that was added"
         )
 
 
 def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
     known = default_limits(accuracy)
-    if not (limits is None or isinstance(limits, Mapping)):
-        raise TypeError(f"limits: needs a mapping of check to number, got {limits!r}")
-    for name, value in (limits or {}).items():
-        if name not in known:
-            raise ValueError(f"limits: no check {name!r}; there are: {', '.join(known)}")
-        if not (isinstance(value, Real) and np.isfinite(value) and value >= 0.0):
-            raise ValueError(f"limits: {name!r} needs a number ≥ 0, got {value!r}")
-        known[name] = float(value)
+    if limits is not None:
+        checks.mapping(limits, "limits", "limit of a check", known)
+        for name, value in limits.items():
+            known[name] = checks.number(value, f"limits: {name!r}", least=0.0)
     return known
 
 

@@ -10,17 +10,19 @@ import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
 from exudyn_rotor.advice.levels import Level, choose_level
 from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
-from exudyn_rotor.advice.request import Request, share
+from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.steps import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.truncation import keep_modes
-from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
+from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.theory.stiffening import LEVELS
 
 _HERTZ = 2.0 * np.pi
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
@@ -65,6 +67,29 @@ class Proposal:
     accuracy: float
     reasons: tuple[str, ...]
 
+    def __post_init__(self) -> None:
+        # the same rules as for add_rotor, where all of this goes
+        Formulation(self.translation, self.spin)
+        checks.choice(self.stiffening, "stiffening", LEVELS)
+        checks.count(self.total, "total")
+        modes = checks.whole_numbers(self.modes, "modes", most=self.total - 1)
+        labels = checks.labels(self.labels, "labels")
+        if len(labels) != modes.size:
+            raise ValueError(f"labels: needs one per mode, {modes.size}, got {len(labels)}")
+        low, high = checks.vector(self.speeds, "speeds", "rad/s", size=2).tolist()
+        if not 0.0 <= low <= high:
+            raise ValueError(f"speeds: needs 0 ≤ low ≤ high [rad/s], got {low}, {high}")
+        checks.number(self.error, "error", least=0.0)
+        checks.number(self.step, "step", "s", above=0.0)
+        checks.tolerance(self.accuracy, "accuracy")
+        for name, value in (
+            ("modes", tuple(modes.tolist())),
+            ("labels", labels),
+            ("speeds", (low, high)),
+            ("reasons", checks.labels(self.reasons, "reasons")),
+        ):
+            object.__setattr__(self, name, value)
+
     @property
     def count(self) -> int:
         """Number of flexible modes to keep."""
@@ -86,10 +111,12 @@ class Proposal:
         ValueError
             If `reduced` has another number of flexible modes than the rotor this was made for.
         """
+        checks.instance(reduced, "reduced", ReducedRotor)
         count = reduced.size - len(reduced.rigid)
         if count != self.total:
             raise ValueError(
-                f"this proposal chose from {self.total} flexible modes, and the rotor has {count}"
+                f"reduced: this proposal chose from {self.total} flexible modes, and the rotor has "
+                f"{count}"
             )
         return keep_modes(reduced, self.modes)
 
@@ -194,7 +221,7 @@ def propose(
     """
     request = Request.of(speeds, load_frequencies, accuracy)
     if tilt is not None:
-        tilt = share(tilt, "tilt")
+        tilt = checks.tolerance(tilt, "tilt")
     given = candidate(target, body, supports, interfaces, axial)
     spin = _spin(given, request, spin)
     chosen = choose_modes(given, request)
@@ -207,7 +234,7 @@ def propose(
         translation=translation,
         spin=spin,
         stiffening=level.name,
-        modes=tuple(int(i) for i in chosen.kept),
+        modes=chosen.kept,
         labels=tuple(f"mode {i + 1} ({hertz[i]:.4g} Hz)" for i in chosen.kept),
         total=hertz.size,
         error=chosen.error,
@@ -233,12 +260,10 @@ def _ranges(modes: Sequence[int]) -> str:
 
 def _spin(given: Candidate, request: Request, spin: PrescribedMotion | None):
     """Return what add_rotor takes as `spin`."""
-    if isinstance(spin, ConstantSpeed) or (spin is not None and request.low == request.high):
-        raise ValueError("spin=: one speed is a constant spin already; leave spin out")
-    if spin is not None and not isinstance(spin, PrescribedMotion):
-        raise TypeError(f"spin=: needs a PrescribedMotion θ(t), got {type(spin).__name__}")
     if spin is not None:
-        return spin
+        if isinstance(spin, ConstantSpeed) or request.low == request.high:
+            raise ValueError("spin: one speed is a constant spin already; leave spin out")
+        return checks.instance(spin, "spin", PrescribedMotion)
     if request.low == request.high:
         return request.high
     inv = given.invariants

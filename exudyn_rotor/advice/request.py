@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
 
 # relative period error per (ωh)² of generalised alpha with Exudyn's spectral radius 0.9; 1/12 at 1
 PERIOD_ERROR = 0.0844
@@ -40,23 +41,24 @@ class Request:
 
         Raises
         ------
-        ValueError
+        TypeError, ValueError
         """
-        values = _numbers(speeds, "speeds", "rad/s")
+        values = _frequencies(speeds, "speeds")
         if len(values) > 2 or np.any(np.diff(values) < 0.0):
-            raise ValueError(f"speeds: needs one speed or (low, high) [rad/s], got {speeds!r}")
+            raise ValueError(
+                f"speeds: needs one speed or (low, high) [rad/s], got {checks.shown(speeds)}"
+            )
         high = float(values[-1])
         loads = high
         if load_frequencies is not None:
-            loads = float(_numbers(load_frequencies, "load_frequencies", "rad/s").max())
+            loads = float(_frequencies(load_frequencies, "load_frequencies").max())
         if high + loads == 0.0:
             raise ValueError(
                 "speeds, load_frequencies: all are zero, so nothing moves; give the highest "
                 "frequency of the loads [rad/s]"
             )
-        share(accuracy, "accuracy")
         banded = load_frequencies is not None
-        return cls(float(values[0]), high, loads, float(accuracy), banded)
+        return cls(float(values[0]), high, loads, checks.tolerance(accuracy, "accuracy"), banded)
 
     @property
     def highest(self) -> float:
@@ -79,22 +81,11 @@ class Request:
         return float(np.sqrt(self.allowed / PERIOD_ERROR) / self.highest)
 
 
-def share(value: float, name: str) -> float:
-    """Return a number between 0 and 1, or raise a ValueError."""
-    number = _numbers(value, name, "1")
-    if number.size != 1 or not 0.0 < number[0] < 1.0:
-        raise ValueError(f"{name}: needs a number between 0 and 1, got {value!r}")
-    return float(number[0])
-
-
-def _numbers(values: ArrayLike | Sequence[float], name: str, unit: str) -> np.ndarray:
-    try:
-        array = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: needs finite numbers ≥ 0 [{unit}], got {values!r}") from error
-    bad = array.ndim != 1 or array.size == 0 or np.asarray(values).dtype == bool
-    if bad or not np.all((array >= 0.0) & (array < _HUGE)):
+def _frequencies(values: ArrayLike, name: str) -> np.ndarray:
+    array = np.atleast_1d(checks.array(values, name, "rad/s"))
+    if array.ndim != 1 or array.size == 0 or not np.all((array >= 0.0) & (array < _HUGE)):
         raise ValueError(
-            f"{name}: needs finite numbers ≥ 0, below {_HUGE:g} [{unit}], got {values!r}"
+            f"{name}: needs one or more numbers ≥ 0, below {_HUGE:g} [rad/s], got "
+            f"{checks.shown(values)}"
         )
     return array

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exudyn_rotor import plotting
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.demo import scene
 from exudyn_rotor.demo.simulation import Run, simulate
 
@@ -30,8 +30,14 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     -------
     list of Run
         The 3D body first, which all deviations refer to.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input.
     """
-    target = Path(folder)
+    target = checks.path(folder, "folder")
+    checks.flag(quick, "quick")
     target.mkdir(parents=True, exist_ok=True)
     print("meshing with NGSolve, computing modes with FEMinterface …", flush=True)
     fem = scene.unbalanced_model(QUICK_MESH if quick else FINE_MESH, MODES)

@@ -17,6 +17,7 @@ from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementR
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from netgen import occ
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody.marker_body import virtual_nodes
 from exudyn_rotor.solid_rotor import SolidRotor
 
@@ -31,6 +32,7 @@ BEARINGS = {"left": -0.3, "right": 0.3}  # places on the x axis [m]
 
 def disc_on_shaft(max_element_size: float) -> ngsolve.Mesh:
     """Return a steel disc (0.24 m × 40 mm) on a shaft (0.6 m × 30 mm) along x, faces named."""
+    checks.number(max_element_size, "max_element_size", "m", above=0.0)
     shaft = occ.Cylinder(occ.Pnt(-0.3, 0, 0), occ.X, 0.015, 0.6)
     disc = occ.Cylinder(occ.Pnt(0.03, 0, 0), occ.X, 0.12, 0.04)
     solid = shaft + disc
@@ -41,6 +43,7 @@ def disc_on_shaft(max_element_size: float) -> ngsolve.Mesh:
 
 def unbalanced_model(max_element_size: float, mode_count: int) -> FEMinterface:
     """Return the FE model with an unbalance of 8 g at the disc's rim, and its free modes."""
+    checks.count(mode_count, "mode_count", least=1)
     fem = FEMinterface()
     fem.ImportMeshFromNGsolve(
         disc_on_shaft(max_element_size),

@@ -18,14 +18,11 @@ from exudyn.itemInterface import (
 )
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
-from exudyn_rotor.multibody.equations import (
-    Layout,
-    LockedForce,
-    constant_object,
-    user_function_object,
-)
+from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
 from exudyn_rotor.multibody.locking import (
+    LOCKINGS,
     SPIN,
     ConstraintWatch,
     add_constraints,
@@ -38,6 +35,7 @@ from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.theory.stiffening import LEVELS
 
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 
@@ -149,151 +147,138 @@ def add_rotor(
     that is an unknown stands still in the inertial frame instead. θ is that of the solver's load
     time (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
     """
-    inputs.check_mbs(mbs)
-    inputs.check_reduced(reduced)
+    inputs.main_system(mbs)
+    checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     formulation = Formulation(translation, spin, drive)
-    place = inputs.placement(
-        formulation,
-        reduced.axis.direction,
-        position,
-        rotation,
-        initial_velocity,
-        initial_angle,
-        initial_speed,
-    )
-    gravity = inputs.vector(gravity, "gravity", "m/s²")
-    requests = inputs.marker_requests(
-        reduced, markers if native_shell else markers or {}, marker_offsets or {}, show_markers
-    )
-    color = inputs.vector(color, "color", "RGBA", 4).tolist()
-    if requests and not native_shell:
-        raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
-    inputs.check_free_names(mbs, name, requests)
-    plan = make_plan(
-        reduced,
-        name,
-        formulation,
-        stiffening,
-        place,
-        gravity,
-        (
-            inputs.damping_factor(mass_damping, "mass_damping"),
-            inputs.damping_factor(stiffness_damping, "stiffness_damping"),
+    requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, native_shell)
+    setup = inputs.Setup(
+        name=inputs.free_name(mbs, name, requests),
+        formulation=formulation,
+        stiffening=checks.choice(stiffening, "stiffening", LEVELS),
+        placement=inputs.placement(
+            formulation,
+            reduced.axis.direction,
+            position,
+            rotation,
+            initial_velocity,
+            initial_angle,
+            initial_speed,
         ),
-        (modal_coordinates, modal_velocities),
-        locking,
-        native_shell,
-        negligible,
+        modal_coordinates=modal_coordinates,
+        modal_velocities=modal_velocities,
+        gravity=checks.vector(gravity, "gravity", "m/s²"),
+        mass_damping=checks.number(mass_damping, "mass_damping", "1/s", least=0.0),
+        stiffness_damping=checks.number(stiffness_damping, "stiffness_damping", "s", least=0.0),
+        markers=requests,
+        locking=checks.choice(locking, "locking", LOCKINGS),
+        native_shell=native_shell,
+        negligible=negligible,
+        color=inputs.color_of(color),
     )
+    plan = make_plan(reduced, setup)
     if not native_shell:
         return _add_bare(mbs, plan)
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = shell_mesh(reduced, plan.selection, plan.frame, offsets)
-    return _add_with_shell(mbs, plan, mesh, requests, color)
+    return _add_with_shell(mbs, plan, mesh)
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
     """Add only the unknowns of the formulation, on one generic node."""
-    motion, spin = plan.motion, int(plan.formulation.has_spin)
-    translations = np.zeros(plan.formulation.translation_count)
-    start = [*translations, *([plan.placement.angle] * spin), *plan.modal[0]]
-    rate = [
-        *(motion.free_directions.T @ plan.placement.velocity),
-        *([plan.placement.speed] * spin),
-        *plan.modal[1],
+    motion, start = plan.motion, plan.setup.placement
+    formulation = plan.setup.formulation
+    spin = int(formulation.has_spin)
+    values = [*np.zeros(formulation.translation_count), *([start.angle] * spin), *plan.modal_start]
+    rates = [
+        *(motion.free_directions.T @ start.velocity),
+        *([start.speed] * spin),
+        *plan.modal_start_rate,
     ]
-    node = mbs.AddNode(_generic_node(plan.name, start, rate))
-    none = np.zeros(motion.size)
-    place = Layout(motion.size, np.arange(motion.size), none, none, none)
-    physics = mbs.AddObject(_physics(plan, place, [node], None))
-    return _body(mbs, plan, layout=place, nodes={"coordinates": node}, objects={"physics": physics})
+    node = mbs.AddNode(_generic_node(plan.setup.name, values, rates))
+    physics = mbs.AddObject(_physics(plan, [node], None))
+    return RotorBody(mbs, plan, {"coordinates": node}, {"physics": physics})
 
 
-def _add_with_shell(
-    mbs: exudyn.MainSystem,
-    plan: Plan,
-    mesh: ShellMesh,
-    requests: dict[str, inputs.MarkerRequest],
-    color: list[float],
-) -> RotorBody:
+def _add_with_shell(mbs: exudyn.MainSystem, plan: Plan, mesh: ShellMesh) -> RotorBody:
     """Add nodes, equations, native shell, markers, locks and gravity."""
     rigid = mbs.AddNode(_rigid_node(plan))
-    modes = mbs.AddNode(_generic_node(plan.name, *plan.modal))
+    modes = mbs.AddNode(_generic_node(plan.setup.name, plan.modal_start, plan.modal_start_rate))
     guide = guiding_force(plan.locks, plan.layout)
     constraints = {}
     if not plan.by_mass:
         watch = ConstraintWatch(guide, plan.layout.size) if plan.locks.varying else None
         constraints = add_constraints(mbs, plan.locks, rigid, watch)
         guide = watch or guide
-    physics = mbs.AddObject(_physics(plan, plan.layout, [rigid, modes], guide))
+    physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
     if plan.motion.is_constant:
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
     shell = mbs.AddObject(
         shell_object(
-            plan.name or "", [rigid, modes], mesh, plan.motion.invariants, plan.frame, color
+            plan.setup.name or "",
+            [rigid, modes],
+            mesh,
+            plan.motion.invariants,
+            plan.frame,
+            plan.setup.color,
         )
     )
     load = None
     if np.any(plan.shell_gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
         load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=plan.shell_gravity))
-    return _body(
+    return RotorBody(
         mbs,
         plan,
         nodes={"rigid": rigid, "modes": modes},
         objects={"physics": physics, "shell": shell},
-        markers=_add_markers(mbs, plan, shell, mesh, requests),
+        markers=_add_markers(mbs, plan, shell, mesh),
         constraints=constraints,
         gravity_load=load,
         mesh_node_count=mesh.mesh_node_count,
+        mesh_stress=bool(mesh.stress.size),
     )
 
 
-def _physics(
-    plan: Plan, place: Layout, nodes: list, guide: LockedForce | None
-) -> ObjectGenericODE2:
+def _physics(plan: Plan, nodes: list, guide: LockedForce | None) -> ObjectGenericODE2:
     if plan.motion.is_constant:
-        return constant_object(plan.motion, place, nodes)
-    return user_function_object(plan.motion, place, nodes, guide)
+        return constant_object(plan.motion, plan.layout, nodes)
+    return user_function_object(plan.motion, plan.layout, nodes, guide)
 
 
 def _rigid_node(plan: Plan) -> NodeRigidBodyRxyz:
-    start, rate = np.zeros(6), np.zeros(6)
-    start[SPIN], rate[SPIN] = plan.placement.angle, plan.placement.speed
-    rate[:3] = plan.placement.velocity
-    if plan.formulation.moves_origin:
-        start[:3] = plan.formulation.translation.value(0.0)
+    values, rates = np.zeros(6), np.zeros(6)
+    start = plan.setup.placement
+    values[:3], rates[:3] = start.translation, start.velocity
+    values[SPIN], rates[SPIN] = start.angle, start.speed
     return NodeRigidBodyRxyz(
-        name=inputs.item_name("NodeRigidBody:", plan.name),
+        name=inputs.item_name("NodeRigidBody:", plan.setup.name),
         referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
-        initialCoordinates=start,
-        initialVelocities=rate,
+        initialCoordinates=values,
+        initialVelocities=rates,
         visualization=VNodeRigidBodyRxyz(show=False),
     )
 
 
-def _generic_node(name: str | None, start: list, rate: list) -> NodeGenericODE2:
+def _generic_node(
+    name: str | None, values: Sequence[float], rates: Sequence[float]
+) -> NodeGenericODE2:
     return NodeGenericODE2(
         name=inputs.item_name("NodeGeneric:", name),
-        numberOfODE2Coordinates=len(start),
-        referenceCoordinates=np.zeros(len(start)),
-        initialCoordinates=start,
-        initialCoordinates_t=rate,
+        numberOfODE2Coordinates=len(values),
+        referenceCoordinates=np.zeros(len(values)),
+        initialCoordinates=values,
+        initialCoordinates_t=rates,
     )
 
 
 def _add_markers(
-    mbs: exudyn.MainSystem,
-    plan: Plan,
-    shell: exudyn.ObjectIndex,
-    mesh: ShellMesh,
-    requests: dict[str, inputs.MarkerRequest],
+    mbs: exudyn.MainSystem, plan: Plan, shell: exudyn.ObjectIndex, mesh: ShellMesh
 ) -> dict[str, exudyn.MarkerIndex]:
     """Add one marker per interface; rigid markers have the mesh axes as their frame."""
     markers = {}
-    for interface, request in requests.items():
+    for interface, request in plan.setup.markers.items():
         common = {
-            "name": inputs.marker_name(plan.name, interface),
+            "name": inputs.marker_name(plan.setup.name, interface),
             "bodyNumber": shell,
             "visualization": {"show": request.show, "showMarkerNodes": False},
         }
@@ -312,21 +297,3 @@ def _add_markers(
             )
         markers[interface] = mbs.AddMarker(item)
     return markers
-
-
-def _body(mbs: exudyn.MainSystem, plan: Plan, **added) -> RotorBody:
-    shared = {name: getattr(plan, name) for name in _SHARED}
-    return RotorBody(mbs=mbs, **(shared | added))
-
-
-_SHARED = (
-    "name",
-    "axis",
-    "formulation",
-    "stiffening",
-    "selection",
-    "motion",
-    "frame",
-    "layout",
-    "locks",
-)

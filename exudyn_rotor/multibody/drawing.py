@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike, fspath
 
 import exudyn
-import numpy as np
 from exudyn import interactive
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+
+_LARGEST = 32768  # pixels along an edge
 
 
 def draw_scene(
@@ -15,8 +20,8 @@ def draw_scene(
     *,
     deformation_scale: float = 1.0,
     contour: exudyn.OutputVariableType | None = None,
-    view: np.ndarray | None = None,
-    size: tuple[int, int] = (1400, 900),
+    view: ArrayLike | None = None,
+    size: Sequence[int] = (1400, 900),
 ) -> None:
     """Draw the current state of all systems in `SC`.
 
@@ -29,16 +34,31 @@ def draw_scene(
         Factor on the local displacements of flexible bodies.
     contour : exudyn.OutputVariableType, optional
         Quantity shown as colours on flexible bodies, e.g. ``DisplacementLocal``.
-    view : ndarray, shape (3, 3), optional
+    view : array_like, shape (3, 3), optional
         Rotation of the view; Exudyn's setting by default.
     size : tuple of int
         Width and height in pixels.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input.
     """
+    checks.instance(SC, "SC", exudyn.SystemContainer)
+    target = checks.path(path)
+    checks.number(deformation_scale, "deformation_scale")
+    if contour is not None:
+        checks.instance(contour, "contour", exudyn.OutputVariableType)
+    if view is not None:
+        view = checks.rotation(view, "view")
+    width_and_height = checks.whole_numbers(size, "size", least=1, most=_LARGEST).tolist()
+    if len(width_and_height) != 2:
+        raise ValueError(f"size: needs width and height in pixels, got {checks.shown(size)}")
     settings = SC.visualizationSettings
     settings.bodies.deformationScaleFactor = deformation_scale
     settings.contour.outputVariable = contour or exudyn.OutputVariableType._None
     settings.contour.outputVariableComponent = -1
     settings.nodes.show = False
     interactive.ShowImage(
-        SC, size=list(size), modelRotation=view, show=False, fileName=fspath(path)
+        SC, size=width_and_height, modelRotation=view, show=False, fileName=fspath(target)
     )

@@ -41,6 +41,11 @@ class Layout:
     lock_stiffness: np.ndarray
     lock_damping: np.ndarray
 
+    @classmethod
+    def unlocked(cls, size: int) -> Layout:
+        """Return the layout of a node that holds the unknowns alone."""
+        return cls(size, np.arange(size), *np.zeros((3, size)))
+
     def spread(self, matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
         """Return a (size, size) matrix with `matrix` on the unknowns and `diagonal` added."""
         full = np.diag(diagonal)

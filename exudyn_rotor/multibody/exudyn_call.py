@@ -12,13 +12,21 @@ from exudyn.FEM import FEMinterface
 from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.fem_interface import import_model
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.theory.formulation import (
+    ConstantSpeed,
+    Formulation,
+    PrescribedMotion,
+    start_values,
+)
+from exudyn_rotor.theory.stiffening import LEVELS
 
 
 @extends(exudyn.MainSystem)
@@ -98,16 +106,32 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             name='rotor', femInterface=fem, axis='z', initialAngularVelocity=[0, 0, 100])
         mLeft = rotor['rotor:left']
     """
-    _check_prestress(stiffening, prestress)
-    rotation = inputs.rotation_matrix(referenceRotationMatrix)
-    omega = inputs.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
-    velocity = inputs.vector(initialVelocity, "initialVelocity", "m/s")
+    inputs.main_system(mbs)
+    checks.instance(femInterface, "femInterface", FEMinterface)
+    _check_prestress(checks.choice(stiffening, "stiffening", LEVELS), prestress)
+    rotation = checks.rotation(referenceRotationMatrix, "referenceRotationMatrix")
+    omega = checks.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
+    velocity = checks.vector(initialVelocity, "initialVelocity", "m/s")
+    # what add_rotor checks, under the names of this call
+    arguments = {
+        "position": checks.vector(referencePosition, "referencePosition", "m"),
+        "mass_damping": checks.number(
+            massProportionalDamping, "massProportionalDamping", "1/s", least=0.0
+        ),
+        "stiffness_damping": checks.number(
+            stiffnessProportionalDamping, "stiffnessProportionalDamping", "s", least=0.0
+        ),
+        "show_markers": checks.flag(showMarkers, "showMarkers"),
+    }
+    checks.flag(verbose, "verbose")
     if axis is None:
         axis = SpinAxis(rotation.T @ omega) if np.any(omega) else axis_through_seats(femInterface)
     rotor = SolidRotor.from_fem_interface(femInterface, axis)
-    reduced = rotor.reduce(femInterface, prestress=prestress)
+    offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
     formulation = Formulation(translation, spin)
     speed = _speed_along(rotation @ rotor.axis.direction, omega)
+    initial_speed = _initial_speed(formulation, speed)
+    reduced = rotor.reduce(femInterface, prestress=prestress)
     if formulation.translation_count:
         velocity = velocity + np.cross(omega, rotation @ reduced.center_of_mass)
     body = add_rotor(
@@ -117,18 +141,15 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         translation=translation,
         spin=spin,
         stiffening=stiffening,
-        position=inputs.vector(referencePosition, "referencePosition", "m"),
         rotation=rotation,
         initial_velocity=velocity,
-        initial_speed=_initial_speed(formulation, speed),
+        initial_speed=initial_speed,
         gravity=gravity,
-        mass_damping=massProportionalDamping,
-        stiffness_damping=stiffnessProportionalDamping,
-        marker_offsets=_offsets(list(reduced.interfaces), superElementRigidMarkersOffsets),
+        marker_offsets=offsets,
         locking=locking,
         markers=markers,
         color=color,
-        show_markers=showMarkers,
+        **arguments,
     )
     if verbose:
         exudyn.Print(body.report())
@@ -138,7 +159,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 def _check_prestress(stiffening: str, prestress: Prestress | None) -> None:
     if prestress is not None and not isinstance(prestress, Prestress):
         raise TypeError(
-            f"prestress: expected a Prestress, got {prestress!r}; a FEMinterface has no elements "
+            f"prestress: needs a Prestress, got {checks.shown(prestress)}; a FEMinterface has no "
+            "elements "
             "to compute one on: use SolidRotor.from_ngsolve(…).prestress() with the same mesh, or "
             "Prestress.from_matrix(…)"
         )
@@ -161,11 +183,12 @@ def axis_through_seats(fem: FEMinterface) -> SpinAxis:
     ValueError
         If there are fewer than two seats, or their centres are not on one line.
     """
-    positions = fem.GetNodePositionsAsArray()
+    model = import_model(fem)
+    positions = np.asarray(model.nodes)
     centers = np.array(
         [
-            np.average(positions[entry["NodeNumbers"]], axis=0, weights=entry["NodeWeights"])
-            for entry in fem.nodeSets
+            np.average(positions[nodes], axis=0, weights=weights)
+            for nodes, weights in model.node_sets.values()
         ]
     ).reshape(-1, 3)
     mean = centers.mean(axis=0) if len(centers) else np.zeros(3)
@@ -207,7 +230,7 @@ def _initial_speed(formulation: Formulation, speed: float) -> float | None:
     """Return the initial speed of a free spin; a prescribed one must agree with what is given."""
     if formulation.has_spin:
         return speed
-    prescribed = formulation.spin.rate(0.0)
+    _, prescribed, _ = start_values(formulation.spin, "spin")
     if speed and abs(speed - prescribed) > 1e-9 * abs(prescribed):
         raise ValueError(
             f"spin given twice: initialAngularVelocity is {speed} rad/s along the axis, "
@@ -219,14 +242,11 @@ def _initial_speed(formulation: Formulation, speed: float) -> float | None:
 def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
     if offsets is None:
         return {}
-    try:
-        table = np.atleast_2d(np.asarray(offsets, dtype=float))
-    except (TypeError, ValueError):
-        table = np.zeros(0)
-    if table.shape != (len(interfaces), 3) or not np.all(np.isfinite(table)):
+    table = checks.array(offsets, "superElementRigidMarkersOffsets", "m")
+    if table.shape != (len(interfaces), 3):
         raise ValueError(
             f"superElementRigidMarkersOffsets: needs {len(interfaces)} × 3 finite numbers for the "
-            f"interfaces {', '.join(interfaces) or 'none'}, got {offsets!r}"
+            f"interfaces {', '.join(interfaces) or 'none'}, got {checks.shown(offsets)}"
         )
     return dict(zip(interfaces, table, strict=True))
 

@@ -1,14 +1,15 @@
-"""Checks of what a user hands to the Exudyn layer, all done before anything is added."""
+"""Checks of what a user asks of a new rotor body, all done before anything is added."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.formulation import Formulation, start_values
 
@@ -25,6 +26,8 @@ class Placement:
         Place of the mesh origin, inertial axes [m].
     rotation : ndarray, shape (3, 3)
         Mesh axes → inertial axes at θ = 0.
+    translation : ndarray, shape (3,)
+        Initial translation of the frame origin, inertial axes [m]; zero where it is unknown.
     velocity : ndarray, shape (3,)
         Initial velocity of the frame origin, inertial axes [m/s].
     angle, speed : float
@@ -33,9 +36,42 @@ class Placement:
 
     position: np.ndarray
     rotation: np.ndarray
+    translation: np.ndarray
     velocity: np.ndarray
     angle: float
     speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerRequest:
+    """A marker to be made at an interface: its kind, offset [m, mesh axes], and visibility."""
+
+    kind: str
+    offset: np.ndarray
+    show: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A rotor body as it was asked for; the attributes are arguments of ``add_rotor``, checked.
+
+    ``modal_coordinates`` and ``modal_velocities`` are checked with the modes, by the plan.
+    """
+
+    name: str | None
+    formulation: Formulation
+    stiffening: str
+    placement: Placement
+    modal_coordinates: ArrayLike | None
+    modal_velocities: ArrayLike | None
+    gravity: np.ndarray
+    mass_damping: float
+    stiffness_damping: float
+    markers: Mapping[str, MarkerRequest]
+    locking: str
+    native_shell: bool
+    negligible: float
+    color: tuple[float, ...]
 
 
 def placement(
@@ -51,27 +87,32 @@ def placement(
 
     `direction` is the spin axis in mesh axes.
     """
-    place, turn = vector(position, "position", "m"), rotation_matrix(rotation)
-    velocity = vector(initial_velocity, "initial_velocity", "m/s")
+    place = checks.vector(position, "position", "m")
+    turn = np.eye(3) if rotation is None else checks.rotation(rotation)
+    velocity = checks.vector(initial_velocity, "initial_velocity", "m/s")
+    start = np.zeros(3)
     if formulation.moves_origin:
         if np.any(velocity):
             raise ValueError(
                 "velocity given twice: by initial_velocity and by the translation τ(t)"
             )
-        _, velocity, _ = start_values(formulation.translation, "translation")
+        start, velocity, _ = start_values(formulation.translation, "translation")
     else:
         _check_direction(formulation, velocity, turn @ direction)
     if formulation.has_spin:
-        angle = number(initial_angle or 0.0, "initial_angle", "rad")
-        speed = number(initial_speed or 0.0, "initial_speed", "rad/s")
-        return Placement(place, turn, velocity, angle, speed)
+        angle = 0.0 if initial_angle is None else initial_angle
+        speed = 0.0 if initial_speed is None else initial_speed
+        angle = checks.number(angle, "initial_angle", "rad")
+        speed = checks.number(speed, "initial_speed", "rad/s")
+        return Placement(place, turn, start, velocity, angle, speed)
     for name, value in (("initial_angle", initial_angle), ("initial_speed", initial_speed)):
         if value is not None:
             raise ValueError(
-                f"spin given twice: {name}={value} and a prescribed spin; leave {name} out"
+                f"spin given twice: {name}={checks.shown(value)} and a prescribed spin; leave "
+                f"{name} out"
             )
     angle, speed, _ = start_values(formulation.spin, "spin")
-    return Placement(place, turn, velocity, angle, speed)
+    return Placement(place, turn, start, velocity, angle, speed)
 
 
 def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.ndarray) -> None:
@@ -89,116 +130,69 @@ def _check_direction(formulation: Formulation, velocity: np.ndarray, axis: np.nd
         )
 
 
-def _finite(values: ArrayLike, name: str, unit: str, size: int | None) -> np.ndarray:
-    """Return a finite float array of `size` entries, or of no dimension for None."""
-    needed = "a finite number" if size is None else f"{size} finite numbers"
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: needs {needed} [{unit}], got {values!r}") from error
-    text = isinstance(values, (str, bytes))  # NumPy reads numbers out of it
-    if text or array.shape != (() if size is None else (size,)) or not np.all(np.isfinite(array)):
-        raise ValueError(f"{name}: needs {needed} [{unit}], got {values!r}")
-    return array
-
-
-def number(value: float, name: str, unit: str) -> float:
-    """Return `value` as a finite float."""
-    return float(_finite(value, name, unit, None))
-
-
-def vector(values: ArrayLike, name: str, unit: str, size: int = 3) -> np.ndarray:
-    """Return `values` as a finite float array of `size` entries."""
-    return _finite(values, name, unit, size)
-
-
 def modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -> np.ndarray:
     """Return one value per mode, zeros for None."""
     if values is None:
         return np.zeros(len(labels))
-    return vector(values, f"{name} (one per mode: {', '.join(labels)})", "√kg m", len(labels))
+    described = f"{name} (one per mode: {', '.join(labels)})"
+    return checks.vector(values, described, "√kg m", size=len(labels))
 
 
-def rotation_matrix(rotation: ArrayLike | None) -> np.ndarray:
-    """Return a proper rotation matrix, the unit matrix for None."""
-    if rotation is None:
-        return np.eye(3)
-    try:
-        matrix = np.asarray(rotation, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"rotation: needs a 3 × 3 rotation matrix, got {rotation!r}") from error
-    proper = matrix.shape == (3, 3) and np.all(np.isfinite(matrix))
-    proper = proper and np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-9)
-    if not proper or np.linalg.det(matrix) < 0.0:
-        raise ValueError(f"rotation: needs a proper 3 × 3 rotation matrix, got {rotation!r}")
-    return matrix
-
-
-def damping_factor(value: float, name: str) -> float:
-    """Return a finite, non-negative Rayleigh factor."""
-    factor = number(value, name, "SI")
-    if factor < 0.0:
-        raise ValueError(f"{name}: needs a number ≥ 0, got {value}")
-    return factor
-
-
-@dataclass(frozen=True, eq=False)
-class MarkerRequest:
-    """A marker to be made at an interface: its kind, offset [m, mesh axes], and visibility."""
-
-    kind: str
-    offset: np.ndarray
-    show: bool
+def color_of(values: Sequence[float], name: str = "color") -> tuple[float, ...]:
+    """Return red, green, blue and opacity, each from 0 to 1."""
+    result = checks.vector(values, name, "RGBA", size=4)
+    if np.any((result < 0.0) | (result > 1.0)):
+        raise ValueError(f"{name}: needs 4 numbers from 0 to 1 (RGBA), got {checks.shown(values)}")
+    return tuple(result.tolist())
 
 
 def marker_requests(
     reduced: ReducedRotor,
     markers: Mapping[str, str] | str | None,
-    offsets: Mapping[str, ArrayLike],
+    offsets: Mapping[str, ArrayLike] | None,
     show: bool,
+    native_shell: bool,
 ) -> dict[str, MarkerRequest]:
-    """Return the markers to make; None asks for rigid markers at all interfaces."""
-    kinds = "rigid" if markers is None else markers
-    if isinstance(kinds, str):
-        kinds = dict.fromkeys(reduced.interfaces, kinds)
-    if not isinstance(kinds, Mapping):
+    """Return the markers to make; None asks for rigid markers at all interfaces.
+
+    Without the native shell none can be made, and None asks for none.
+    """
+    checks.flag(show, "show_markers")
+    checks.flag(native_shell, "native_shell")
+    if markers is None:
+        markers = "rigid" if native_shell else {}
+    if isinstance(markers, str):
+        markers = dict.fromkeys(reduced.interfaces, checks.choice(markers, "markers", MARKER_KINDS))
+    elif not isinstance(markers, Mapping):
         raise TypeError(
             "markers: needs 'rigid', 'position' or a mapping of interface to one of them, got "
-            f"{kinds!r}"
+            f"{checks.shown(markers)}"
         )
-    for name in (*kinds, *offsets):
-        if name not in reduced.interfaces:
-            known = ", ".join(reduced.interfaces) or "none"
-            raise ValueError(f"markers: interface {name!r} is unknown; the rotor has: {known}")
+    offsets = {} if offsets is None else offsets
+    checks.mapping(markers, "markers", "kind", reduced.interfaces)
+    checks.mapping(offsets, "marker_offsets", "offset", reduced.interfaces)
     for name in offsets:
-        if name not in kinds:
+        if name not in markers:
             raise ValueError(
                 f"marker_offsets: interface {name!r} gets no marker; add it to markers"
             )
-    requests = {}
-    for name, kind in kinds.items():
-        if kind not in MARKER_KINDS:
-            raise ValueError(
-                f"markers: kind {kind!r} of {name!r} is unknown; use 'rigid' or 'position'"
-            )
-        offset = vector(offsets.get(name, np.zeros(3)), f"marker offset of {name!r}", "m")
-        requests[name] = MarkerRequest(kind, offset, show)
-    return requests
-
-
-def check_mbs(mbs: exudyn.MainSystem) -> None:
-    """Refuse anything that is not an Exudyn system."""
-    if not isinstance(mbs, exudyn.MainSystem):
-        raise TypeError(f"mbs: needs an exudyn.MainSystem, got {type(mbs).__name__}")
-
-
-def check_reduced(reduced: ReducedRotor) -> None:
-    """Refuse anything that is not a reduced rotor."""
-    if not isinstance(reduced, ReducedRotor):
-        raise TypeError(
-            f"reduced: needs a ReducedRotor, got {type(reduced).__name__}; "
-            "SolidRotor.reduce(…) makes one"
+    if markers and not native_shell:
+        raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
+    return {
+        name: MarkerRequest(
+            checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS),
+            checks.vector(offsets.get(name, np.zeros(3)), f"marker_offsets: {name!r}", "m"),
+            show,
         )
+        for name, kind in markers.items()
+    }
+
+
+def main_system(mbs: exudyn.MainSystem) -> exudyn.MainSystem:
+    """Return an Exudyn system."""
+    return checks.instance(
+        mbs, "mbs", exudyn.MainSystem, "exudyn.SystemContainer().AddSystem() makes one"
+    )
 
 
 def item_name(prefix: str, name: str | None) -> str:
@@ -211,12 +205,12 @@ def marker_name(name: str | None, interface: str) -> str:
     return interface if name is None else f"{name}:{interface}"
 
 
-def check_free_names(
+def free_name(
     mbs: exudyn.MainSystem, name: str | None, interfaces: Mapping[str, MarkerRequest]
-) -> None:
-    """Refuse a name that an item of `mbs` already has."""
-    if name is not None and not (isinstance(name, str) and name):
-        raise ValueError(f"name: needs a non-empty string or None, got {name!r}")
+) -> str | None:
+    """Return the name of a rotor; one that would repeat the name of an item is refused."""
+    if name is not None:
+        checks.label(name, "name")
     taken = [(mbs.GetMarkerNumber, marker_name(name, interface)) for interface in interfaces]
     if name is not None:
         taken += [
@@ -230,3 +224,4 @@ def check_free_names(
                 f"name {name!r}: this system already has an item {item!r}; "
                 "give the second rotor another name"
             )
+    return name

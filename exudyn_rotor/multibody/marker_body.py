@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import exudyn
@@ -118,7 +118,12 @@ def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
 
 
 def shell_object(
-    name: str, nodes: list, mesh: ShellMesh, invariants: Invariants, frame: ShellFrame, color: list
+    name: str,
+    nodes: list,
+    mesh: ShellMesh,
+    invariants: Invariants,
+    frame: ShellFrame,
+    color: Sequence[float],
 ) -> ObjectFFRFreducedOrder:
     """Return the shell without inertia or stiffness of its own.
 

@@ -5,101 +5,104 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.equations import Layout
 from exudyn_rotor.multibody.frame import ShellFrame
-from exudyn_rotor.multibody.locking import LOCKINGS, Locks, layout
+from exudyn_rotor.multibody.locking import Locks, layout
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A new rotor body; `shell_gravity` is what the native shell brings by itself [m/s²]."""
+    """A new rotor body, laid out.
 
-    name: str | None
-    axis: SpinAxis
-    formulation: Formulation
-    stiffening: str
+    Attributes
+    ----------
+    setup : Setup
+        What was asked for.
+    selection : Selection
+    frame : ShellFrame
+    locks : Locks
+    layout : Layout
+        Where the unknowns stand among the coordinates of the nodes.
+    motion : Motion
+    by_mass : bool
+        Whether locked coordinates are held by mass, not by constraints.
+    shell_gravity : ndarray, shape (3,)
+        Gravity that Exudyn applies to the native shell, not the equations [m/s²].
+    modal_start, modal_start_rate : ndarray, shape (m,)
+        Initial modal coordinates [√kg m] and velocities [√kg m/s].
+    """
+
+    setup: inputs.Setup
     selection: Selection
-    placement: inputs.Placement
     frame: ShellFrame
     locks: Locks
     layout: Layout
     motion: Motion
     by_mass: bool
     shell_gravity: np.ndarray
-    modal: tuple[np.ndarray, np.ndarray]
+    modal_start: np.ndarray
+    modal_start_rate: np.ndarray
 
 
-def make_plan(
-    reduced: ReducedRotor,
-    name: str | None,
-    formulation: Formulation,
-    stiffening: str,
-    place: inputs.Placement,
-    gravity: np.ndarray,
-    rayleigh: tuple[float, float],
-    modal: tuple[ArrayLike | None, ArrayLike | None],
-    locking: str,
-    native_shell: bool,
-    negligible: float,
-) -> Plan:
-    """Check what is left to check, and lay out the equations.
-
-    `rayleigh` and `modal` are pairs: mass and stiffness damping, modal coordinates and velocities.
-    """
-    if locking not in LOCKINGS:
-        raise ValueError(f"locking {locking!r} is unknown; use one of {', '.join(LOCKINGS)}")
-    selection = select_modes(reduced, formulation, negligible)
+def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
+    """Check what needs the modes, and lay out the equations."""
+    formulation, place = setup.formulation, setup.placement
+    selection = select_modes(reduced, formulation, setup.negligible)
     invariants = selection.invariants
     mode_mass = selection.T.T @ reduced.mode_mass @ selection.T
-    damping = invariants.D + rayleigh[0] * mode_mass + rayleigh[1] * invariants.K
-    invariants = replace(invariants, D=damping)
+    damping = setup.mass_damping * mode_mass + setup.stiffness_damping * invariants.K
+    invariants = replace(invariants, D=invariants.D + damping)
     direction = reduced.axis.direction
     frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction)
-    skew = native_shell and locks.normal is not None
-    if locking == "mass" and skew:
+    skew = setup.native_shell and locks.normal is not None
+    if setup.locking == "mass" and skew:
         raise ValueError(
             "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
             "use locking='constraints', translation='free', or native_shell=False"
         )
     # gravity on the shell exerts no moment about e by the deflection Sζ, which a free spin needs
-    own_gravity = not native_shell or (formulation.has_spin and formulation.translation_count == 0)
-    by_mass = locking == "mass" or (locking == "auto" and not locks.varying and not skew)
+    in_equations = not setup.native_shell or (
+        formulation.has_spin and formulation.translation_count == 0
+    )
+    by_mass = setup.locking == "mass" or (
+        setup.locking == "auto" and not locks.varying and not skew
+    )
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
-    own = np.repeat([invariants.mass, spin_inertia], 3)
+    inertia = np.repeat([invariants.mass, spin_inertia], 3)
+    motion = Motion(
+        invariants,
+        # a skew plane of rotation keeps all three translations and adds a linear constraint
+        replace(formulation, translation="free") if skew else formulation,
+        second_order(invariants, setup.stiffening),
+        orientation=place.rotation,
+        plane=locks.plane,
+        gravity=setup.gravity if in_equations else None,
+    )
     return Plan(
-        name=name,
-        axis=reduced.axis,
-        formulation=formulation,
-        stiffening=stiffening,
+        setup=setup,
         selection=selection,
-        placement=place,
         frame=frame,
         locks=locks,
-        layout=layout(locks, invariants.size, own, by_mass),
-        motion=Motion(
-            invariants,
-            # a skew plane of rotation keeps all three translations and adds a linear constraint
-            replace(formulation, translation="free") if skew else formulation,
-            second_order(invariants, stiffening),
-            orientation=place.rotation,
-            plane=locks.plane,
-            gravity=gravity if own_gravity else None,
+        layout=(
+            layout(locks, invariants.size, inertia, by_mass)
+            if setup.native_shell
+            else Layout.unlocked(motion.size)
         ),
+        motion=motion,
         by_mass=by_mass,
-        shell_gravity=np.zeros(3) if own_gravity else gravity,
-        modal=(
-            inputs.modal_values(modal[0], "modal_coordinates", selection.labels),
-            inputs.modal_values(modal[1], "modal_velocities", selection.labels),
+        shell_gravity=np.zeros(3) if in_equations else setup.gravity,
+        modal_start=inputs.modal_values(
+            setup.modal_coordinates, "modal_coordinates", selection.labels
+        ),
+        modal_start_rate=inputs.modal_values(
+            setup.modal_velocities, "modal_velocities", selection.labels
         ),
     )

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorNode, SensorObject
 
 from exudyn_rotor.multibody.locking import COORDINATE_NAMES, SPIN
-
-if TYPE_CHECKING:
-    from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
 _RATES = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
@@ -66,9 +63,9 @@ class Record:
     complete: bool
 
 
-def add_watch(body: RotorBody) -> None:
-    """Add native sensors of all coordinates and constraint forces; see :meth:`RotorBody.watch`."""
-    if body.watched:
+def add_watch(body: RotorItems) -> None:
+    """Add native sensors of all coordinates and of the forces of locking constraints."""
+    if body.record_sensors:
         return
     if body.mbs.systemIsConsistent:
         raise ValueError(
@@ -78,18 +75,19 @@ def add_watch(body: RotorBody) -> None:
     options = {"storeInternal": True, "writeToFile": False}
     for name, node in body.nodes.items():
         for kind in _RATES:
-            body.watched[name, kind] = body.mbs.AddSensor(
+            body.record_sensors[name, kind] = body.mbs.AddSensor(
                 SensorNode(nodeNumber=node, outputVariableType=kind, **options)
             )
     for name, constraint in body.constraints.items():
-        body.watched[name, _KINDS.Force] = body.mbs.AddSensor(
+        body.record_sensors[name, _KINDS.Force] = body.mbs.AddSensor(
             SensorObject(objectNumber=constraint, outputVariableType=_KINDS.Force, **options)
         )
 
 
-def read_record(body: RotorBody) -> Record:
+def read_record(body: RotorItems) -> Record:
     """Return what was recorded; the current state where that is nothing."""
-    first = next(iter(body.watched.values()), None)
+    body.check_assembled()
+    first = next(iter(body.record_sensors.values()), None)
     stored = None if first is None else np.atleast_2d(body.mbs.GetSensorStoredData(first))
     complete = stored is not None and len(stored) > 1
     if complete:
@@ -110,7 +108,7 @@ def read_record(body: RotorBody) -> Record:
     return Record(time, *parts, held, _speed(body, time, parts[1]), complete)
 
 
-def last_solver(body: RotorBody) -> Solver | None:
+def last_solver(body: RotorItems) -> Solver | None:
     """Return what the last dynamic solution used; None before one."""
     settings = body.mbs.sys.get("simulationSettings")
     solver = body.mbs.sys.get("dynamicSolver")
@@ -127,22 +125,22 @@ def last_solver(body: RotorBody) -> Solver | None:
     return Solver(step, explicit=True, method=method, steps=integration.numberOfSteps)
 
 
-def newton_tolerance(body: RotorBody) -> float:
+def newton_tolerance(body: RotorItems) -> float:
     """Return the relative tolerance of Newton's method in the last solution; 0 before one."""
     settings = body.mbs.sys.get("simulationSettings")
     return 0.0 if settings is None else settings.timeIntegration.newton.relativeTolerance
 
 
-def _stored(body: RotorBody, name: str, item: int, kind) -> np.ndarray:
-    return np.atleast_2d(body.mbs.GetSensorStoredData(body.watched[name, kind]))[:, 1:]
+def _stored(body: RotorItems, name: str, item: int, kind) -> np.ndarray:
+    return np.atleast_2d(body.mbs.GetSensorStoredData(body.record_sensors[name, kind]))[:, 1:]
 
 
-def _current(body: RotorBody, name: str, item: int, kind) -> np.ndarray:
+def _current(body: RotorItems, name: str, item: int, kind) -> np.ndarray:
     read = body.mbs.GetObjectOutput if kind == _KINDS.Force else body.mbs.GetNodeOutput
     return np.atleast_2d(read(item, kind))
 
 
-def _speed(body: RotorBody, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+def _speed(body: RotorItems, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
     if not body.formulation.has_spin:
         return np.array([float(body.formulation.spin.rate(t)) for t in time])
     return q_t[:, SPIN if "rigid" in body.nodes else body.formulation.translation_count]

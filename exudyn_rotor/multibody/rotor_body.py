@@ -2,77 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import exudyn
-import numpy as np
 
 from exudyn_rotor.multibody import sensors
-from exudyn_rotor.multibody.equations import Layout
-from exudyn_rotor.multibody.frame import ShellFrame
-from exudyn_rotor.multibody.locking import Locks
 from exudyn_rotor.multibody.record import Record, add_watch, read_record
-from exudyn_rotor.reduction.selection import Selection
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.multibody.rotor_items import RotorItems
 
 
-@dataclass(frozen=True, eq=False)
-class RotorBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class RotorBody(RotorItems):
     """A fixed-axis rotor inside an ``mbs``; made by :func:`exudyn_rotor.add_rotor`.
 
-    Attributes
-    ----------
-    mbs : exudyn.MainSystem
-    name : str or None
-    axis : SpinAxis
-        Mesh coordinates.
-    formulation : Formulation
-    stiffening : str
-    selection : Selection
-        The component modes in use; ``selection.labels`` names the modal coordinates.
-    motion : Motion
-        Equations of motion, inertial and mesh axes. In a plane of rotation that is skew to the
-        inertial axes they have three translations, and a constraint holds the plane.
-    frame : ShellFrame
-        Where mesh, shell and scene stand to each other.
-    nodes : dict
-        ``'rigid'`` (frame) and ``'modes'`` (modal coordinates); without the native shell only
-        ``'coordinates'``.
-    objects : dict
-        ``'physics'`` (the equations) and ``'shell'`` (markers, sensors, drawing).
-    markers : dict of str
-        Marker number of every interface. Apply loads here: the frame's node carries only the
-        motions that the formulation has.
-    constraints : dict of str
-        Locking constraints by coordinate, where ``locking='constraints'``.
-    gravity_load : LoadIndex or None
-        None without gravity, and where it is part of the equations (``motion.gravity``): without
-        the native shell, and for a free spin without translation.
-    mesh_node_count : int
-        Mesh nodes that native sensors can be put at.
-    watched : dict
-        Sensors of :meth:`watch`.
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor_items.RotorItems`.
     """
-
-    mbs: exudyn.MainSystem
-    name: str | None
-    axis: SpinAxis
-    formulation: Formulation
-    stiffening: str
-    selection: Selection
-    motion: Motion
-    frame: ShellFrame
-    layout: Layout
-    locks: Locks
-    nodes: dict
-    objects: dict
-    markers: dict = field(default_factory=dict)
-    constraints: dict = field(default_factory=dict)
-    gravity_load: exudyn.LoadIndex | None = None
-    mesh_node_count: int = 0
-    watched: dict = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return one line; :meth:`report` says more."""
@@ -81,21 +25,6 @@ class RotorBody:
             f"stiffening {self.stiffening!r}, {len(self.selection.labels)} modes, "
             f"markers: {', '.join(self.markers) or 'none'})"
         )
-
-    def marker(self, interface: str) -> exudyn.MarkerIndex:
-        """Return the marker of an interface.
-
-        Raises
-        ------
-        KeyError
-            For an interface without a marker; the message lists the known ones.
-        """
-        if interface not in self.markers:
-            known = ", ".join(self.markers) or "none"
-            raise KeyError(
-                f"rotor {self.name!r} has no marker for interface {interface!r}; markers: {known}"
-            )
-        return self.markers[interface]
 
     @property
     def uses_python(self) -> bool:
@@ -123,19 +52,6 @@ class RotorBody:
             f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
         return "\n".join(lines)
-
-    def coordinates(self, configuration=exudyn.ConfigurationType.Current) -> tuple:
-        """Return the unknowns q, q̇, q̈ of :attr:`motion` in a configuration, each (size,)."""
-        kinds = exudyn.OutputVariableType
-        return tuple(
-            np.concatenate(
-                [
-                    np.atleast_1d(self.mbs.GetNodeOutput(node, kind, configuration))
-                    for node in self.nodes.values()
-                ]
-            )[self.layout.unknowns]
-            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
-        )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.

@@ -2,24 +2,48 @@
 
 from __future__ import annotations
 
+import os
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody.locking import SPIN, guiding_force
+from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
-if TYPE_CHECKING:
-    from exudyn_rotor.multibody.rotor_body import RotorBody
-
 _KINDS = exudyn.OutputVariableType
+_AT_MESH_NODE = (
+    _KINDS.Position,
+    _KINDS.Displacement,
+    _KINDS.DisplacementLocal,
+    _KINDS.Velocity,
+    _KINDS.VelocityLocal,
+    _KINDS.Acceleration,
+)
+_AT_MARKER = {
+    "position": (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity),
+    "rigid": (
+        _KINDS.Position,
+        _KINDS.Displacement,
+        _KINDS.Velocity,
+        _KINDS.Rotation,
+        _KINDS.RotationMatrix,
+        _KINDS.AngularVelocity,
+        _KINDS.AngularVelocityLocal,
+        _KINDS.HomogeneousTransformation,
+    ),
+}
 
 
-def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.SensorIndex:
+def add_node_sensor(
+    body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
+) -> exudyn.SensorIndex:
     """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default.
 
     Exudyn takes stress (``StressLocal``), here and in its contour plots, from the modal coordinates
@@ -33,13 +57,19 @@ def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.Sen
     """
     shell = _shell(body)
     count = body.mesh_node_count
-    if not 0 <= node < count:
+    if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
-            f"rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+            f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
             + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
         )
+    with_stress = body.mesh_stress
+    _check_output(
+        output,
+        (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
+        "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
+    )
+    settings = _settings(body, options)
     _warn_of_static_stress(body, output)
-    settings = {"storeInternal": True, "writeToFile": False} | options
     return body.mbs.AddSensor(
         SensorSuperElement(
             bodyNumber=shell, meshNodeNumber=int(node), outputVariableType=output, **settings
@@ -47,7 +77,7 @@ def add_node_sensor(body: RotorBody, node: int, output, **options) -> exudyn.Sen
     )
 
 
-def _warn_of_static_stress(body: RotorBody, output: exudyn.OutputVariableType) -> None:
+def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
     """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
     spin = body.formulation.spin
     at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
@@ -63,15 +93,20 @@ def _warn_of_static_stress(body: RotorBody, output: exudyn.OutputVariableType) -
     )
 
 
-def add_interface_sensor(body: RotorBody, interface: str, output, **options):
+def add_interface_sensor(
+    body: RotorItems, interface: str, output: exudyn.OutputVariableType, **options: Any
+) -> exudyn.SensorIndex:
     """Add a ``SensorMarker`` at an interface, stored internally by default."""
-    settings = {"storeInternal": True, "writeToFile": False} | options
+    marker = body.marker(interface)
+    kind = body.plan.setup.markers[interface].kind
+    _check_output(output, _AT_MARKER[kind], f"at a {kind} marker")
+    settings = _settings(body, options)
     return body.mbs.AddSensor(
-        SensorMarker(markerNumber=body.marker(interface), outputVariableType=output, **settings)
+        SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
     )
 
 
-def add_spin_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
+def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
     """Add a sensor of θ [rad] and ω [rad/s]."""
     if "rigid" in body.nodes:
         node, index = body.nodes["rigid"], SPIN
@@ -88,7 +123,7 @@ def add_spin_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
     return _add_function_sensor(body, spin, options)
 
 
-def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
+def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
     """Add a sensor of the drive torque about e [N m].
 
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
@@ -113,7 +148,7 @@ def add_drive_torque_sensor(body: RotorBody, **options) -> exudyn.SensorIndex:
     return _add_function_sensor(body, torque, options)
 
 
-def _deflected_weight(body: RotorBody, t: float, zeta: np.ndarray) -> float:
+def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
     """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
     if body.gravity_load is None:
         return 0.0
@@ -124,7 +159,7 @@ def _deflected_weight(body: RotorBody, t: float, zeta: np.ndarray) -> float:
     return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
 
 
-def _external_moment(body: RotorBody):
+def _external_moment(body: RotorItems):
     """Return a function that reads the external moment about e on the shell's spin coordinate."""
     place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
     guide = guiding_force(body.locks, place)
@@ -149,7 +184,7 @@ def _external_moment(body: RotorBody):
     return moment
 
 
-def _shell(body: RotorBody) -> exudyn.ObjectIndex:
+def _shell(body: RotorItems) -> exudyn.ObjectIndex:
     if "shell" not in body.objects:
         raise ValueError(
             f"rotor {body.name!r} was added with native_shell=False; this sensor needs the shell"
@@ -157,6 +192,55 @@ def _shell(body: RotorBody) -> exudyn.ObjectIndex:
     return body.objects["shell"]
 
 
-def _add_function_sensor(body: RotorBody, function, options: dict) -> exudyn.SensorIndex:
-    settings = {"storeInternal": True, "writeToFile": False} | options
+def _add_function_sensor(
+    body: RotorItems, function: Callable, options: Mapping[str, Any]
+) -> exudyn.SensorIndex:
+    settings = _settings(body, options, shown=False)
     return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
+
+
+def _check_output(
+    output: exudyn.OutputVariableType, known: tuple[exudyn.OutputVariableType, ...], where: str
+) -> None:
+    """Refuse what Exudyn would refuse as late as in ``mbs.Assemble()``."""
+    names = ", ".join(kind.name for kind in known)
+    checks.instance(
+        output, "output", _KINDS, f"{where} there are, of exudyn.OutputVariableType: {names}"
+    )
+    if output not in known:
+        raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
+
+
+def _settings(
+    body: RotorItems, options: Mapping[str, Any], *, shown: bool = True
+) -> dict[str, Any]:
+    """Return the settings of a sensor, stored internally by default; those `shown` are drawn."""
+    known = ("name", "storeInternal", "writeToFile", "fileName", *(["visualization"] * shown))
+    for option in options:
+        if option not in known:
+            raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
+    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    for option in ("storeInternal", "writeToFile"):
+        checks.flag(settings[option], option)
+    if "fileName" in settings:
+        settings["fileName"] = os.fspath(checks.path(settings["fileName"], "fileName"))
+    if "name" in settings:
+        name = checks.label(settings["name"], "name")
+        if int(body.mbs.GetSensorNumber(name)) != -1:
+            raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
+    if "visualization" in settings:
+        settings["visualization"] = _visualization(settings["visualization"])
+    return settings
+
+
+def _visualization(value: Any) -> dict[str, bool]:
+    """Return Exudyn's visualization of a sensor: whether it is drawn, as dictionary or V object."""
+    needed = "visualization: needs {'show': True} or {'show': False}, got " + checks.shown(value)
+    try:
+        entries = dict(value)
+    # foreign objects
+    except Exception as error:
+        raise TypeError(needed) from error
+    if set(entries) - {"show"}:
+        raise ValueError(needed)
+    return {name: checks.flag(shown, f"visualization: {name}") for name, shown in entries.items()}

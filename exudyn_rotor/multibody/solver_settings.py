@@ -6,9 +6,10 @@ import math
 
 import exudyn
 
-from exudyn_rotor.multibody.inputs import number
+from exudyn_rotor import checks
 
 _LOOSEST, _TIGHTEST = 1e-5, 1e-9
+_MOST_STEPS = 2**31  # Exudyn counts steps with 32 bits
 
 
 def recommended_settings(
@@ -32,7 +33,7 @@ def recommended_settings(
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         For a value that is not positive and finite, or a step longer than the simulation.
 
     Notes
@@ -53,15 +54,15 @@ def recommended_settings(
         rotor with its frame in the centre of mass, and keeps iterations few where supports seen
         from the rotor turn.
     """
-    if not (settings is None or isinstance(settings, exudyn.SimulationSettings)):
-        raise TypeError(f"settings: needs exudyn.SimulationSettings, got {type(settings).__name__}")
-    for value, name, unit in ((end_time, "end_time", "s"), (step, "step", "s")):
-        if not number(value, name, unit) > 0.0:
-            raise ValueError(f"{name}: must be positive [s], got {value!r}")
+    if settings is not None:
+        checks.instance(settings, "settings", exudyn.SimulationSettings)
+    end_time = checks.number(end_time, "end_time", "s", above=0.0)
+    step = checks.number(step, "step", "s", above=0.0)
     if step > end_time:
         raise ValueError(f"step: {step!r} s is longer than end_time, {end_time!r} s")
-    if not 0.0 < number(accuracy, "accuracy", "1") < 1.0:
-        raise ValueError(f"accuracy: needs a share between 0 and 1, got {accuracy!r}")
+    if not end_time / step < _MOST_STEPS:
+        raise ValueError(f"step: {step} s makes {end_time / step:.3g} steps of {end_time} s")
+    accuracy = checks.tolerance(accuracy, "accuracy")
     settings = exudyn.SimulationSettings() if settings is None else settings
     integration, newton = settings.timeIntegration, settings.timeIntegration.newton
     integration.endTime = end_time

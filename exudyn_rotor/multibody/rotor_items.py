@@ -1,0 +1,172 @@
+"""What stands for a rotor in an Exudyn ``mbs``: its plan, and the numbers of its items."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.equations import Layout
+from exudyn_rotor.multibody.frame import ShellFrame
+from exudyn_rotor.multibody.inputs import main_system
+from exudyn_rotor.multibody.locking import Locks
+from exudyn_rotor.multibody.plan import Plan
+from exudyn_rotor.reduction.selection import Selection
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.motion import Motion
+
+_CONFIGURATIONS = tuple(
+    getattr(exudyn.ConfigurationType, name)
+    for name in ("Initial", "Current", "StartOfStep", "Visualization")
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RotorItems:
+    """A rotor's items in an ``mbs``.
+
+    Attributes
+    ----------
+    mbs : exudyn.MainSystem
+    plan : Plan
+        How the rotor was laid out; ``plan.setup`` is what was asked for.
+    nodes : mapping of str
+        ``'rigid'`` (frame) and ``'modes'`` (modal coordinates); without the native shell only
+        ``'coordinates'``.
+    objects : mapping of str
+        ``'physics'`` (the equations) and ``'shell'`` (markers, sensors, drawing).
+    markers : mapping of str
+        Marker number of every interface. Apply loads here: the frame's node carries only the
+        motions that the formulation has.
+    constraints : mapping of str
+        Locking constraints by coordinate, where ``locking='constraints'``.
+    gravity_load : LoadIndex or None
+        None without gravity, and where it is part of the equations (``motion.gravity``): without
+        the native shell, and for a free spin without translation.
+    mesh_node_count : int
+        Mesh nodes that native sensors can be put at.
+    mesh_stress : bool
+        Whether these sensors know the stress.
+    """
+
+    mbs: exudyn.MainSystem
+    plan: Plan
+    nodes: Mapping[str, exudyn.NodeIndex]
+    objects: Mapping[str, exudyn.ObjectIndex]
+    markers: Mapping[str, exudyn.MarkerIndex] = field(default_factory=dict)
+    constraints: Mapping[str, exudyn.ObjectIndex] = field(default_factory=dict)
+    gravity_load: exudyn.LoadIndex | None = None
+    mesh_node_count: int = 0
+    mesh_stress: bool = False
+    record_sensors: dict = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        main_system(self.mbs)
+        checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
+        for name in ("nodes", "objects", "markers", "constraints"):
+            numbers = checks.mapping(getattr(self, name), name, "item number")
+            object.__setattr__(self, name, MappingProxyType(dict(numbers)))
+        checks.count(self.mesh_node_count, "mesh_node_count")
+        checks.flag(self.mesh_stress, "mesh_stress")
+
+    @property
+    def name(self) -> str | None:
+        """Name of the rotor."""
+        return self.plan.setup.name
+
+    @property
+    def axis(self) -> SpinAxis:
+        """Spin axis, mesh coordinates."""
+        return self.selection.source.axis
+
+    @property
+    def formulation(self) -> Formulation:
+        """Which coordinates the rotor has."""
+        return self.plan.setup.formulation
+
+    @property
+    def stiffening(self) -> str:
+        """Level of the centrifugal stiffening."""
+        return self.plan.setup.stiffening
+
+    @property
+    def selection(self) -> Selection:
+        """The component modes in use; ``selection.labels`` names the modal coordinates."""
+        return self.plan.selection
+
+    @property
+    def motion(self) -> Motion:
+        """Equations of motion, inertial and mesh axes.
+
+        In a plane of rotation that is skew to the inertial axes they have three translations, and
+        a constraint holds the plane.
+        """
+        return self.plan.motion
+
+    @property
+    def frame(self) -> ShellFrame:
+        """Where mesh, shell and scene stand to each other."""
+        return self.plan.frame
+
+    @property
+    def layout(self) -> Layout:
+        """Where the unknowns stand among the coordinates of the nodes."""
+        return self.plan.layout
+
+    @property
+    def locks(self) -> Locks:
+        """What happens to the six rigid coordinates of the shell."""
+        return self.plan.locks
+
+    def coordinates(
+        self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the unknowns q, q̇, q̈ of :attr:`motion` in a configuration, each (size,).
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a configuration without coordinates, or a system that is not assembled.
+        """
+        checks.instance(configuration, "configuration", exudyn.ConfigurationType)
+        if configuration not in _CONFIGURATIONS:
+            known = ", ".join(kind.name for kind in _CONFIGURATIONS)
+            raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
+        self.check_assembled()
+        kinds = exudyn.OutputVariableType
+        return tuple(
+            np.concatenate(
+                [
+                    np.atleast_1d(self.mbs.GetNodeOutput(node, kind, configuration))
+                    for node in self.nodes.values()
+                ]
+            )[self.layout.unknowns]
+            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
+        )
+
+    def check_assembled(self) -> None:
+        """Raise ValueError where the system has no state yet."""
+        if not self.mbs.systemIsConsistent:
+            raise ValueError(
+                f"mbs: the system of rotor {self.name!r} has no state; call mbs.Assemble() first"
+            )
+
+    def marker(self, interface: str) -> exudyn.MarkerIndex:
+        """Return the marker of an interface.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an interface without a marker; the message lists the known ones.
+        """
+        if checks.label(interface, "interface") not in self.markers:
+            known = ", ".join(self.markers) or "none"
+            raise ValueError(
+                f"interface: rotor {self.name!r} has no marker for {interface!r}; markers: {known}"
+            )
+        return self.markers[interface]
