@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 import exudyn
 import numpy as np
@@ -70,7 +69,7 @@ class RotorItems:
         checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
         for name in ("nodes", "objects", "markers", "constraints"):
             numbers = checks.mapping(getattr(self, name), name, "item number")
-            object.__setattr__(self, name, MappingProxyType(dict(numbers)))
+            object.__setattr__(self, name, checks.read_only_mapping(numbers))
         checks.count(self.mesh_node_count, "mesh_node_count")
         checks.flag(self.mesh_stress, "mesh_stress")
 
