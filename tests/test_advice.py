@@ -351,13 +351,12 @@ def test_proposal_prints_what_add_rotor_takes(reduced):
         ({"speeds": -1.0}, "speeds: "),
         ({"speeds": np.nan}, "speeds: "),
         ({"speeds": (2.0, 1.0)}, "speeds: "),
-        ({"speeds": "fast"}, "speeds: "),
         ({"speeds": 0.0}, "nothing moves"),
         ({"speeds": 1.0, "load_frequencies": [np.inf]}, "load_frequencies: "),
         ({"speeds": 1.0, "load_frequencies": []}, "load_frequencies: "),
         ({"speeds": 1.0, "accuracy": 0.0}, "accuracy: "),
         ({"speeds": 1.0, "tilt": -0.1}, "tilt: "),
-        ({"speeds": 1.0, "interfaces": ["middle"]}, "left, right"),
+        ({"speeds": 1.0, "interfaces": ["middle"]}, "'left', 'right'"),
         ({"speeds": 1.0, "interfaces": []}, "left, right"),
         ({"speeds": 1.0, "supports": [Support("middle")]}, "no such interface"),
         ({"speeds": 1.0, "spin": PrescribedMotion.run_up(0.0, 1.0, 1.0)}, "leave spin out"),
@@ -376,9 +375,11 @@ def test_grounded_rotor_has_no_moving_frame(solid):
 
 
 def test_other_targets_are_refused(plain, solid):
-    with pytest.raises(TypeError, match="ReducedRotor"):
+    with pytest.raises(TypeError, match="speeds: .* got 'fast'"):
+        propose(plain, speeds="fast")
+    with pytest.raises(TypeError, match="target: needs ReducedRotor"):
         propose(solid, speeds=1.0)
-    with pytest.raises(TypeError, match="body="):
+    with pytest.raises(TypeError, match="body: needs RotorBody, got None"):
         propose(exu.SystemContainer().AddSystem(), speeds=1.0)
     with pytest.raises(ValueError, match="no interfaces"):
         propose(ring_rotor(0.1, 0.1, 2.0).reduce(0), speeds=1.0)
