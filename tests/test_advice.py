@@ -375,7 +375,7 @@ def test_grounded_rotor_has_no_moving_frame(solid):
 
 
 def test_other_targets_are_refused(plain, solid):
-    with pytest.raises(TypeError, match="speeds: .* got 'fast'"):
+    with pytest.raises(TypeError, match=r"speeds: .* got 'fast'"):
         propose(plain, speeds="fast")
     with pytest.raises(TypeError, match="target: needs ReducedRotor"):
         propose(solid, speeds=1.0)
