@@ -105,8 +105,8 @@ CASES = {
         },
         "skew to the inertial axes",
     ),
-    "reflection": ({"rotation": np.diag([1.0, 1.0, -1.0])}, "orthonormal with determinant"),
-    "stretch": ({"rotation": 1.1 * np.eye(3)}, "orthonormal with determinant"),
+    "reflection": ({"rotation": np.diag([1.0, 1.0, -1.0])}, "rotation: needs a rotation matrix"),
+    "stretch": ({"rotation": 1.1 * np.eye(3)}, "rotation: needs a rotation matrix"),
     "words as rotation": ({"rotation": "RotX"}, r"rotation: needs .* shape \(3, 3\), got 'RotX'"),
     "modal count": (
         {"modal_coordinates": [0.0, 0.0]},

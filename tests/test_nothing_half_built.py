@@ -40,15 +40,21 @@ VECTOR = [
     [1.0, 2.0, 3.0j],
 ]
 WORD = [*ANYTHING, None, "", "unknown", 3, True, [], ["free"], np.ones(3)]
+SPIN = [*ANYTHING, None, "", "unknown", True, [], ["free"], np.ones(3), NAN, 10**400]
 NAME = [*ANYTHING, "", "  ", 3, True, [], ["rotor"], np.ones(3), "\ud800", "taken"]
 ROTATION = [*VECTOR, np.eye(2), 2.0 * np.eye(3), np.diag([1.0, 1.0, -1.0]), "x"]
 COLOR = [*VECTOR, None, [0, 0, 0], [2.0, 0, 0, 1], [-0.1, 0, 0, 1], ["a"] * 4]
 DAMPING = [*NUMBER, None, -1.0]
+WRONG_SPIN = [motion(NAN), motion("1"), motion([1.0]), motion(lambda: 1.0), motion(1.0, [0.0])]
+WRONG_TRANSLATION = [motion(0.0), motion(np.full(3, NAN)), motion("abc"), motion(np.ones((3, 1)))]
 
 ROTOR = {
     "mbs": [*ANYTHING, None, exu.SystemContainer()],
     "reduced": [*ANYTHING, None, "rotor.npz", ring_rotor(0.1, 0.1, 2.0)],
     "name": NAME,
+    "translation": [*WORD, *WRONG_TRANSLATION],
+    "spin": [*SPIN, *WRONG_SPIN],
+    "drive": WORD,
     "stiffening": [*WORD, "full"],
     "position": [*VECTOR, None],
     "rotation": ROTATION,
@@ -65,6 +71,7 @@ ROTOR = {
     "show_markers": FLAG,
     "locking": WORD,
     "native_shell": FLAG,
+    "negligible": [*NUMBER, None, -1.0, 1.0],
     "color": COLOR,
 }
 TWIN = {
@@ -81,6 +88,9 @@ TWIN = {
     "superElementRigidMarkersOffsets": [*VECTOR, np.ones((3, 3)), masked(3)],
     "showMarkers": FLAG,
     "verbose": FLAG,
+    "axis": [*ANYTHING, "", "w", 3.0, [], [0, 0, 0], [NAN, 0, 0], masked(3), "zz"],
+    "translation": [*WORD, *WRONG_TRANSLATION],
+    "spin": [*SPIN, *WRONG_SPIN],
     "stiffening": [*WORD, "full"],
     "locking": WORD,
     "markers": ROTOR["markers"],

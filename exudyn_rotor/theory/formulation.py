@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -116,10 +117,21 @@ def start_values(
     Raises
     ------
     TypeError, ValueError
-        If they are no finite numbers, or for a translation not three.
+        If they are no finite numbers, for a translation not three, or raise an error.
     """
     check = checks.number if name == "spin" else checks.vector
-    return [check(getattr(motion, rate)(0.0), f"{name}: its {rate} at t = 0") for rate in _RATES]
+    return [check(_at_start(motion, rate, name), f"{name}: its {rate} at t = 0") for rate in _RATES]
+
+
+def _at_start(motion: PrescribedMotion | ConstantSpeed, rate: str, name: str) -> Any:
+    try:
+        return getattr(motion, rate)(0.0)
+    # whatever a user's function does with a time
+    except Exception as error:
+        raise ValueError(
+            f"{name}: its {rate} needs to be a function of time alone [s]; at t = 0 it raised "
+            f"{type(error).__name__}: {error}"
+        ) from error
 
 
 @dataclass(frozen=True)
