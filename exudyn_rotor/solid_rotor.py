@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_prestress
 from exudyn_rotor.prestress.static_solution import static_prestress
 from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
@@ -18,6 +19,7 @@ from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
+from exudyn_rotor.theory.axis import SpinAxis
 
 if TYPE_CHECKING:
     import ngsolve
@@ -66,6 +68,7 @@ class SolidRotor(FiniteElementRotor):
         order: int = 2,
         interfaces: Sequence[str] | None = None,
         check_units: bool = True,
+        allow_parts: bool = False,
     ) -> SolidRotor:
         """Assemble a rotor from an NGSolve mesh of tetrahedra.
 
@@ -86,19 +89,25 @@ class SolidRotor(FiniteElementRotor):
             weights are area shares, see :func:`exudyn_rotor.solid.surface.area_weights`.
         check_units : bool, optional
             Refuse materials and sizes that cannot be in SI units.
+        allow_parts : bool, optional
+            Take a mesh of several solids that nothing connects. Each of them moves by itself, so
+            that most analyses refuse such a rotor; :meth:`summary` tells the parts.
 
         Raises
         ------
         TypeError
-            If `mesh` is not an ngsolve.Mesh, or `materials` not a dictionary.
+            If `mesh` is not an ngsolve.Mesh, `materials` not a dictionary of numbers, or another
+            argument of the wrong kind.
         ValueError
-            If the mesh is no tetrahedral solid, a material or face is missing or impossible, or
-            the units cannot be SI.
+            If the mesh is no tetrahedral solid or falls into unconnected parts, a material or
+            face is missing or impossible, or the units cannot be SI.
         """
+        axis = SpinAxis.of(axis)
+        checks.flag(allow_parts, "allow_parts")
         model = ngsolve_model.assemble_model(
             mesh, materials, order=order, interfaces=interfaces, check_units=check_units
         )
-        return cls.of_model(model, axis, check_units)
+        return cls.of_model(model, axis, check_units, allow_parts=allow_parts)
 
     @classmethod
     def from_fem_interface(
@@ -108,6 +117,7 @@ class SolidRotor(FiniteElementRotor):
         *,
         check_units: bool = True,
         grounded: bool | None = None,
+        allow_parts: bool = False,
     ) -> SolidRotor:
         """Take a rotor from Exudyn's FEMinterface; its node sets with a name become interfaces.
 
@@ -122,6 +132,9 @@ class SolidRotor(FiniteElementRotor):
         grounded : bool, optional
             Whether springs to the ground are inside the stiffness matrix; needed only if the
             matrix itself does not tell.
+        allow_parts : bool, optional
+            Take a model of several parts that the stiffness does not connect and that no springs
+            hold, see :meth:`from_ngsolve`.
 
         Raises
         ------
@@ -130,7 +143,8 @@ class SolidRotor(FiniteElementRotor):
         ValueError
             If nodes carry rotations, something is missing, or a check of the matrices fails.
         """
-        return cls.of_model(fem_interface.import_model(fem), axis, check_units, grounded)
+        model = fem_interface.import_model(fem)
+        return cls.of_model(model, axis, check_units, grounded, allow_parts)
 
     @classmethod
     def from_matrices(
@@ -145,6 +159,7 @@ class SolidRotor(FiniteElementRotor):
         triangles: ArrayLike = (),
         check_units: bool = True,
         grounded: bool | None = None,
+        allow_parts: bool = False,
     ) -> SolidRotor:
         """Make a rotor from plain arrays.
 
@@ -165,6 +180,9 @@ class SolidRotor(FiniteElementRotor):
         grounded : bool, optional
             Whether springs to the ground are inside the stiffness matrix; needed only if the
             matrix itself does not tell.
+        allow_parts : bool, optional
+            Take a model of several parts that the stiffness does not connect and that no springs
+            hold, see :meth:`from_ngsolve`.
 
         Raises
         ------
@@ -174,9 +192,10 @@ class SolidRotor(FiniteElementRotor):
             If a check fails: shape, finite entries, symmetry, I₃ blocks and positive mass,
             rigid motions, node numbers, units.
         """
-        node_sets = {name: _node_set(entry) for name, entry in (interfaces or {}).items()}
+        given = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
+        node_sets = {name: _node_set(entry) for name, entry in given.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
-        return cls.of_model(model, axis, check_units, grounded)
+        return cls.of_model(model, axis, check_units, grounded, allow_parts)
 
     def prestress(
         self,

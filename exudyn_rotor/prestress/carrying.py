@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.prestress.static_solution import relief_under_stress, static_prestress
 from exudyn_rotor.prestress.static_state import check_static_state
 from exudyn_rotor.solid import matrices
@@ -16,8 +18,7 @@ from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 
 def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
     """Return the rotor carrying a prestress; see :meth:`exudyn_rotor.SolidRotor.with_prestress`."""
-    if not isinstance(prestress, Prestress):
-        raise TypeError(f"prestress: expected a Prestress, got {type(prestress).__name__}")
+    checks.instance(prestress, "prestress", Prestress, "rotor.prestress() computes one")
     rotor.check_unstressed()
     matrices.check_same_mesh(rotor.nodes, prestress.nodes, "prestress")
     check_static_state(rotor, prestress)
@@ -33,6 +34,8 @@ def with_chosen_prestress(rotor: Rotor, prestress: Prestress | bool | None) -> R
     """Return the rotor with what ``reduce(prestress=…)`` asks for."""
     if prestress is None:
         return rotor
-    if prestress is False:
-        return replace(rotor, carried_prestress=None)
-    return with_prestress(rotor, static_prestress(rotor) if prestress is True else prestress)
+    if isinstance(prestress, bool | np.bool_):
+        if not prestress:
+            return replace(rotor, carried_prestress=None)
+        prestress = static_prestress(rotor)
+    return with_prestress(rotor, prestress)

@@ -23,7 +23,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.solid import matrices
+from exudyn_rotor import checks
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
@@ -49,17 +49,19 @@ def static_prestress(
 ) -> Prestress:
     """Return the prestress; parameters as :meth:`exudyn_rotor.SolidRotor.prestress`."""
     rotor.check_unstressed()
-    if isinstance(clamped, str):
-        clamped = (clamped,)
+    clamped = checks.labels(clamped, "clamped", rotor.interfaces)
+    checks.flag(initial_displacement, "initial_displacement")
+    checks.flag(euler, "euler")
+    _check_yield(yield_stress, speed)
+    shape = (rotor.node_count, 6)
+    own = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
     if rotor.elements is None:
         raise ValueError(
             "prestress: this rotor has no elements to assemble a geometric stiffness on; make it "
             "with SolidRotor.from_ngsolve, give the matrix of another program with "
             "Prestress.from_matrix, or use stiffening='tilt'"
         )
-    _check_yield(yield_stress, speed)
     elements = rotor.elements
-    own = None if stress is None else _numbers(stress)
     residual = None if own is None else elements.load_of_stress(own)
     state = _support(rotor, clamped)
     constant = None
@@ -68,7 +70,7 @@ def static_prestress(
         constant = elements.geometric_stiffness_of_stress(own)
         constant = constant - elements.geometric_stiffness(springback)
         reactions = residual - rotor.stiffness @ springback
-        constant = _symmetric(constant + _hub_stiffness(rotor, state.hub, reactions))
+        constant = constant + _hub_stiffness(rotor, state.hub, reactions)
         own = _in_equilibrium(rotor, own, springback)
         state = state.stressed(constant)
 
@@ -81,13 +83,13 @@ def static_prestress(
         total = speed**2 * by_spin + (0.0 if own is None else own)
         _warn_of_yield(rotor.nodes, total, yield_stress, speed)
     return Prestress(
-        matrix=_symmetric(matrix),
+        matrix=matrix,
         nodes=rotor.nodes,
-        euler=_symmetric(state.stiffening(euler_load(rotor))[1]) if euler else None,
+        euler=state.stiffening(euler_load(rotor))[1] if euler else None,
         displacement=displacement,
         stress=by_spin,
         constant=constant,
-        initial_displacement=bool(initial_displacement),
+        initial_displacement=initial_displacement,
         balanced=not clamped,
         yield_stress=yield_stress,
         constant_stress=own,
@@ -209,30 +211,13 @@ def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarra
     return sp.csr_array(turn.T @ sp.csr_array(own) @ turn - mixed - mixed.T)
 
 
-def _symmetric(matrix: sp.csr_array) -> sp.csr_array:
-    return matrices.frozen(sp.csr_array(0.5 * (matrix + matrix.T)))
-
-
-def _numbers(stress: ArrayLike) -> np.ndarray:
-    try:
-        return np.asarray(stress, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise TypeError(
-            f"stress: needs an array of numbers, shape (n, 6) [Pa], got {type(stress).__name__} "
-            f"({error})"
-        ) from error
-
-
 def _check_yield(yield_stress: float | None, speed: float | None) -> None:
-    for name, value in (("yield_stress", yield_stress), ("speed", speed)):
-        if value is None:
-            continue
-        if np.ndim(value) or not np.issubdtype(np.asarray(value).dtype, np.number):
-            raise TypeError(f"{name}: needs one number, got {value!r}")
-        if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name}: must be a positive number, got {value!r}")
-    if speed is not None and yield_stress is None:
-        raise ValueError("speed: only serves the check of yielding; give yield_stress=, too")
+    if yield_stress is not None:
+        checks.number(yield_stress, "yield_stress", "Pa", above=0.0)
+    if speed is not None:
+        checks.number(speed, "speed", "rad/s", above=0.0)
+        if yield_stress is None:
+            raise ValueError("speed: only serves the check of yielding; give yield_stress=, too")
 
 
 def _in_equilibrium(

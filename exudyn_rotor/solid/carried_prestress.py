@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices
 
 
@@ -61,11 +61,35 @@ class Prestress:
     hub: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        for name in ("nodes", "displacement", "stress", "constant_stress", "load"):
+        nodes = matrices.as_nodes(self.nodes)
+        count = len(nodes)
+        checked = {
+            "nodes": nodes,
+            "matrix": matrices.as_matrix("prestress matrix", self.matrix, count),
+            "initial_displacement": checks.flag(self.initial_displacement, "initial_displacement"),
+            "balanced": checks.flag(self.balanced, "balanced"),
+        }
+        labels = {"euler": "Euler prestress matrix", "constant": "constant prestress matrix"}
+        for name, label in labels.items():
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, read_only(getattr(self, name)))
+                checked[name] = matrices.as_matrix(label, getattr(self, name), count)
+        shapes = {
+            "displacement": (3 * count,),
+            "load": (3 * count,),
+            "stress": (count, 6),
+            "constant_stress": (count, 6),
+        }
+        for name, shape in shapes.items():
+            if getattr(self, name) is not None:
+                checked[name] = checks.array(getattr(self, name), name, shape=shape)
         if self.hub is not None:
-            object.__setattr__(self, "hub", read_only(self.hub, np.int64))
+            checked["hub"] = checks.whole_numbers(self.hub, "hub", most=count - 1)
+        if self.yield_stress is not None:
+            checked["yield_stress"] = checks.number(
+                self.yield_stress, "yield_stress", "Pa", above=0.0
+            )
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def from_matrix(
@@ -93,15 +117,7 @@ class Prestress:
         ValueError
             If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
         """
-        positions = matrices.as_nodes(nodes)
-        return cls(
-            matrix=matrices.as_matrix("prestress matrix", matrix, len(positions)),
-            nodes=positions,
-            euler=None
-            if euler is None
-            else matrices.as_matrix("Euler prestress matrix", euler, len(positions)),
-            balanced=bool(balanced),
-        )
+        return cls(matrix, nodes, euler, balanced=balanced)
 
     def __repr__(self) -> str:
         parts = [f"{len(self.nodes)} nodes"]

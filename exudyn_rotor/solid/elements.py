@@ -61,6 +61,13 @@ class NgsolveElements:
     lame: np.ndarray
     held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
+    def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
+        """Return the names of the regions whose elements have any of these nodes."""
+        elements = self.mesh.ngmesh.Elements3D().NumPy()
+        touched = np.isin(elements["nodes"].astype(np.int64) - 1, nodes).any(axis=1)
+        regions = self.mesh.GetMaterials()
+        return tuple(sorted({regions[i - 1] for i in np.unique(elements["index"][touched])}))
+
     def holding(self, nodes: np.ndarray) -> NgsolveElements:
         """Return the elements with more nodes clamped."""
         return replace(self, held=np.union1d(self.held, nodes))

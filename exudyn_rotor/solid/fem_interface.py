@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from exudyn.FEM import FEMinterface
 
+from exudyn_rotor import checks
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.ngsolve_model import is_named
 
 
-def import_model(fem: Any) -> FiniteElementModel:
+def import_model(fem: FEMinterface) -> FiniteElementModel:
     """Return the model in `fem`; parameters and errors as ``SolidRotor.from_fem_interface``."""
-    for attribute in ("nodes", "massMatrix", "stiffnessMatrix", "surface", "nodeSets"):
-        if not hasattr(fem, attribute):
-            raise TypeError(f"fem: needs an exudyn.FEM.FEMinterface, got {type(fem).__name__}")
+    checks.instance(fem, "fem", FEMinterface, "of exudyn.FEM")
     for attribute in ("massMatrix", "stiffnessMatrix"):
         matrix = getattr(fem, attribute)
         if matrix is None or np.size(matrix) == 0:

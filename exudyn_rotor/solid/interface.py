@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
+from exudyn_rotor.solid import matrices
 from exudyn_rotor.theory.nodal import skew
 
 
@@ -37,25 +38,20 @@ class Interface:
     center: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
-        nodes = np.array(self.nodes, dtype=np.int64)
-        nodes.flags.writeable = False
-        weights = read_only(self.weights)
-        if nodes.size == 0:
-            raise ValueError(
-                f"interface {self.name!r} has no nodes; check the face name or the node list"
-            )
-        if weights.shape != nodes.shape or not np.all(np.isfinite(weights)) or weights.sum() <= 0:
-            raise ValueError(
-                f"interface {self.name!r}: needs one finite weight per node with a positive sum, "
-                f"got {weights.shape} weights for {nodes.shape} nodes"
-            )
-        weights = read_only(weights / weights.sum())
-        center = read_only(weights @ self.positions)
-        reference = center if self.reference is None else read_only(self.reference)
+        name = checks.label(self.name, "interface: its name")
+        nodes = matrices.as_node_numbers(name, self.nodes)
+        weights = matrices.as_weights(name, self.weights, nodes.size)
+        weights = checks.read_only(weights / weights.sum())
+        label = f"interface {name!r}: positions"
+        positions = checks.array(self.positions, label, "m", shape=(nodes.size, 3))
+        center = checks.read_only(weights @ positions)
+        reference = center
+        if self.reference is not None:
+            reference = checks.vector(self.reference, f"interface {name!r}: reference", "m")
         for key, value in {
             "nodes": nodes,
             "weights": weights,
-            "positions": read_only(self.positions),
+            "positions": positions,
             "center": center,
             "reference": reference,
         }.items():

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 
 # Relative to the largest entry: well above the rounding of any assembly, far below a wrong matrix.
 SYMMETRY_TOLERANCE = 1e-8
@@ -27,10 +28,7 @@ def as_nodes(nodes: Any) -> np.ndarray:
     ValueError
         If the shape is not (n, 3) with n ≥ 1, or an entry is not finite.
     """
-    try:
-        positions = read_only(nodes)
-    except (TypeError, ValueError) as error:
-        raise TypeError("nodes: needs an array of numbers with three columns x, y, z") from error
+    positions = checks.array(nodes, "nodes", "m", finite=False)
     if positions.ndim == 2 and positions.shape[1] in (6, 7):
         raise ValueError(
             f"nodes: {positions.shape[1]} coordinates per node mean rotation-carrying nodes "
@@ -46,7 +44,26 @@ def as_nodes(nodes: Any) -> np.ndarray:
     return positions
 
 
-def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
+# what these functions made: rotors made from rotors do not check the same matrix again
+_checked: WeakValueDictionary[tuple[str, int], sp.csr_array] = WeakValueDictionary()
+
+
+def as_mass(matrix: Any, node_count: int) -> sp.csr_array:
+    """Return a mass matrix as :func:`as_matrix` does; it must have I₃ blocks (24) and no holes."""
+    return as_matrix("mass matrix", matrix, node_count, _check_mass)
+
+
+def as_stiffness(matrix: Any, node_count: int) -> sp.csr_array:
+    """Return a stiffness matrix as :func:`as_matrix` does; no diagonal entry may be negative."""
+    return as_matrix("stiffness matrix", matrix, node_count, _check_stiffness)
+
+
+def as_matrix(
+    label: str,
+    matrix: Any,
+    node_count: int,
+    check: Callable[[sp.csr_array], None] | None = None,
+) -> sp.csr_array:
     """Return a checked (3n, 3n) matrix: finite, exactly symmetric, read-only csr_array.
 
     Parameters
@@ -56,6 +73,8 @@ def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
     matrix : array_like or sparse
     node_count : int
         The number of nodes n.
+    check : callable, optional
+        Raises if the matrix is wrong otherwise.
 
     Raises
     ------
@@ -64,6 +83,10 @@ def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
     ValueError
         If the size does not fit the nodes, an entry is not finite, or it is not symmetric.
     """
+    size = 3 * node_count
+    known = _checked.get((label, id(matrix)))
+    if known is not None and known.shape == (size, size):
+        return known
     converted = _to_csr(label, matrix)
     _check_size(label, converted.shape, node_count)
     bad = int(np.count_nonzero(~np.isfinite(converted.data)))
@@ -71,7 +94,11 @@ def as_matrix(label: str, matrix: Any, node_count: int) -> sp.csr_array:
         raise ValueError(
             f"{label}: {bad} entries are not finite (NaN or infinity); check the export"
         )
-    return frozen(_symmetrised(label, converted))
+    result = frozen(_symmetrised(label, converted))
+    if check is not None:
+        check(result)
+    _checked[label, id(result)] = result
+    return result
 
 
 def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal basis") -> None:
@@ -104,7 +131,7 @@ def frozen(matrix: sp.csr_array) -> sp.csr_array:
     return matrix
 
 
-def check_mass(mass: sp.csr_array) -> None:
+def _check_mass(mass: sp.csr_array) -> None:
     """Raise ValueError unless `mass` is a solid's mass matrix: I₃ blocks (24), no empty node."""
     if not _has_identity_blocks(mass):
         raise ValueError(_explain_blocks(mass))
@@ -126,7 +153,7 @@ def check_mass(mass: sp.csr_array) -> None:
         raise ValueError(f"mass matrix: the total mass must be positive, got {total:.6g} kg")
 
 
-def check_stiffness(stiffness: sp.csr_array) -> None:
+def _check_stiffness(stiffness: sp.csr_array) -> None:
     """Raise ValueError where a negative diagonal entry shows that `stiffness` is indefinite."""
     negative = np.flatnonzero(stiffness.diagonal() < 0.0)
     if negative.size:
@@ -137,8 +164,8 @@ def check_stiffness(stiffness: sp.csr_array) -> None:
         )
 
 
-def as_node_numbers(name: str, nodes: Any, node_count: int) -> np.ndarray:
-    """Return the node numbers of interface `name`, shape (k,).
+def as_node_numbers(name: str, nodes: Any, node_count: int | None = None) -> np.ndarray:
+    """Return the node numbers of interface `name`, shape (k,), below `node_count` if given.
 
     Raises
     ------
@@ -147,19 +174,19 @@ def as_node_numbers(name: str, nodes: Any, node_count: int) -> np.ndarray:
     ValueError
         If there are none, one does not exist, or one is listed twice.
     """
-    numbers = np.asarray(nodes)
+    numbers = checks.array(nodes, f"interface {name!r}: nodes", dtype=int)
     if numbers.size == 0:
         raise ValueError(f"interface {name!r} has no nodes; check the face name or the node list")
-    if numbers.ndim != 1 or not np.issubdtype(numbers.dtype, np.integer):
-        raise TypeError(
-            f"interface {name!r}: needs a flat list of integer node numbers, "
-            f"got {numbers.dtype} of shape {numbers.shape}"
+    if numbers.ndim != 1:
+        raise ValueError(
+            f"interface {name!r}: needs a flat list of node numbers, got the shape {numbers.shape}"
         )
-    outside = numbers[(numbers < 0) | (numbers >= node_count)]
+    end = np.inf if node_count is None else node_count
+    outside = numbers[(numbers < 0) | (numbers >= end)]
     if outside.size:
         raise ValueError(
             f"interface {name!r}: there is no node {_numbers(outside)}; the model has the nodes "
-            f"0 to {node_count - 1} (counted from zero)"
+            f"0 to {end - 1:.0f} (counted from zero)"
         )
     unique, counts = np.unique(numbers, return_counts=True)
     if np.any(counts > 1):
@@ -167,29 +194,31 @@ def as_node_numbers(name: str, nodes: Any, node_count: int) -> np.ndarray:
             f"interface {name!r}: repeated node numbers {_numbers(unique[counts > 1])}; "
             "list every node once and use weights instead"
         )
-    return numbers.astype(np.int64)
+    return numbers
 
 
 def as_weights(name: str, weights: Sequence[float] | None, count: int) -> np.ndarray:
     """Return the node weights of interface `name`, equal ones for None; never negative."""
     if weights is None:
         return np.full(count, 1.0 / count)
-    values = np.asarray(weights, dtype=float)
+    values = checks.vector(weights, f"interface {name!r}: weights", size=count)
     if np.any(values < 0.0):
         raise ValueError(
             f"interface {name!r}: weights are shares of an area and cannot be negative, "
             f"got {values.min():.6g}"
+        )
+    if not 0.0 < values.sum() < np.inf:
+        raise ValueError(
+            f"interface {name!r}: weights need a positive finite sum, got {values.sum():.6g}"
         )
     return values
 
 
 def as_triangles(triangles: Any, node_count: int) -> np.ndarray:
     """Return the surface triangles as a read-only integer array, shape (t, 3) or (t, 6)."""
-    array = np.array(triangles)
+    array = checks.array(triangles, "triangles", dtype=int)
     if array.size == 0:
-        array = np.zeros((0, 3), dtype=np.int64)
-    if not np.issubdtype(array.dtype, np.integer):
-        raise TypeError(f"triangles: need integer node numbers, got {array.dtype}")
+        array = checks.array(np.zeros((0, 3), dtype=int), "triangles", dtype=int)
     if array.ndim != 2 or array.shape[1] not in (3, 6):
         raise ValueError(f"triangles: the shape must be (t, 3) or (t, 6), got {array.shape}")
     if array.size and (array.min() < 0 or array.max() >= node_count):
@@ -197,8 +226,6 @@ def as_triangles(triangles: Any, node_count: int) -> np.ndarray:
             f"triangles: node numbers {array.min()} to {array.max()} are outside the model's "
             f"0 to {node_count - 1}"
         )
-    array = array.astype(np.int64)
-    array.flags.writeable = False
     return array
 
 
@@ -206,12 +233,12 @@ def _to_csr(label: str, matrix: Any) -> sp.csr_array:
     if matrix is None:
         raise ValueError(f"{label}: is missing (None)")
     if not sp.issparse(matrix):
-        matrix = np.asarray(matrix)
-    if matrix.dtype.kind not in "iuf":
-        raise TypeError(f"{label}: needs real numbers (dense or scipy.sparse), got {matrix.dtype}")
+        matrix = checks.array(matrix, label, finite=False)
     if matrix.ndim != 2:
         raise ValueError(f"{label}: needs a square matrix, got the shape {matrix.shape}")
-    return sp.csr_array(matrix, dtype=float, copy=True)
+    rows = sp.csr_array(matrix)
+    entries = checks.array(rows.data, f"{label}: its entries", finite=False)
+    return sp.csr_array((entries, rows.indices, rows.indptr), shape=rows.shape)
 
 
 def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
@@ -240,7 +267,7 @@ def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
             f"of {largest:.3g}; many exports write one triangle only: then pass "
             "A + A.T - diag(A)"
         )
-    return 0.5 * (matrix + transposed)
+    return sp.csr_array(0.5 * matrix + 0.5 * transposed)
 
 
 def _has_identity_blocks(mass: sp.csr_array) -> bool:

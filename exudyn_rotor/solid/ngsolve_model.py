@@ -10,6 +10,7 @@ import ngsolve as ngs
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.solid import units
 from exudyn_rotor.solid.elements import NgsolveElements, assembled, nodal_space, node_by_node
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
@@ -35,6 +36,7 @@ def assemble_model(
     check_units: bool = True,
 ) -> FiniteElementModel:
     """Return the model of an NGSolve mesh; parameters as ``SolidRotor.from_ngsolve``."""
+    checks.flag(check_units, "check_units")
     _prepare_mesh(mesh, order)
     regions = mesh.GetMaterials()
     by_region = units.materials_by_region(regions, materials)
@@ -62,13 +64,8 @@ def assemble_model(
 
 def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
     """Check the mesh and give it the mid nodes that `order` needs."""
-    if not isinstance(mesh, ngs.Mesh):
-        raise TypeError(
-            f"mesh: needs an ngsolve.Mesh, got {type(mesh).__name__}; wrap a Netgen mesh with "
-            "ngsolve.Mesh(...)"
-        )
-    if order not in (1, 2):
-        raise ValueError(f"order: must be 1 or 2, got {order!r}")
+    checks.instance(mesh, "mesh", ngs.Mesh, "wrap a Netgen mesh with ngsolve.Mesh(...)")
+    checks.count(order, "order", least=1, most=2)
     types = set(mesh.ngmesh.Elements3D().NumPy()["type"].tolist()) if mesh.ne else set()
     if not types or not types <= set(_TETRAHEDRON_TYPES.values()):
         raise ValueError(
@@ -123,10 +120,7 @@ def _node_sets(
     known = sorted(name for name in set(faces.tolist()) if is_named(name))
     if isinstance(interfaces, str):
         raise TypeError(f"interfaces: needs a list of face names, got the text {interfaces!r}")
-    wanted = known if interfaces is None else list(interfaces)
-    unknown = [name for name in wanted if name not in known]
-    if unknown:
-        raise ValueError(f"interfaces: the mesh has no faces named {unknown}; it has {known}")
+    wanted = checks.labels(known if interfaces is None else interfaces, "interfaces", known)
     if len(set(wanted)) < len(wanted):
         raise ValueError(f"interfaces: a face name is repeated in {wanted}")
     return {name: area_weights(nodes, triangles[faces == name]) for name in wanted}

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,14 @@ class PointMass:
     distance: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", read_only(self.position))
+        checked = {
+            "position": checks.vector(self.position, "position", "m"),
+            "node": checks.count(self.node, "node"),
+            "mass": checks.number(self.mass, "mass", "kg"),
+            "distance": checks.number(self.distance, "distance", "m", least=0.0),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
 
 def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array:
@@ -44,8 +51,8 @@ def add_nodal_mass(matrix: sp.csr_array, node: int, mass: float) -> sp.csr_array
     ValueError
         If the mass is zero or not finite, or takes away more than the node carries.
     """
-    if not np.isfinite(mass) or mass == 0.0:
-        raise ValueError(f"point mass: needs a finite mass other than zero, got {mass} kg")
+    if checks.number(mass, "mass", "kg") == 0.0:
+        raise ValueError(f"mass: needs a number [kg] other than zero, got {mass}")
     if mass < 0.0:
         _check_removable(matrix, node, -mass)
     rows = 3 * node + np.arange(3)

@@ -60,6 +60,16 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
     return whole, np.median(_ratio(forces, terms), axis=0)
 
 
+def leaves_free(nodes: np.ndarray, stiffness: sp.csr_array) -> bool:
+    """Return whether `stiffness` clearly leaves a rigid motion of these nodes free."""
+    residuals, typical = rigid_residuals(nodes, stiffness)
+    return bool(np.any((residuals < FREE_BELOW) & ~_locally_held(residuals, typical)))
+
+
+def _locally_held(residuals: np.ndarray, typical: np.ndarray) -> np.ndarray:
+    return (typical < LOCAL_RATIO * residuals) & (residuals > LOCALLY_HELD_ABOVE)
+
+
 def unsupported_nodes(nodes: np.ndarray, stiffness: sp.csr_array) -> np.ndarray:
     """Return at which nodes `stiffness` balances all rigid motions, shape (n,), bool.
 
@@ -129,8 +139,7 @@ def count_rigid_motions(
         `grounded` contradicts the matrix.
     """
     residuals, typical = rigid_residuals(nodes, stiffness)
-    local = (typical < LOCAL_RATIO * residuals) & (residuals > LOCALLY_HELD_ABOVE)
-    held = (residuals > HELD_ABOVE) | local
+    held = (residuals > HELD_ABOVE) | _locally_held(residuals, typical)
     doubtful = (residuals >= FREE_BELOW) & ~held
     if grounded is None and np.any(doubtful):
         raise ValueError(_doubt(residuals[doubtful]))

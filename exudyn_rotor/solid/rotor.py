@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.checks import read_only
+from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.elements import NgsolveElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
+from exudyn_rotor.solid.parts import check_connected
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
 from exudyn_rotor.theory.axis import SpinAxis
@@ -47,7 +47,27 @@ class FiniteElementRotor:
     carried_prestress: Prestress | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "interfaces", MappingProxyType(dict(self.interfaces)))
+        nodes = matrices.as_nodes(self.nodes)
+        checked = {
+            "nodes": nodes,
+            "mass": matrices.as_mass(self.mass, len(nodes)),
+            "stiffness": matrices.as_stiffness(self.stiffness, len(nodes)),
+            "axis": SpinAxis.of(self.axis),
+            "interfaces": _checked_interfaces(self.interfaces, nodes),
+            "triangles": matrices.as_triangles(self.triangles, len(nodes)),
+            "point_masses": checks.instances(self.point_masses, "point_masses", PointMass),
+            "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
+        }
+        if self.damping is not None:
+            checked["damping"] = matrices.as_matrix("damping matrix", self.damping, len(nodes))
+        if self.stress_recovery is not None:
+            checks.function(self.stress_recovery, "stress_recovery")
+        if self.elements is not None:
+            checks.instance(self.elements, "elements", NgsolveElements)
+        if self.carried_prestress is not None:
+            checks.instance(self.carried_prestress, "carried_prestress", Prestress)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def of_model(
@@ -56,29 +76,31 @@ class FiniteElementRotor:
         axis: AxisLike,
         check_units: bool,
         grounded: bool | None = None,
+        allow_parts: bool = False,
     ) -> Rotor:
         """Return the rotor of a model whose arrays are checked here; as ``from_matrices``."""
+        checks.flag(check_units, "check_units")
+        checks.flag(allow_parts, "allow_parts")
+        if grounded is not None:
+            checks.flag(grounded, "grounded")
         nodes = matrices.as_nodes(model.nodes)
-        mass = matrices.as_matrix("mass matrix", model.mass, len(nodes))
-        matrices.check_mass(mass)
+        mass = matrices.as_mass(model.mass, len(nodes))
         if check_units:
             units.check_model_units(nodes, float(mass[::3, ::3].sum()))
-        stiffness = matrices.as_matrix("stiffness matrix", model.stiffness, len(nodes))
-        matrices.check_stiffness(stiffness)
-        damping = model.damping
-        if damping is not None:
-            damping = matrices.as_matrix("damping matrix", damping, len(nodes))
+        stiffness = matrices.as_stiffness(model.stiffness, len(nodes))
+        if not allow_parts:
+            check_connected(nodes, mass, stiffness, model.elements)
         return cls(
             nodes=nodes,
             mass=mass,
             stiffness=stiffness,
-            axis=SpinAxis.of(axis),
-            damping=damping,
+            axis=axis,
+            damping=model.damping,
             interfaces={
                 name: _interface(name, nodes, *node_set)
                 for name, node_set in model.node_sets.items()
             },
-            triangles=matrices.as_triangles(model.triangles, len(nodes)),
+            triangles=model.triangles,
             stress_recovery=model.stress_recovery,
             rigid_motions=count_rigid_motions(nodes, stiffness, grounded),
             elements=model.elements,
@@ -97,7 +119,7 @@ class FiniteElementRotor:
     @property
     def center_of_mass(self) -> np.ndarray:
         """Centre of mass in mesh coordinates, shape (3,) [m]."""
-        return read_only((self.mass[::3, ::3] @ self.nodes).sum(axis=0) / self.total_mass)
+        return checks.read_only((self.mass[::3, ::3] @ self.nodes).sum(axis=0) / self.total_mass)
 
     @property
     def grounded(self) -> bool:
@@ -111,9 +133,7 @@ class FiniteElementRotor:
 
     def nearest_node(self, position: ArrayLike) -> int:
         """Return the number of the node next to `position` (3,), mesh coordinates [m]."""
-        target = np.asarray(position, dtype=float)
-        if target.shape != (3,) or not np.all(np.isfinite(target)):
-            raise ValueError(f"position: needs three finite coordinates [m], got {position!r}")
+        target = checks.vector(position, "position", "m")
         return int(np.argmin(np.linalg.norm(self.nodes - target, axis=1)))
 
     def add_point_mass(self: Rotor, position: ArrayLike, mass: float) -> Rotor:
@@ -132,7 +152,7 @@ class FiniteElementRotor:
         node = self.nearest_node(position)
         matrix = matrices.frozen(add_nodal_mass(self.mass, node, mass))
         distance = float(np.linalg.norm(self.nodes[node] - np.asarray(position, dtype=float)))
-        placed = PointMass(position, node, float(mass), distance)
+        placed = PointMass(position, node, mass, distance)
         return replace(self, mass=matrix, point_masses=(*self.point_masses, placed))
 
     def with_interface(
@@ -147,7 +167,7 @@ class FiniteElementRotor:
         ValueError
             If the name is taken, or nodes or weights are not valid.
         """
-        if name in self.interfaces:
+        if checks.label(name, "name") in self.interfaces:
             raise ValueError(f"interface {name!r} exists already; choose another name")
         added = _interface(name, self.nodes, nodes, weights)
         return replace(self, interfaces={**self.interfaces, name: added})
@@ -167,12 +187,9 @@ class FiniteElementRotor:
         ValueError
             If an interface is unknown.
         """
-        chosen = list(self.interfaces if names is None else names)
-        unknown = [name for name in chosen if name not in self.interfaces]
-        if unknown:
-            raise ValueError(f"interfaces {unknown} are unknown; there are {list(self.interfaces)}")
+        chosen = tuple(self.interfaces) if names is None else names
         moved = {}
-        for name in chosen:
+        for name in checks.labels(chosen, "names", self.interfaces):
             interface = self.interfaces[name]
             moved[name] = interface.centered_on(self.axis.project(interface.center))
         return replace(self, interfaces={**self.interfaces, **moved})
@@ -194,17 +211,15 @@ class FiniteElementRotor:
             carries a prestress.
         """
         self.check_unstressed()
-        names = [names] if isinstance(names, str) else list(names)
-        unknown = [name for name in names if name not in self.interfaces]
-        if unknown or not names:
+        names = checks.labels(names, "clamped", self.interfaces)
+        if not names:
             raise ValueError(
-                f"clamped: interfaces {unknown or names} are unknown; there are "
-                f"{list(self.interfaces)}"
+                f"clamped: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
         if rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
-                f"clamped: the {held.size} nodes of {names} lie on one line and cannot hold "
+                f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
             )
         kept = np.ones((self.node_count, 3))
@@ -232,6 +247,14 @@ class FiniteElementRotor:
             f"{type(self).__name__}({self.node_count} nodes, {self.total_mass:.6g} kg, "
             f"interfaces {list(self.interfaces)}, {self.rigid_motions} rigid motions free)"
         )
+
+
+def _checked_interfaces(given: Mapping[str, Interface], nodes: np.ndarray) -> Mapping:
+    checks.mapping(given, "interfaces", "Interface")
+    for name, interface in given.items():
+        checks.instance(interface, f"interfaces: {name!r}", Interface)
+        matrices.as_node_numbers(name, interface.nodes, len(nodes))
+    return checks.read_only_mapping(given)
 
 
 def _interface(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.solid.parts import describe_parts, loose_parts
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 
@@ -20,6 +21,10 @@ def summary(rotor: FiniteElementRotor) -> str:
         f"spin axis        direction {_vector(axis.direction)}, point {_vector(axis.point)} m",
         f"rigid motions    {rotor.rigid_motions} of 6 free ({support})",
     ]
+    parts = loose_parts(rotor.nodes, rotor.stiffness)
+    if parts:
+        described = describe_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
+        lines.append(f"loose parts      {len(parts)}: {described}")
     lines += [_interface_line(rotor, interface) for interface in rotor.interfaces.values()]
     lines += [_point_mass_line(point_mass) for point_mass in rotor.point_masses]
     return "\n".join(lines)

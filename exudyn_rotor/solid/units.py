@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from exudyn_rotor import checks
+
 Material = Mapping[str, float]
 MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")
 
@@ -44,10 +46,7 @@ def materials_by_region(
     ValueError
         If a region has no material, or a material cannot be.
     """
-    if not isinstance(materials, Mapping):
-        raise TypeError(
-            f"materials: needs a dictionary by region name, got {type(materials).__name__}"
-        )
+    checks.mapping(materials, "materials", "material")
     names = sorted(set(regions))
     if any(key in materials for key in MATERIAL_KEYS):
         if len(names) > 1:
@@ -62,9 +61,7 @@ def materials_by_region(
             f"materials: the mesh regions {missing} have no material; "
             f"given are {sorted(materials)}, the mesh has {names}"
         )
-    for name in names:
-        _check_material(name, materials[name])
-    return {name: materials[name] for name in names}
+    return {name: _checked_material(name, materials[name]) for name in names}
 
 
 def check_material_units(name: str, material: Material) -> None:
@@ -102,22 +99,19 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
         )
 
 
-def _check_material(name: str, material: Any) -> None:
-    if not isinstance(material, Mapping) or set(material) != set(MATERIAL_KEYS):
-        found = sorted(material) if isinstance(material, Mapping) else type(material).__name__
+def _checked_material(name: str, material: Any) -> Material:
+    label = f"material {name!r}"
+    checks.mapping(material, label, "number")
+    if set(material) != set(MATERIAL_KEYS):
         raise ValueError(
-            f"material {name!r}: needs exactly the keys {list(MATERIAL_KEYS)}, got {found}"
+            f"{label}: needs exactly the keys {list(MATERIAL_KEYS)}, got {sorted(material)}"
         )
     modulus, ratio, density = (material[key] for key in MATERIAL_KEYS)
-    if not (np.isfinite(modulus) and modulus > 0.0):
-        raise ValueError(f"material {name!r}: youngsModulus must be positive, got {modulus:g} Pa")
-    if not -1.0 < ratio < 0.5:
-        raise ValueError(
-            f"material {name!r}: poissonsRatio must lie between -1 and 0.5 (exclusive), "
-            f"got {ratio:g}"
-        )
-    if not (np.isfinite(density) and density > 0.0):
-        raise ValueError(f"material {name!r}: density must be positive, got {density:g} kg/m³")
+    return {
+        "youngsModulus": checks.number(modulus, f"{label}: youngsModulus", "Pa", above=0.0),
+        "poissonsRatio": checks.number(ratio, f"{label}: poissonsRatio", above=-1.0, below=0.5),
+        "density": checks.number(density, f"{label}: density", "kg/m³", above=0.0),
+    }
 
 
 def _inside(value: float, limits: tuple[float, float]) -> bool:
