@@ -40,7 +40,7 @@ def test_loose_parts_are_told_and_taken_if_asked_for(count):
 
 
 def test_parts_that_touch_need_glue():
-    with pytest.raises(ValueError, match="falls into 2 parts that nothing connects: 'aluminium'"):
+    with pytest.raises(ValueError, match="falls into 2 parts that nothing connects: 'steel': "):
         SolidRotor.from_ngsolve(boxes(2, 0.0), MATERIALS, "z", order=1)
     rotor = SolidRotor.from_ngsolve(boxes(2, 0.0, Glue), MATERIALS, "z", order=1)
     assert "loose parts" not in rotor.summary()
@@ -49,7 +49,7 @@ def test_parts_that_touch_need_glue():
 def test_springs_between_parts_connect_them():
     loose = SolidRotor.from_ngsolve(boxes(2, 0.02), MATERIALS, "z", order=1, allow_parts=True)
     arrays = {"mass": loose.mass, "nodes": loose.nodes, "axis": "z"}
-    with pytest.raises(ValueError, match="2 parts .*springs inside the stiffness matrix"):
+    with pytest.raises(ValueError, match=r"2 parts .*springs inside the stiffness matrix"):
         SolidRotor.from_matrices(stiffness=loose.stiffness, **arrays)
     # springs along all three directions between nodes that face each other, across the gap
     stiffness = sp.lil_array(loose.stiffness)

@@ -73,7 +73,9 @@ def _described(
     names = () if elements is None else elements.materials_at(part)
     weight = mass[3 * part].sum()
     sides = " × ".join(f"{side:.3g}" for side in np.ptp(nodes[part], axis=0))
-    place = ", ".join(f"{x:.3g}" for x in nodes[part].mean(axis=0))
+    # a micrometre per metre is precise enough to find a part
+    center = np.round(nodes[part].mean(axis=0) / np.ptp(nodes), 6) * np.ptp(nodes)
+    place = ", ".join(f"{x:.3g}" for x in center)
     return (
         " and ".join(repr(name) for name in names)
         + (": " if names else "")
