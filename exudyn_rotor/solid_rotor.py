@@ -107,7 +107,7 @@ class SolidRotor(FiniteElementRotor):
         model = ngsolve_model.assemble_model(
             mesh, materials, order=order, interfaces=interfaces, check_units=check_units
         )
-        return cls.of_model(model, axis, check_units, allow_parts=allow_parts)
+        return cls._of_model(model, axis, check_units, allow_parts=allow_parts)
 
     @classmethod
     def from_fem_interface(
@@ -144,7 +144,7 @@ class SolidRotor(FiniteElementRotor):
             If nodes carry rotations, something is missing, or a check of the matrices fails.
         """
         model = fem_interface.import_model(fem)
-        return cls.of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
     @classmethod
     def from_matrices(
@@ -195,7 +195,7 @@ class SolidRotor(FiniteElementRotor):
         given = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
         node_sets = {name: _node_set(entry) for name, entry in given.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
-        return cls.of_model(model, axis, check_units, grounded, allow_parts)
+        return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
     def prestress(
         self,

@@ -12,14 +12,14 @@ from exudyn_rotor.prestress.static_solution import relief_under_stress, static_p
 from exudyn_rotor.prestress.static_state import check_static_state
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.rotor import Rotor
+from exudyn_rotor.solid.rotor import Rotor, check_unstressed
 from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 
 
 def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
     """Return the rotor carrying a prestress; see :meth:`exudyn_rotor.SolidRotor.with_prestress`."""
     checks.instance(prestress, "prestress", Prestress, "rotor.prestress() computes one")
-    rotor.check_unstressed()
+    check_unstressed(rotor)
     matrices.check_same_mesh(rotor.nodes, prestress.nodes, "prestress")
     check_static_state(rotor, prestress)
     stiffness = rotor.stiffness

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_rigid_motions, inertia_relief
 from exudyn_rotor.theory.nodal import rotations, skew
@@ -48,7 +48,7 @@ def static_prestress(
     speed: float | None = None,
 ) -> Prestress:
     """Return the prestress; parameters as :meth:`exudyn_rotor.SolidRotor.prestress`."""
-    rotor.check_unstressed()
+    check_unstressed(rotor)
     clamped = checks.labels(clamped, "clamped", rotor.interfaces)
     checks.flag(initial_displacement, "initial_displacement")
     checks.flag(euler, "euler")

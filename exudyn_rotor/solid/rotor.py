@@ -70,7 +70,7 @@ class FiniteElementRotor:
             object.__setattr__(self, name, value)
 
     @classmethod
-    def of_model(
+    def _of_model(
         cls: type[Rotor],
         model: FiniteElementModel,
         axis: AxisLike,
@@ -148,7 +148,7 @@ class FiniteElementRotor:
             If the mass is zero or not finite, more is taken away than the node carries, the
             position is not finite, or the rotor carries a prestress, whose load would change.
         """
-        self.check_unstressed()
+        check_unstressed(self)
         node = self.nearest_node(position)
         matrix = matrices.frozen(add_nodal_mass(self.mass, node, mass))
         distance = float(np.linalg.norm(self.nodes[node] - np.asarray(position, dtype=float)))
@@ -210,7 +210,7 @@ class FiniteElementRotor:
             If an interface is unknown, none is given, all its nodes are on one line, or the rotor
             carries a prestress.
         """
-        self.check_unstressed()
+        check_unstressed(self)
         names = checks.labels(names, "clamped", self.interfaces)
         if not names:
             raise ValueError(
@@ -234,18 +234,18 @@ class FiniteElementRotor:
             elements=None if self.elements is None else self.elements.holding(held),
         )
 
-    def check_unstressed(self) -> None:
-        """Raise ValueError if the rotor carries a prestress."""
-        if self.carried_prestress is not None:
-            raise ValueError(
-                "the rotor carries a prestress already; do this with the rotor before "
-                "with_prestress"
-            )
-
     def __repr__(self) -> str:
         return (
             f"{type(self).__name__}({self.node_count} nodes, {self.total_mass:.6g} kg, "
             f"interfaces {list(self.interfaces)}, {self.rigid_motions} rigid motions free)"
+        )
+
+
+def check_unstressed(rotor: FiniteElementRotor) -> None:
+    """Raise ValueError if the rotor carries a prestress."""
+    if rotor.carried_prestress is not None:
+        raise ValueError(
+            "the rotor carries a prestress already; do this with the rotor before with_prestress"
         )
 
 

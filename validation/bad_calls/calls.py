@@ -198,7 +198,6 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "interfaces": ["left"],
     },
     "SolidRotor.nearest_node": lambda w: {"position": _ZEROS},
-    "SolidRotor.of_model": lambda w: {"model": w.model, "axis": "z", "check_units": True},
     "SolidRotor.prestress": lambda w: {"yield_stress": 1e9, "speed": 10.0},
     "SolidRotor.reduce": lambda w: {"modes": 2},
     "SolidRotor.with_interface": lambda w: {

@@ -38,6 +38,7 @@ BY_NAME: dict[str, Kind] = {
     "allow_negative": v.FLAG,
     "amount": v.NOT_NEGATIVE,
     "angle": v.SIGNED,
+    "allow_parts": v.FLAG,
     "at": _PLACE,
     "ax": v.OBJECT,
     "axes": v.OBJECT,

@@ -18,7 +18,6 @@ from netgen.occ import Box, OCCGeometry, Pnt, Z
 
 import exudyn_rotor as er
 from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.solid.model import FiniteElementModel
 from exudyn_rotor.theory.stiffening import stiffening
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -44,11 +43,6 @@ class World:
     def solid(self) -> er.SolidRotor:
         """The bar with linear elements: some dozen nodes."""
         return er.SolidRotor.from_ngsolve(self.mesh, STEEL, "z", order=1)
-
-    @cached_property
-    def model(self) -> FiniteElementModel:
-        """Its arrays."""
-        return FiniteElementModel(self.solid.nodes, self.solid.mass, self.solid.stiffness)
 
     @cached_property
     def prestress(self) -> er.Prestress:
