@@ -58,9 +58,9 @@ def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
 def kernel_forces(kernel: Kernel, motion: Motion, t: float, q: list, q_t: list) -> np.ndarray:
     form = motion.formulation
     if form.is_constant_speed:
-        if not motion.is_pushed:
+        if not motion.has_body_force:
             return np.zeros(motion.size)
-        return kernel.push_at_constant_speed(t, q, q_t)
+        return kernel.body_force_at_constant_speed(t, q, q_t)
     return getattr(kernel, FORCES[form.has_spin])(t, q, q_t)
 
 

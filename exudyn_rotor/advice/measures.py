@@ -191,7 +191,7 @@ class Measures:
         """
         modes = np.ix_(self.flexible, self.flexible)
         K, G = self.invariants.K[modes], self.invariants.G[modes]
-        C = np.asarray(self.body.motion.C)[modes]
+        C = np.asarray(self.body.motion.spin_terms.C_hat)[modes]
         if self.flexible.size == 0 or self.fastest == 0.0:
             return 0.0
         lowest = np.sqrt(np.diag(K).min())

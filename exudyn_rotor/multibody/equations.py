@@ -113,7 +113,7 @@ def _forces(motion: Motion, kernel: Kernel) -> StateForce | None:
         return kernel.forces_of_free_spin
     if not form.is_constant_speed:
         return kernel.forces_of_driven_spin
-    return kernel.push_at_constant_speed if motion.is_pushed else None
+    return kernel.body_force_at_constant_speed if motion.has_body_force else None
 
 
 def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callable:

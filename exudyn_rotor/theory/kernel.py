@@ -49,10 +49,10 @@ def constant_part(motion: Motion) -> ConstantPart:
     stiffness[modes, modes], damping[modes, modes] = inv.K, inv.D
     force[motion.translations] = motion.weight
     if motion.formulation.is_constant_speed:
-        omega = motion.formulation.spin.speed
-        stiffness[modes, modes] -= omega**2 * motion.C
-        damping[modes, modes] += 2.0 * omega * inv.G
-        force[modes] = omega**2 * inv.h
+        speed, terms = motion.formulation.spin.speed, motion.spin_terms
+        stiffness[modes, modes] += terms.stiffness(speed)
+        damping[modes, modes] += terms.damping(speed)
+        force[modes] = terms.load(speed)
     return ConstantPart(stiffness, damping, force)
 
 
@@ -98,19 +98,20 @@ class Kernel:
         self._motion = motion
         self._first = size - count
         self.spin = int(unknowns[motion.formulation.translation_count])
-        self._table = np.block([[motion.C, inv.h[:, None]], [motion.W, inv.g[:, None]]])
+        terms = motion.spin_terms
+        self._table = np.block([[terms.C_hat, inv.h[:, None]], [terms.W, inv.g[:, None]]])
         self._state = np.ones(count + 1)
         self._zeta = self._state[:count]
         self._products = np.empty(2 * count)
-        self._outward, self.spin_coupling = self._products[:count], self._products[count:]
+        self._centrifugal, self.spin_coupling = self._products[:count], self._products[count:]
         self._h = inv.h
         self._rate = np.empty(count)
-        self._coriolis, self._twice_G = np.empty(count), 2.0 * inv.G
-        self._B = motion.B if np.any(motion.B) else None
+        self._coriolis, self._twice_G = np.empty(count), terms.damping(1.0)
+        self._B = terms.B if np.any(terms.B) else None
         self._force = np.zeros(size)
         self._modal_force = self._force[self._first :]
         self._last: list | None = None
-        self._push = _Push(motion) if motion.is_pushed else None
+        self._body_force = _BodyForce(motion) if motion.has_body_force else None
         self.spin_inertia = inv.Theta
 
     def update(self, q: list) -> None:
@@ -121,8 +122,8 @@ class Kernel:
         self._zeta[:] = q[self._first :]
         np.dot(self._table, self._state, out=self._products)
         # (85): Θ + 2hᵀζ + ζᵀĈζ
-        arm = self._zeta.dot(self._outward) + self._zeta.dot(self._h)
-        self.spin_inertia = self._motion.invariants.Theta + arm
+        change = self._zeta.dot(self._centrifugal) + self._zeta.dot(self._h)
+        self.spin_inertia = self._motion.invariants.Theta + change
 
     def forces_of_free_spin(self, t: float, q: list, q_t: list) -> np.ndarray:
         """Return (86) and (87) for an unknown θ, shape (size,); valid until the next call."""
@@ -130,16 +131,16 @@ class Kernel:
         omega, rate = q_t[self.spin], self._rate
         rate[:] = q_t[self._first :]
         np.dot(self._twice_G, rate, out=self._coriolis)
-        torque = -2.0 * omega * self._outward.dot(rate)
+        torque = -2.0 * omega * self._centrifugal.dot(rate)
         if self._B is not None:
             torque -= rate.dot(self._B.dot(rate))
-        np.multiply(self._outward, omega * omega, out=self._modal_force)
+        np.multiply(self._centrifugal, omega * omega, out=self._modal_force)
         self._coriolis *= omega
         self._modal_force -= self._coriolis
-        if self._push is not None:
-            modal, lever = self._push.at(t, q[self.spin])
+        if self._body_force is not None:
+            modal, by_deflection = self._body_force.at(t, q[self.spin])
             self._modal_force += modal
-            torque += self._push.own + self._zeta.dot(lever)
+            torque += self._body_force.torque + self._zeta.dot(by_deflection)
         self._force[self.spin] = torque
         return self._force
 
@@ -150,21 +151,21 @@ class Kernel:
         omega, acceleration = spin.rate(t), spin.acceleration(t)
         self._rate[:] = q_t[self._first :]
         np.dot(self._twice_G, self._rate, out=self._coriolis)
-        np.multiply(self._outward, omega * omega, out=self._modal_force)
+        np.multiply(self._centrifugal, omega * omega, out=self._modal_force)
         self._coriolis *= omega
         self._modal_force -= self._coriolis
         self._modal_force -= acceleration * self.spin_coupling
-        if self._push is not None:
-            self._modal_force += self._push.at(t, spin.value(t))[0]
+        if self._body_force is not None:
+            self._modal_force += self._body_force.at(t, spin.value(t))[0]
         return self._force
 
-    def push_at_constant_speed(self, t: float, q: list, q_t: list) -> np.ndarray:
+    def body_force_at_constant_speed(self, t: float, q: list, q_t: list) -> np.ndarray:
         """Return gravity and the frame's acceleration of (108), shape (size,), as above."""
-        self._modal_force[:] = self._push.at(t, self._motion.formulation.spin.value(t))[0]
+        self._modal_force[:] = self._body_force.at(t, self._motion.formulation.spin.value(t))[0]
         return self._force
 
 
-class _Push:
+class _BodyForce:
     """Gravity less the frame's acceleration on the modes and, by their deflection, on the spin.
 
     With ``Aᵀv = (e·v)e + cosθ (v − (e·v)e) − sinθ ẽv`` (55), all of it is linear in
@@ -176,20 +177,20 @@ class _Push:
         e = inv.direction
         along = np.outer(e, e)
         turns = np.stack([along, np.eye(3) - along, -skew(e)], axis=1) @ motion.orientation.T
-        rows = np.vstack([inv.S.T, motion.S1.T, motion.lever[None, :]])
+        rows = np.vstack([inv.S.T, motion.S1.T, motion.static_unbalance[None, :]])
         self._table = np.einsum("ra,akv->rkv", rows, turns)
         self._gravity = motion.gravity
         form = motion.formulation
         self._acceleration = form.translation.acceleration if form.moves_origin else None
         self._constant = self._table @ motion.gravity
         self._count = inv.size
-        self.own = 0.0  # lever · push, the moment of the unbalance
+        self.torque = 0.0  # on the undeformed rotor's static unbalance
 
     def at(self, t: float, theta: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return ``Sᵀ push`` and ``S*ᵀ push``, each (m,)."""
+        """Return ``Sᵀ a`` and ``S*ᵀ a`` of the body acceleration a in rotor axes, each (m,)."""
         table = self._constant
         if self._acceleration is not None:
             table = self._table @ (self._gravity - np.asarray(self._acceleration(t), dtype=float))
-        push = table @ (1.0, math.cos(theta), math.sin(theta))
-        self.own = push[-1]
-        return push[: self._count], push[self._count : -1]
+        products = table @ (1.0, math.cos(theta), math.sin(theta))
+        self.torque = products[-1]
+        return products[: self._count], products[self._count : -1]

@@ -26,6 +26,7 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
 
 
@@ -38,7 +39,7 @@ class _State:
     zeta: np.ndarray
     zeta_t: np.ndarray
     A: np.ndarray | None = None  # NᵀA(θ), rows: unknown translations
-    push: np.ndarray | None = None  # gravity minus frame acceleration, rotor axes
+    body_acceleration: np.ndarray | None = None  # gravity less the frame's, rotor axes
 
 
 class Motion:
@@ -63,11 +64,11 @@ class Motion:
         Number of unknowns: translations, then θ, then modal coordinates.
     free_directions : ndarray, shape (3, 0…3)
         Inertial directions of the unknown translations, ``N`` (89).
-    C, W, B : shape (m, m)
-        ``C − K2``, ``G + B`` and B of the kinetic energy above.
+    spin_terms : SpinTerms
+        What the spin adds to the equations of the modal coordinates.
     translations, modes : slice
         Where the translations and the modal coordinates stand among the unknowns.
-    is_coupled, is_pushed : bool
+    is_coupled, has_body_force : bool
         Whether translations are coupled with other unknowns, and whether gravity or the frame's
         acceleration acts on any but them. Terms that vanish for this rotor are left out of every
         step.
@@ -92,8 +93,7 @@ class Motion:
     ) -> None:
         self.invariants = checks.instance(invariants, "invariants", Invariants)
         self.formulation = checks.instance(formulation, "formulation", Formulation)
-        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
-        checks.matrix(second_order.K2, "second_order: K2", shape=invariants.M.shape)
+        self.spin_terms = SpinTerms.of(invariants, second_order)
         self.orientation = np.eye(3)
         if orientation is not None:
             self.orientation = checks.rotation(orientation, "orientation")
@@ -101,20 +101,17 @@ class Motion:
         if plane is not None:
             plane = checks.array(plane, "plane", shape=(3, 2))
         self._e = skew(invariants.direction)
-        self._turn = SpinAxis(invariants.direction)
+        self._axis = SpinAxis(invariants.direction)
         self.free_directions = self._free_directions(plane)
-        self.C = invariants.C - second_order.K2
-        self.B = second_order.B
-        self.W = invariants.G + second_order.B
         counts = (formulation.translation_count, int(formulation.has_spin), invariants.size)
         ends = np.cumsum(counts)
-        self.translations, self._r, self.modes = (
+        self.translations, self._spin, self.modes = (
             slice(end - count, end) for end, count in zip(ends, counts, strict=True)
         )
         self.size = int(ends[-1])
-        self.is_pushed = bool(
+        self.has_body_force = bool(
             (formulation.moves_origin or np.any(self.gravity))
-            and (np.any(invariants.S) or np.any(self.lever))
+            and (np.any(invariants.S) or np.any(self.static_unbalance))
         )
         self.weight = invariants.mass * (self.free_directions.T @ self.gravity)
 
@@ -123,14 +120,14 @@ class Motion:
         if count == 3:
             return np.eye(3)
         if plane is None:
-            plane = self.orientation @ self._turn.plane
+            plane = self.orientation @ self._axis.plane
         if count == 2:
             return plane
         return np.zeros((3, 0))
 
     @cached_property
-    def lever(self) -> np.ndarray:
-        """``mχ*`` (67) [kg m]."""
+    def static_unbalance(self) -> np.ndarray:
+        """``mχ*`` (67) [kg m], a quarter turn ahead of the centre of mass, rotor axes."""
         return self.invariants.mass * self._e @ self.invariants.center
 
     @cached_property
@@ -154,7 +151,7 @@ class Motion:
         """True when ``mχ*`` or S couple unknown translations with the other coordinates."""
         count = self.formulation.translation_count
         seen = self.invariants.S if count == 3 else self.S1  # in the plane, S* is S turned
-        return bool(count and (np.any(self.lever) or np.any(seen)))
+        return bool(count and (np.any(self.static_unbalance) or np.any(seen)))
 
     @property
     def is_constant(self) -> bool:
@@ -164,7 +161,7 @@ class Motion:
             form.is_constant_speed
             and not self.is_coupled
             and not form.moves_origin
-            and not self.is_pushed
+            and not self.has_body_force
         )
 
     def mass_matrix(self, t: float, q: ArrayLike) -> np.ndarray | sp.csr_array:
@@ -177,10 +174,10 @@ class Motion:
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
             blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
-            blocks["r", "f"] = (inv.g + self.W @ now.zeta)[None, :]
+            blocks["r", "f"] = (inv.g + self.spin_terms.W @ now.zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
             if self.is_coupled:
-                blocks["t", "r"] = (now.A @ self._imbalance(now.zeta))[:, None]
+                blocks["t", "r"] = (now.A @ self._unbalance(now.zeta))[:, None]
                 blocks["r", "t"] = blocks["t", "r"].T
         return self._placed(blocks, self._constant_mass)
 
@@ -189,47 +186,41 @@ class Motion:
 
         (66), (86), (87), the prescribed accelerations of (108), and App. A.
         """
-        inv = self.invariants
+        terms = self.spin_terms
         now = self._state(t, q, q_t)
-        omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
         force = np.zeros(self.size)
-        outward = inv.h + self.C @ zeta
-        force[self.modes] = (
-            outward * omega**2 - 2.0 * omega * (inv.G @ zeta_t) - inv.K @ zeta - inv.D @ zeta_t
-        )
-        if now.omega_t:
-            force[self.modes] -= (inv.g + self.W @ zeta) * now.omega_t
+        by_zeta, by_rate = self._modal_jacobian(now)
+        load = terms.load(now.omega, now.omega_t)
+        force[self.modes] = load + by_zeta @ now.zeta + by_rate @ now.zeta_t
         if self.formulation.has_spin:
-            force[self._r] = -2.0 * omega * (outward @ zeta_t) - zeta_t @ (self.B @ zeta_t)
+            coriolis = 2.0 * now.omega * (self._centrifugal(now.zeta) @ now.zeta_t)
+            force[self._spin] = -coriolis - now.zeta_t @ (terms.B @ now.zeta_t)
         force[self.translations] = self.weight
-        if self.is_pushed:
-            self._add_push(now, force)
+        if self.has_body_force:
+            self._add_body_force(now, force)
         if self.is_coupled:
-            force[self.translations] -= now.A @ self._swing(now)
+            force[self.translations] -= now.A @ self._inertia_force(now)
         return force
 
     def jacobian(
         self, t: float, q: ArrayLike, q_t: ArrayLike
     ) -> tuple[np.ndarray | sp.csr_array, np.ndarray | sp.csr_array]:
         """Return the derivatives of :meth:`forces` by q and by q̇, each (size, size)."""
-        inv = self.invariants
+        terms = self.spin_terms
         now = self._state(t, q, q_t)
         omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
-        by_q = {("f", "f"): omega**2 * self.C - inv.K}
-        by_v = {("f", "f"): -2.0 * omega * inv.G - inv.D}
-        if now.omega_t:
-            by_q["f", "f"] = by_q["f", "f"] - now.omega_t * self.W
+        by_q, by_v = ({("f", "f"): block} for block in self._modal_jacobian(now))
         if self.formulation.has_spin:
-            outward = inv.h + self.C @ zeta
-            by_q["r", "f"] = -2.0 * omega * (self.C @ zeta_t)[None, :]
-            by_v["f", "r"] = (2.0 * omega * outward - 2.0 * (inv.G @ zeta_t))[:, None]
-            by_v["r", "r"] = [[-2.0 * outward @ zeta_t]]
-            by_v["r", "f"] = (-2.0 * omega * outward - 2.0 * (self.B @ zeta_t))[None, :]
-            if self.is_pushed:
-                turned = -self._e @ now.push
-                by_q["f", "r"] = (inv.S.T @ turned)[:, None]
-                by_q["r", "r"] = [[self._imbalance(zeta) @ turned]]
-                by_q["r", "f"] = by_q["r", "f"] + self.S1.T @ now.push
+            centrifugal = self._centrifugal(zeta)
+            by_q["r", "f"] = -2.0 * omega * (terms.C_hat @ zeta_t)[None, :]
+            by_v["f", "r"] = 2.0 * (omega * centrifugal - terms.G @ zeta_t)[:, None]
+            by_v["r", "r"] = [[-2.0 * centrifugal @ zeta_t]]
+            by_v["r", "f"] = -2.0 * (omega * centrifugal + terms.B @ zeta_t)[None, :]
+            if self.has_body_force:
+                by_angle = -self._e @ now.body_acceleration
+                by_q["f", "r"] = (self.invariants.S.T @ by_angle)[:, None]
+                by_q["r", "r"] = [[self._unbalance(zeta) @ by_angle]]
+                by_q["r", "f"] = by_q["r", "f"] + self.S1.T @ now.body_acceleration
         if self.is_coupled:
             self._add_translational_jacobian(now, by_q, by_v)
         empty = 0.0 * self._constant_mass
@@ -255,44 +246,55 @@ class Motion:
 
         The row of θ that a prescribed spin removes: (84–86) times the accelerations.
         """
-        inv = self.invariants
-        zeta_tt = checks.vector(zeta_tt, "zeta_tt", size=inv.size)
+        terms = self.spin_terms
+        zeta_tt = checks.vector(zeta_tt, "zeta_tt", size=self.invariants.size)
         now = self._state(t, q, q_t)
-        inertia = self._spin_inertia(now.zeta) * now.omega_t + (inv.g + self.W @ now.zeta) @ zeta_tt
-        coriolis = 2.0 * now.omega * (inv.h + self.C @ now.zeta) @ now.zeta_t
-        return float(inertia + coriolis + now.zeta_t @ (self.B @ now.zeta_t)) - (
-            float(self._imbalance(now.zeta) @ now.push) if self.is_pushed else 0.0
-        )
+        torque = self._spin_inertia(now.zeta) * now.omega_t
+        torque += (terms.g + terms.W @ now.zeta) @ zeta_tt
+        torque += 2.0 * now.omega * (self._centrifugal(now.zeta) @ now.zeta_t)
+        torque += now.zeta_t @ (terms.B @ now.zeta_t)
+        if self.has_body_force:
+            torque -= self._unbalance(now.zeta) @ now.body_acceleration
+        return float(torque)
+
+    def _modal_jacobian(self, now: _State) -> tuple[np.ndarray | sp.csr_array, ...]:
+        """Return ``−(K − ω²Ĉ + ω̇W)`` and ``−(D + 2ωG)``."""
+        inv, terms = self.invariants, self.spin_terms
+        by_zeta = -inv.K - terms.stiffness(now.omega, now.omega_t)
+        return by_zeta, -inv.D - terms.damping(now.omega)
+
+    def _centrifugal(self, zeta: np.ndarray) -> np.ndarray:
+        """``h + Ĉζ``, the centrifugal load per ω² of (87)."""
+        return self.spin_terms.h + self.spin_terms.C_hat @ zeta
 
     def _spin_inertia(self, zeta: np.ndarray) -> float:
         """(85)."""
-        inv = self.invariants
-        return inv.Theta + (2.0 * inv.h + self.C @ zeta) @ zeta
+        return self.invariants.Theta + (self.spin_terms.h + self._centrifugal(zeta)) @ zeta
 
-    def _imbalance(self, zeta: np.ndarray) -> np.ndarray:
-        """``mχ* + S*ζ``, the bracket of (65), rotor axes."""
-        return self.lever + self.S1 @ zeta
+    def _unbalance(self, zeta: np.ndarray) -> np.ndarray:
+        """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
+        return self.static_unbalance + self.S1 @ zeta
 
-    def _add_push(self, now: _State, force: np.ndarray) -> None:
+    def _add_body_force(self, now: _State, force: np.ndarray) -> None:
         """Add gravity (App. A) and the frame's prescribed acceleration (108)."""
-        force[self.modes] += self.invariants.S.T @ now.push
+        force[self.modes] += self.invariants.S.T @ now.body_acceleration
         if self.formulation.has_spin:
-            force[self._r] += self._imbalance(now.zeta) @ now.push
+            force[self._spin] += self._unbalance(now.zeta) @ now.body_acceleration
 
-    def _swing(self, now: _State) -> np.ndarray:
+    def _inertia_force(self, now: _State) -> np.ndarray:
         """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
-        arm = self._imbalance(now.zeta)
-        centrifugal = now.omega**2 * (self._e @ arm)
-        return centrifugal + 2.0 * now.omega * (self.S1 @ now.zeta_t) + now.omega_t * arm
+        unbalance = self._unbalance(now.zeta)
+        centrifugal = now.omega**2 * (self._e @ unbalance)
+        return centrifugal + 2.0 * now.omega * (self.S1 @ now.zeta_t) + now.omega_t * unbalance
 
     def _add_translational_jacobian(self, now: _State, by_q: dict, by_v: dict) -> None:
-        omega, arm = now.omega, self._imbalance(now.zeta)
+        omega, unbalance = now.omega, self._unbalance(now.zeta)
         turning = omega**2 * self._e + now.omega_t * np.eye(3)
         by_q["t", "f"] = -now.A @ turning @ self.S1
         by_v["t", "f"] = -2.0 * omega * now.A @ self.S1
         if self.formulation.has_spin:
-            by_q["t", "r"] = -(now.A @ self._e @ self._swing(now))[:, None]
-            by_rate = 2.0 * omega * (self._e @ arm) + 2.0 * (self.S1 @ now.zeta_t)
+            by_q["t", "r"] = -(now.A @ self._e @ self._inertia_force(now))[:, None]
+            by_rate = 2.0 * omega * (self._e @ unbalance) + 2.0 * (self.S1 @ now.zeta_t)
             by_v["t", "r"] = -(now.A @ by_rate)[:, None]
 
     def _coordinates(self, values: ArrayLike, name: str) -> np.ndarray:
@@ -308,30 +310,30 @@ class Motion:
         if type(t) is not float or not math.isfinite(t):
             t = checks.number(t, "t", "s")
         if form.has_spin:
-            theta, omega, omega_t = float(q[self._r][0]), float(q_t[self._r][0]), 0.0
+            theta, omega, omega_t = float(q[self._spin][0]), float(q_t[self._spin][0]), 0.0
         else:
             theta, omega = form.spin.value(t), form.spin.rate(t)
             omega_t = form.spin.acceleration(t)
         zeta, zeta_t = q[self.modes], q_t[self.modes]
-        if not (self.is_coupled or self.is_pushed):
+        if not (self.is_coupled or self.has_body_force):
             return _State(omega, omega_t, zeta, zeta_t)
-        rotation = self.orientation @ self._turn.rotation(theta)
-        push = self.gravity
+        rotation = self.orientation @ self._axis.rotation(theta)
+        acceleration = self.gravity
         if form.moves_origin:
-            push = push - np.asarray(form.translation.acceleration(t), dtype=float)
-        A, push = self.free_directions.T @ rotation, rotation.T @ push
-        return _State(omega, omega_t, zeta, zeta_t, A, push)
+            acceleration = acceleration - np.asarray(form.translation.acceleration(t), dtype=float)
+        A = self.free_directions.T @ rotation
+        return _State(omega, omega_t, zeta, zeta_t, A, rotation.T @ acceleration)
 
     def _placed(self, blocks: dict, base: np.ndarray | sp.csr_array) -> np.ndarray | sp.csr_array:
         """Return `base` with the blocks of t, r, f put in, sparse where the invariants are."""
-        places = {"t": self.translations, "r": self._r, "f": self.modes}
+        places = {"t": self.translations, "r": self._spin, "f": self.modes}
         matrix = base.copy()
         for (row, column), block in blocks.items():
             if not self.invariants.is_sparse:
                 matrix[places[row], places[column]] = block
                 continue
-            part = sp.coo_array(block)
-            rows, columns = part.coords
+            entries = sp.coo_array(block)
+            rows, columns = entries.coords
             place = (rows + places[row].start, columns + places[column].start)
-            matrix = matrix + sp.csr_array((part.data, place), shape=matrix.shape)
+            matrix = matrix + sp.csr_array((entries.data, place), shape=matrix.shape)
         return matrix
