@@ -1,0 +1,77 @@
+"""What a spin adds to the linear equations of the modal coordinates; every term stands here once.
+
+    M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
+
+With centrifugal stiffening (:mod:`exudyn_rotor.theory.stiffening`) ``Ĉ = C − K2`` and
+``W = G + B``; the paper's equations are K2 = B = 0.
+
+Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.theory.invariants import Invariants, Matrix
+from exudyn_rotor.theory.stiffening import Stiffening
+
+
+@dataclass(frozen=True, eq=False)
+class SpinTerms:
+    """Matrices and loads that a spin adds, in a basis of k columns.
+
+    Attributes
+    ----------
+    G : shape (k, k)
+        Gyroscopic matrix (80).
+    C_hat : shape (k, k)
+        Spin softening less stiffening per ω², ``Ĉ = C − K2``.
+    W, B : shape (k, k)
+        ``G + B``, and the stiffness of the Euler field per ω̇.
+    h, g : ndarray, shape (k,)
+        Centrifugal load per ω² (83), and mass moment of the Euler load per −ω̇ (82).
+    """
+
+    G: Matrix
+    C_hat: Matrix
+    W: Matrix
+    B: Matrix
+    h: np.ndarray
+    g: np.ndarray
+
+    @classmethod
+    def of(cls, invariants: Invariants, second_order: Stiffening) -> SpinTerms:
+        """Return the terms of a basis with its second-order terms, origin on the spin axis.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other kinds of objects, or matrices of another size.
+        """
+        checks.instance(invariants, "invariants", Invariants)
+        checks.instance(second_order, "second_order", Stiffening, "stiffening(…) makes one")
+        K2 = checks.matrix(second_order.K2, "second_order: K2", shape=invariants.C.shape)
+        return cls(
+            G=invariants.G,
+            C_hat=invariants.C - K2,
+            W=invariants.G + second_order.B,
+            B=second_order.B,
+            h=invariants.h,
+            g=invariants.g,
+        )
+
+    def damping(self, speed: float) -> Matrix:
+        """Return the Coriolis matrix ``2ωG`` at a spin speed [rad/s]."""
+        return 2.0 * speed * self.G
+
+    def stiffness(self, speed: float, acceleration: float = 0.0) -> Matrix:
+        """Return ``−ω²Ĉ + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
+        centrifugal = -(speed**2) * self.C_hat
+        return centrifugal + acceleration * self.W if acceleration else centrifugal
+
+    def load(self, speed: float, acceleration: float = 0.0) -> np.ndarray:
+        """Return ``ω²h − ω̇g``, shape (k,), of the rotor's own eccentricity."""
+        return speed**2 * self.h - acceleration * self.g
