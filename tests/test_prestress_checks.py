@@ -360,9 +360,9 @@ def on_edge(rotor: SolidRotor) -> np.ndarray:
     [
         (np.nan, ValueError, "speed: needs a finite number"),
         (np.inf, ValueError, "speed: needs a finite number"),
-        ("a", TypeError, "speed: needs one number .* got 'a'"),
-        (np.ones(2), TypeError, "speed: needs one number"),
-        (None, TypeError, "speed: needs one number"),
+        ("a", TypeError, "speed: needs a finite number .* got 'a'"),
+        (np.ones(2), TypeError, "speed: needs a finite number"),
+        (None, TypeError, "speed: needs a finite number"),
     ],
 )
 def test_speed_of_static_fields_is_one_finite_number(stretched, speed, error, message):

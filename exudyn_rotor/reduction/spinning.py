@@ -12,6 +12,10 @@ from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import block_diagonal
+from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import Stiffening
 
 _ACROSS = 1e-2  # share of its energy across the axis from which a mode feels Coriolis forces
 
@@ -61,21 +65,34 @@ def spinning_modes(
             "spinning_modes: the rotor carries no prestress; use "
             "rotor.with_prestress(rotor.prestress())"
         )
+    terms = _spin_terms(rotor)
     rest = free_modes(rotor, count, tolerance=tolerance)
-    found, labels = [rest.matrix], list(rest.labels)
+    columns, labels = [rest.matrix], list(rest.labels)
     for speed in speeds:
-        for name, part in zip(
-            ("mode", "Coriolis response"), _modes_at(rotor, count, speed, tolerance), strict=True
-        ):
-            found.append(part)
-            labels += [f"{name} {i + 1} at {speed:.6g} rad/s" for i in range(part.shape[1])]
+        kinds = zip(
+            ("mode", "Coriolis response"),
+            _modes_at(rotor, terms, count, speed, tolerance),
+            strict=True,
+        )
+        for name, shapes in kinds:
+            columns.append(shapes)
+            labels += [f"{name} {i + 1} at {speed:.6g} rad/s" for i in range(shapes.shape[1])]
     frequencies = np.full(len(labels), np.nan)
     frequencies[:count] = rest.frequencies
-    return ModeBasis(np.hstack(found), tuple(labels), rotor.nodes, frequencies)
+    return ModeBasis(np.hstack(columns), tuple(labels), rotor.nodes, frequencies)
+
+
+def _spin_terms(rotor: FiniteElementRotor) -> SpinTerms:
+    """Return the terms of the full model with its prestress, origin anywhere."""
+    identity = sp.eye_array(rotor.nodes.size, format="csr")
+    matrices = (rotor.mass, rotor.stiffness, None)
+    invariants = Invariants.of(rotor.nodes, *matrices, identity, rotor.axis.direction)
+    K_G = rotor.carried_prestress.matrix
+    return SpinTerms.of(invariants, Stiffening(K_G, 0.0 * K_G))
 
 
 def _modes_at(
-    rotor: FiniteElementRotor, count: int, speed: float, tolerance: float
+    rotor: FiniteElementRotor, terms: SpinTerms, count: int, speed: float, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest modes at a speed, and the static responses to their Coriolis forces.
 
@@ -83,9 +100,7 @@ def _modes_at(
     """
     wanted = count + rotor.rigid_motions
     check_count(wanted, 3 * rotor.node_count, smallest=1)
-    e = rotor.axis.direction
-    softening = sp.kron(rotor.mass[::3, ::3], np.eye(3) - np.outer(e, e), format="csr")
-    stiffness = rotor.stiffness + speed**2 * (rotor.carried_prestress.matrix - softening)
+    stiffness = rotor.stiffness + terms.stiffness(speed)
     # softening takes at most Ω² from any eigenvalue, so that this is definite unless K_G buckles
     shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
     try:
@@ -100,7 +115,8 @@ def _modes_at(
     else:
         _, modes = lanczos.lanczos_modes(shifted, rotor.mass, solve, wanted, tolerance)
     modes = lanczos.with_fixed_sign(modes)
-    turned = np.cross(e, modes.reshape(-1, 3, wanted), axisb=1, axisc=1).reshape(modes.shape)
-    forces = rotor.mass @ turned
-    share = np.einsum("ik,ik->k", turned, forces)  # of a mode's energy that moves across e
+    forces = terms.G @ modes
+    # (ẽφ)ᵀMẽφ, the share of a mode's energy that moves across e
+    turned = block_diagonal(rotor.axis.skew, rotor.node_count) @ modes
+    share = np.einsum("ik,ik->k", turned, forces)
     return modes, solve(forces[:, share > _ACROSS])
