@@ -53,11 +53,9 @@ class Plan:
 def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
     formulation, place = setup.formulation, setup.placement
-    selection = select_modes(reduced, formulation, setup.negligible)
+    damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
+    selection = select_modes(damped, formulation, setup.negligible)
     invariants = selection.invariants
-    mode_mass = selection.T.T @ reduced.mode_mass @ selection.T
-    damping = setup.mass_damping * mode_mass + setup.stiffness_damping * invariants.K
-    invariants = replace(invariants, D=invariants.D + damping)
     direction = reduced.axis.direction
     frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction)

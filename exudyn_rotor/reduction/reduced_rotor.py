@@ -267,6 +267,33 @@ class ReducedRotor:
         """Return the rotor without fields at mesh nodes: the least to store and to simulate."""
         return replace(self, shapes=None, centrifugal=None)
 
+    def with_damping(self, *, mass: float = 0.0, stiffness: float = 0.0) -> ReducedRotor:
+        """Return the rotor with Rayleigh damping of its own material added to what it has.
+
+        It acts in the rotor frame, where it makes a rotor unstable above a critical speed. Scenes
+        and all linear analyses take it; ``add_rotor`` has the same as ``mass_damping`` and
+        ``stiffness_damping`` for one body.
+
+        Parameters
+        ----------
+        mass : float, optional
+            Damping per modal mass [1/s]; rigid motions are not damped (:attr:`mode_mass`).
+        stiffness : float, optional
+            Damping per modal stiffness [s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            If a factor is no number, or negative.
+        """
+        mass = checks.number(mass, "mass", "1/s", least=0.0)
+        stiffness = checks.number(stiffness, "stiffness", "s", least=0.0)
+        inv, added = self.invariants, self.with_attachments
+        damping = inv.D + mass * self.mode_mass + stiffness * inv.K
+        if added is not None:
+            added = added.with_damping(mass=mass, stiffness=stiffness)
+        return replace(self, invariants=replace(inv, D=damping), with_attachments=added)
+
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.
 
