@@ -193,7 +193,7 @@ class SolidRotor(FiniteElementRotor):
             rigid motions, node numbers, units.
         """
         given = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: _node_set(entry) for name, entry in given.items()}
+        node_sets = {name: _node_set(name, entry) for name, entry in given.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
@@ -321,8 +321,9 @@ class SolidRotor(FiniteElementRotor):
         return summary(self)
 
 
-def _node_set(entry: Any) -> NodeSet:
+def _node_set(name: str, entry: Any) -> NodeSet:
     """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
-    if isinstance(entry, tuple) and len(entry) == 2 and np.ndim(entry[0]) == 1:
-        return entry
-    return entry, None
+    nodes, weights = entry, None
+    if isinstance(entry, tuple) and len(entry) == 2 and not np.isscalar(entry[0]):
+        nodes, weights = entry
+    return checks.array(nodes, f"interfaces: {name!r}: nodes", dtype=int), weights

@@ -290,8 +290,8 @@ def test_clamped_rows_have_no_geometric_stiffness(beam):
 
 
 def test_clamping_needs_a_known_interface(beam):
-    for names in ("nose", []):
-        with pytest.raises(ValueError, match="clamped: interfaces"):
+    for names, message in (("nose", "names: 'nose' is unknown"), ([], "names: needs one")):
+        with pytest.raises(ValueError, match=message):
             beam.clamped(names)
 
 

@@ -74,7 +74,7 @@ def test_shapes(changes, message):
         ({"triangles": [[0.0, 1.0, 2.0]]}, "triangles: needs whole numbers of an integer type"),
         (
             {"interfaces": {"a": [0.0, 1.0]}},
-            "interface 'a': nodes: needs whole numbers of an integer type",
+            "interfaces: 'a': nodes: needs whole numbers of an integer type",
         ),
     ],
 )
@@ -263,13 +263,13 @@ def test_regions_without_material():
     [
         (
             {"youngsModulus": 0.0},
-            r"material 'steel': youngsModulus: needs a finite number \[Pa\] > 0, got 0.0",
+            r"materials: 'steel': youngsModulus: needs a finite number \[Pa\] > 0, got 0.0",
         ),
-        ({"youngsModulus": np.nan}, "material 'steel': youngsModulus: .* got nan"),
-        ({"poissonsRatio": 0.5}, "material 'steel': poissonsRatio: .* > -1 and < 0.5, got 0.5"),
-        ({"poissonsRatio": -1.0}, "material 'steel': poissonsRatio: .* got -1.0"),
-        ({"density": -7850.0}, r"material 'steel': density: needs a finite number \[kg/m³\] > 0"),
-        ({"colour": 1.0}, "material 'steel': needs exactly the keys"),
+        ({"youngsModulus": np.nan}, "materials: 'steel': youngsModulus: .* got nan"),
+        ({"poissonsRatio": 0.5}, "materials: 'steel': poissonsRatio: .* > -1 and < 0.5, got 0.5"),
+        ({"poissonsRatio": -1.0}, "materials: 'steel': poissonsRatio: .* got -1.0"),
+        ({"density": -7850.0}, r"materials: 'steel': density: needs a finite number \[kg/m³\] > 0"),
+        ({"colour": 1.0}, "materials: 'steel': needs exactly the keys"),
         ({"density": 7.85e-9, "youngsModulus": 2.1e5}, "mm and tonnes.*check_units=False"),
         ({"density": 7.85e-6}, "mm and kg.*convert to SI"),
         ({"youngsModulus": 2.1e5}, "wave speed of 5.17 m/s.*cannot be"),

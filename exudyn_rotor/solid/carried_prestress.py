@@ -69,10 +69,9 @@ class Prestress:
             "initial_displacement": checks.flag(self.initial_displacement, "initial_displacement"),
             "balanced": checks.flag(self.balanced, "balanced"),
         }
-        labels = {"euler": "Euler prestress matrix", "constant": "constant prestress matrix"}
-        for name, label in labels.items():
+        for name in ("euler", "constant"):
             if getattr(self, name) is not None:
-                checked[name] = matrices.as_matrix(label, getattr(self, name), count)
+                checked[name] = matrices.as_matrix(f"{name} matrix", getattr(self, name), count)
         shapes = {
             "displacement": (3 * count,),
             "load": (3 * count,),

@@ -21,8 +21,9 @@ class Interface:
     name : str
     nodes : ndarray of int, shape (k,)
         Node numbers in the mesh.
-    weights : ndarray, shape (k,)
-        Shares of the interface's area, positive, summing to one.
+    weights : array_like, shape (k,)
+        Shares of the interface's area, not negative; kept such that they sum to one. Equal ones
+        for None.
     positions : ndarray, shape (k, 3)
         Reference positions of these nodes in mesh coordinates [m].
     reference : ndarray, shape (3,), optional
@@ -32,7 +33,7 @@ class Interface:
 
     name: str
     nodes: np.ndarray
-    weights: np.ndarray
+    weights: np.ndarray | None
     positions: np.ndarray
     reference: np.ndarray | None = None
     center: np.ndarray = field(init=False)
@@ -65,6 +66,7 @@ class Interface:
 
     def centered_on(self, point: np.ndarray) -> Interface:
         """Return the interface with its reference point moved to `point`, weights unchanged."""
+        point = checks.vector(point, "point", "m")
         return Interface(self.name, self.nodes, self.weights, self.positions, point)
 
     def mean_motion(self, node_count: int) -> sp.csr_array:
@@ -75,6 +77,7 @@ class Interface:
         Exudyn's ``MarkerSuperElementRigid`` uses (``useAlternativeApproach=True``). Directions in
         which the nodes have no arm (a single node, nodes on a line) get no rotation.
         """
+        node_count = checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
         arms = self.positions - self.center
         tildes = np.array([skew(arm) for arm in arms])
         inertia = -np.einsum("k,kab,kbc->ac", self.weights, tildes, tildes)

@@ -14,6 +14,8 @@ from exudyn_rotor import checks
 # Relative to the largest entry: well above the rounding of any assembly, far below a wrong matrix.
 SYMMETRY_TOLERANCE = 1e-8
 BLOCK_TOLERANCE = 1e-8
+# of a node [m]: nothing that spins is near that, and squares stay far from overflow
+_FARTHEST = 1e9
 # node positions agree if they differ by less than this share of the mesh's size
 _POSITION_TOLERANCE = 1e-9
 
@@ -40,6 +42,11 @@ def as_nodes(nodes: Any) -> np.ndarray:
     if bad.size:
         raise ValueError(
             f"nodes: {bad.size} of {len(positions)} positions are not finite, {_some(bad)}"
+        )
+    if np.abs(positions).max() > _FARTHEST:
+        raise ValueError(
+            f"nodes: positions need coordinates below {_FARTHEST:g} m, got "
+            f"{np.abs(positions).max():.3g} m"
         )
     return positions
 
@@ -179,7 +186,7 @@ def as_node_numbers(name: str, nodes: Any, node_count: int | None = None) -> np.
         raise ValueError(f"interface {name!r} has no nodes; check the face name or the node list")
     if numbers.ndim != 1:
         raise ValueError(
-            f"interface {name!r}: needs a flat list of node numbers, got the shape {numbers.shape}"
+            f"interface {name!r}: nodes: needs a flat list of them, got the shape {numbers.shape}"
         )
     end = np.inf if node_count is None else node_count
     outside = numbers[(numbers < 0) | (numbers >= end)]

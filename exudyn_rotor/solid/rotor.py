@@ -211,10 +211,10 @@ class FiniteElementRotor:
             carries a prestress.
         """
         check_unstressed(self)
-        names = checks.labels(names, "clamped", self.interfaces)
+        names = checks.labels(names, "names", self.interfaces)
         if not names:
             raise ValueError(
-                f"clamped: needs one interface or more of {list(self.interfaces)}, got none"
+                f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
         if rigid_basis(self.nodes[held]).shape[1] < 6:

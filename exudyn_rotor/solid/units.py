@@ -70,13 +70,13 @@ def check_material_units(name: str, material: Material) -> None:
     speed = np.sqrt(material["youngsModulus"] / density)
     if not _inside(density, DENSITY_RANGE):
         raise ValueError(
-            f"material {name!r}: a density of {density:g} kg/m³ cannot be; "
+            f"materials: {name!r}: a density of {density:g} kg/m³ cannot be; "
             f"{_guess(density)} {_ADVICE}"
         )
     if not _inside(speed, WAVE_SPEED_RANGE):
         raise ValueError(
-            f"material {name!r}: Young's modulus and density give a wave speed of {speed:.3g} m/s "
-            f"(steel: 5200), which cannot be; {_ADVICE}"
+            f"materials: {name!r}: Young's modulus and density give a wave speed of "
+            f"{speed:.3g} m/s (steel: 5200), which cannot be; {_ADVICE}"
         )
 
 
@@ -100,7 +100,7 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
 
 
 def _checked_material(name: str, material: Any) -> Material:
-    label = f"material {name!r}"
+    label = f"materials: {name!r}"
     checks.mapping(material, label, "number")
     if set(material) != set(MATERIAL_KEYS):
         raise ValueError(
