@@ -32,6 +32,9 @@ expected = [whirl[0], whirl[0], 1200.0, whirl[1], whirl[1], 2000.0]
 assert np.allclose(at_300, expected, rtol=1e-12)
 assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotating[0], expected, rtol=1e-12)
 
-made, axes = plotting.figure()
-plotting.plot_campbell(axes, campbell(rotor, np.linspace(0.0, 900.0, 91)))
+result = campbell(rotor, np.linspace(0.0, 900.0, 91))
+made, ax = plotting.figure()
+ax.plot(result.speeds, result.frequencies_rotating, color=plotting.COLORS[0])
+ax.set_xlabel("spin speed [rad/s]")
+ax.set_ylabel("frequency in the rotor frame [rad/s]")
 plotting.save(made, "appendix_b.png")

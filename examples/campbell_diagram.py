@@ -59,13 +59,12 @@ for ax, frame in zip(axes, ("inertial", "rotating"), strict=True):
     even_diagram.plot(ax, frame)
     ax.set_ylim(0.0, 800.0)
 plotting.save(made, "campbell_diagram.png")
-made, ax = plotting.figure()
-uneven_diagram.plot(ax).set_ylim(0.0, 500.0)
-plotting.save(made, "campbell_uneven_bearings.png")
-made, ax = plotting.figure()
+ax = uneven_diagram.plot()
+ax.set_ylim(0.0, 500.0)
+plotting.save(ax, "campbell_uneven_bearings.png")
 stiffnesses = np.geomspace(1e5, 1e10, 31)
-critical_speed_map(reduced, ["left", "right"], stiffnesses, max_speed=HERTZ * 2000.0).plot(ax)
-plotting.save(made, "critical_speed_map.png")
+found = critical_speed_map(reduced, ["left", "right"], stiffnesses, max_speed=HERTZ * 2000.0)
+plotting.save(found.plot(), "critical_speed_map.png")
 
 # ------------------------------------------------------------------ reduced against full
 few_speeds = HERTZ * np.array([0.0, 100.0, 200.0])

@@ -65,10 +65,9 @@ result = stability_map(
     labels=("spin speed [rad/s]", "damping of a bearing [N s/m]"),
     tolerance=1e-6,
 )
-made, axes = plotting.figure(size=(7.0, 4.5))
-result.plot(axes)
-axes.set_title("shaft with two flats on bearings softer sideways; black: limit of stability")
-plotting.save(made, "stability_map.png")
+ax = result.plot()
+ax.set_title("shaft with two flats on bearings softer sideways; black: limit of stability")
+plotting.save(ax, "stability_map.png")
 
 assert np.allclose(found[0], expected, rtol=1e-6)
 assert len(ranges) == 0  # with the largest damping

@@ -60,10 +60,10 @@ settings.solution.sensors.writePeriod = STEP
 mbs.SolveDynamic(settings)
 
 record = mbs.GetSensorStoredData(modes)
-time, zeta = record[:, 0], record[:, 1:]
+time, modal_coordinates = record[:, 0], record[:, 1:]
 speed = np.array([run_up.rate(t) for t in time])
 field = StressField.of(reduced, body.selection)
-history = stress_history(field, time, zeta, speed, count=5)
+history = stress_history(field, time, modal_coordinates, speed, count=5)
 print(history.table())
 plotting.save(history.plot(), "stress_history.png")
 plotting.save(history.plot_peak(), "stress_peak.png")

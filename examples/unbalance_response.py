@@ -61,11 +61,11 @@ print(f"backward whirl from {backward[0] * 30 / np.pi:.0f} to {backward[-1] * 30
 assert backward[0] < between < backward[-1]
 
 figure, (size, phase) = plotting.figure(2, 1, size=(7.0, 5.5), sharex=True)
-response.plot("left", axes=(size, phase))
+response.plot("left", ax=(size, phase))
 plotting.save(figure, "unbalance_bode.png")
 figure, panels = plotting.figure(1, 3, size=(11.0, 4.2))
-for axes, speed in zip(panels, (0.6 * between, between, 1.7 * between), strict=True):
-    response.plot_orbit(speed, axes=axes, places=["left"])
+for ax, speed in zip(panels, (0.6 * between, between, 1.7 * between), strict=True):
+    response.plot_orbit(speed, ax=ax, places=["left"])
 plotting.save(figure, "unbalance_orbits.png")
 
 # at service speed: a shaker pushes the left journal sideways, over frequency; close steps where
@@ -74,9 +74,7 @@ sweep = np.union1d(np.linspace(5.0, 800.0, 200), np.linspace(150.0, 230.0, 80))
 shaken = harmonic_response(
     rotor, sweep, HarmonicForce("left", (1.0, 0.0)), speed=SERVICE, supports=bearings
 )
-figure, axes = plotting.figure(2, 1, size=(7.0, 5.5), sharex=True)
-shaken.plot("left", directions=("forward", "backward"), axes=tuple(axes))
+figure, panels = plotting.figure(2, 1, size=(7.0, 5.5), sharex=True)
+shaken.plot("left", directions=("forward", "backward"), ax=tuple(panels))
 plotting.save(figure, "shaker_bode.png")
-figure, axes = plotting.figure(size=(5.5, 5.5))
-shaken.plot_polar("left", axes=axes)
-plotting.save(figure, "shaker_polar.png")
+plotting.save(shaken.plot_polar("left"), "shaker_polar.png")

@@ -48,11 +48,26 @@ def sweep(
 
     Raises
     ------
+    TypeError
+        If an argument is of another kind.
     ValueError
         When `function` raises one; the message names the value.
     RuntimeError
         The same for any other exception, and when the task cannot be pickled.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(2) as threads:
+    ...     sweep(abs, [-1.0, 2.0], executor=threads)
+    [1.0, 2.0]
     """
+    checks.function(function, "function")
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
+        raise TypeError(f"values: needs a sequence of values, got {checks.shown(values)}")
+    checks.executor(executor)
+    checks.flag(progress, "progress")
+    checks.instance(label, "label", str)
     values = list(values)
     bar = tqdm(total=len(values), desc=label or None, disable=not progress)
     with bar:

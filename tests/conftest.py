@@ -1,11 +1,16 @@
-"""One thread per numerical library, small matrices; the tests share the processor's cores."""
+"""One thread per numerical library, small matrices; the tests share the cores; no display."""
 
 import os
 
+import matplotlib
 import pytest
+from matplotlib import pyplot
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
+
+os.environ["MPLBACKEND"] = "Agg"  # of processes that tests start
+matplotlib.use("Agg")
 
 _MOST_WORKERS = 4  # each takes up to 1 GB
 
@@ -20,3 +25,10 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         return
     options.numprocesses = workers
     options.dist = "worksteal"  # neighbours stay together and share the models of their file
+
+
+@pytest.fixture(autouse=True)
+def _close_figures():
+    """Close what a test drew; pyplot keeps figures otherwise, and warns of many."""
+    yield
+    pyplot.close("all")

@@ -213,10 +213,10 @@ def test_scenes_need_their_body():
         (lambda r: r.plot(directions=3), "directions"),
         (lambda r: r.plot(directions=["up"]), "directions"),
         (lambda r: r.plot(log="no"), "log"),
-        (lambda r: r.plot(axes=3), "axes"),
+        (lambda r: r.plot(ax=3), "ax"),
         (lambda r: r.plot_polar(direction="up"), "direction"),
         (lambda r: r.plot_polar(marks=-1), "marks"),
-        (lambda r: r.plot_polar(axes="x"), "axes"),
+        (lambda r: r.plot_polar(ax="x"), "ax"),
         (lambda r: r.plot_orbit(None), "value"),
         (lambda r: r.plot_orbit(10.0, places=["top"]), "places"),
     ],
@@ -235,7 +235,7 @@ def test_methods_of_other_results_refuse():
         (lambda: result.table("x"), "count"),
         (lambda: result.plot(3), "ax"),
         (lambda: result.plot(frame=["inertial"]), "frame"),
-        (lambda: margins.plot("x"), "axes"),
+        (lambda: margins.plot("x"), "ax"),
     ):
         with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
             call()

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from point_rotors import ring_rotor
 
+from exudyn_rotor import plotting
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.balance import Unbalance
@@ -227,3 +229,41 @@ def test_harmonics_run_at_their_own_rate(shaken):
 def test_unknown_names_are_listed(ellipses, call, message):
     with pytest.raises(ValueError, match=message):
         call(ellipses)
+
+
+def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
+    """What is drawn last is what ``pyplot.savefig`` writes, and given axes make no figure."""
+    for draw in (
+        lambda ax: ellipses.plot_polar("mid", ax=ax),
+        lambda ax: shaken.plot_orbit(100.0, ax=ax),
+    ):
+        drawn = draw(None)
+        assert pyplot.gcf() is drawn.figure
+        assert pyplot.gca() is drawn
+        before = pyplot.get_fignums()
+        given = pyplot.subplots()[1]
+        assert draw(given) is given
+        assert len(pyplot.get_fignums()) == len(before) + 1
+    pyplot.savefig(tmp_path / "a.png")
+    pixels = pyplot.imread(tmp_path / "a.png")
+    assert np.ptp(pixels[..., :3]) > 0.5  # not blank
+
+
+@pytest.mark.parametrize("corners", [3, 6])
+def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
+    nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]], float)
+    triangles = [list(range(corners)), list(range(corners))[::-1]]
+    drawn = plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]")
+    assert pyplot.gca() is drawn
+    assert [ax.get_ylabel() for ax in drawn.figure.axes][1] == "T [K]"
+    given = pyplot.subplots(subplot_kw={"projection": "3d"})[1]
+    size = given.figure.get_size_inches()
+    assert plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", given) is given
+    assert np.array_equal(given.figure.get_size_inches(), size)
+    flat = pyplot.subplots()[1]
+    with pytest.raises(TypeError, match="ax: needs Axes3D, got"):
+        plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", flat)
+    with pytest.raises(ValueError, match="triangles: needs whole numbers ≥ 0 and ≤ 5, got 6"):
+        plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
+    with pytest.raises(ValueError, match="values: needs finite numbers"):
+        plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
 
@@ -25,11 +24,6 @@ def check_sweep(executor: Executor | None, progress: bool) -> None:
     """Check how values are computed: `executor` and `progress`."""
     checks.executor(executor)
     checks.flag(progress, "progress")
-
-
-def axes_or_none(value: Axes | None, name: str) -> Axes | None:
-    """Return axes to draw in; None for new ones."""
-    return None if value is None else checks.instance(value, name, Axes)
 
 
 def place(value: Place, name: str) -> str | int | tuple[float, float, float]:

@@ -12,25 +12,25 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.plotting import draw_surface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
+from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import von_mises
-
-if TYPE_CHECKING:
-    from exudyn_rotor.multibody.rotor_body import RotorBody
 
 Nodes = slice | np.ndarray
 
 
+@storable
 @dataclass(frozen=True, eq=False)
-class StressField:
+class StressField(Result):
     """Stress of a rotor in one formulation; made by :meth:`of`.
 
     Attributes
@@ -47,14 +47,31 @@ class StressField:
         Whether the rotor was reduced with a prestress, so that the static stress is complete.
     constant : ndarray, shape (n, 6)
         Stress at rest [Pa]; zero unless the prestress was given one.
+
+    Examples
+    --------
+    A bar under unit stress along z for a unit of its only modal coordinate:
+
+    >>> import numpy as np
+    >>> nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> along = np.zeros((4, 6, 1))
+    >>> along[:, 2] = 1.0
+    >>> none = np.zeros((4, 6))
+    >>> field = StressField(nodes, [[0, 1, 2]], along, none, True, none)
+    >>> print(field.at([2e6], speed=0.0)[0])
+    [      0.       0. 2000000.       0.       0.       0.]
     """
 
-    positions: np.ndarray
-    triangles: np.ndarray
-    modes: np.ndarray
-    rest: np.ndarray
+    positions: np.ndarray = numbers("nodes", 3)
+    triangles: np.ndarray = numbers("triangles", "corners", dtype=int, least=0)
+    modes: np.ndarray = numbers("nodes", 6, "modes")
+    rest: np.ndarray = numbers("nodes", 6)
     has_static: bool
-    constant: np.ndarray
+    constant: np.ndarray = numbers("nodes", 6)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_triangles(self.triangles, len(self.positions))
 
     @classmethod
     def of(cls, reduced: ReducedRotor, selection: Selection | RotorBody) -> StressField:
@@ -75,47 +92,86 @@ class StressField:
         ValueError
             If the rotor has no stress modes, or the selection is of another rotor.
         """
+        checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce makes one")
         selection = _selection_of(reduced, selection)
         if reduced.shapes is None or reduced.shapes.stress is None:
             raise ValueError(
-                "stress: the rotor was reduced without stress modes; use reduce(…, stress=True) "
+                "reduced: the rotor was reduced without stress modes; use reduce(…, stress=True) "
                 "with a model from NGSolve, and keep the shapes"
             )
         columns = reduced.shapes.stress
         static = getattr(reduced.centrifugal, "stress", None)
-        rest = np.zeros(columns.shape[:2])
-        if static is not None:
-            rest = static - columns @ _static_share(reduced)
+        none = np.zeros(columns.shape[:2])
         constant = getattr(reduced.centrifugal, "constant_stress", None)
         return cls(
             positions=reduced.shapes.nodes,
             triangles=reduced.shapes.triangles,
             modes=columns @ selection.T,
-            rest=rest,
+            rest=none if static is None else static - columns @ _static_share(reduced),
             has_static=static is not None,
-            constant=np.zeros(columns.shape[:2]) if constant is None else constant,
+            constant=none if constant is None else constant,
         )
 
-    def at(self, zeta: np.ndarray, speed: float, nodes: Nodes = slice(None)) -> np.ndarray:
-        """Return the stress of modal coordinates (m,) at a spin speed [rad/s], (n, 6) [Pa]."""
-        zeta, count = np.asarray(zeta, dtype=float), self.modes.shape[2]
-        if zeta.shape != (count,):
-            raise ValueError(
-                f"zeta: needs {count} modal coordinates, shape ({count},), got the shape "
-                f"{zeta.shape}; rows over time go to stress_history"
-            )
-        return self.constant[nodes] + speed**2 * self.rest[nodes] + self.modes[nodes] @ zeta
+    def at(
+        self, modal_coordinates: ArrayLike, speed: float, nodes: Nodes = slice(None)
+    ) -> np.ndarray:
+        """Return the stress of modal coordinates (m,) at a spin speed.
 
-    def history(self, zeta: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
+        Parameters
+        ----------
+        modal_coordinates : array_like, shape (m,)
+        speed : float
+            Spin speed [rad/s].
+        nodes : slice or ndarray of int, optional
+            All by default.
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            Components xx, yy, zz, yz, xz, xy in mesh axes [Pa].
+
+        Raises
+        ------
+        TypeError
+            If an argument is of another kind.
+        ValueError
+            If there is not one finite coordinate per mode, or a node does not exist.
+        """
+        speed = checks.number(speed, "speed", "rad/s")
+        values = checks.array(modal_coordinates, "modal_coordinates")
+        count = self.modes.shape[2]
+        if values.shape != (count,):
+            raise ValueError(
+                f"modal_coordinates: needs {count} modal coordinates, shape ({count},), got the "
+                f"shape {values.shape}; rows over time go to stress_history"
+            )
+        if not isinstance(nodes, slice):
+            nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
+        return self.constant[nodes] + speed**2 * self.rest[nodes] + self.modes[nodes] @ values
+
+    def history(self, modal_coordinates: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
         """Return the stress of (s, m) coordinates at s speeds, shape (s, n, 6) [Pa]."""
-        dynamic = np.einsum("nck,sk->snc", self.modes[nodes], zeta, optimize=True)
+        dynamic = np.einsum("nck,sk->snc", self.modes[nodes], modal_coordinates, optimize=True)
         return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
 
-    def plot(self, zeta: np.ndarray, speed: float) -> Figure:
-        """Return a picture of the von Mises stress on the surface [MPa]."""
+    def plot(self, modal_coordinates: ArrayLike, speed: float, ax: Axes3D | None = None) -> Axes3D:
+        """Draw the von Mises stress on the surface [MPa]; see :meth:`at`.
+
+        `ax` are 3D axes to draw in; those of a new figure by default.
+        """
+        stress = self.at(modal_coordinates, speed)
         warn_without_static(self, speed)
-        values = 1e-6 * von_mises(self.at(zeta, speed))
-        return draw_surface(self.positions, self.triangles, values, "von Mises stress [MPa]")
+        label = "von Mises stress [MPa]"
+        return draw_surface(self.positions, self.triangles, 1e-6 * von_mises(stress), label, ax)
+
+
+def check_triangles(triangles: np.ndarray, count: int) -> None:
+    """Refuse triangles that do not belong to `count` nodes."""
+    if triangles.size and (triangles.shape[1] not in (3, 6) or triangles.max() >= count):
+        raise ValueError(
+            f"triangles: needs 3 or 6 node numbers below {count} each, got the shape "
+            f"{triangles.shape} with numbers up to {triangles.max()}"
+        )
 
 
 def warn_without_static(field: StressField, speed: ArrayLike) -> None:
@@ -133,17 +189,9 @@ def warn_without_static(field: StressField, speed: ArrayLike) -> None:
 
 def _selection_of(reduced: ReducedRotor, given: Selection | RotorBody) -> Selection:
     """Return the selection given as such or by its rotor body, checked against `reduced`."""
-    if not isinstance(reduced, ReducedRotor):
-        raise TypeError(
-            f"reduced: expected a ReducedRotor, got {type(reduced).__name__}; SolidRotor.reduce "
-            "makes one"
-        )
-    selection = getattr(given, "selection", given)
-    if not isinstance(selection, Selection):
-        raise TypeError(
-            "selection: expected what select_modes(reduced, formulation) returns, or a RotorBody, "
-            f"got {type(given).__name__}"
-        )
+    how = "select_modes(reduced, formulation) makes one, add_rotor the other"
+    checks.instance(given, "selection", (Selection, RotorBody), how)
+    selection = given.selection if isinstance(given, RotorBody) else given
     if not selection.is_of(reduced):
         raise ValueError(
             f"selection: it is of another rotor, {selection.source!r}, than {reduced!r}; take the "

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
-from exudyn_rotor.strength.field import StressField, warn_without_static
+from exudyn_rotor.strength.field import StressField, check_triangles, warn_without_static
 
 _CHUNK = 2_000_000  # values of a stress history held at a time
 
@@ -55,10 +54,8 @@ class StressHistory(Result):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("nodes", "triangles"):
-            checks.whole_numbers(getattr(self, name).ravel(), name, most=len(self.positions) - 1)
-        if self.triangles.shape[1] not in (3, 6):
-            raise ValueError(f"triangles: needs 3 or 6 columns, got {self.triangles.shape[1]}")
+        checks.whole_numbers(self.nodes, "nodes", most=len(self.positions) - 1)
+        check_triangles(self.triangles, len(self.positions))
 
     @property
     def von_mises(self) -> np.ndarray:
@@ -87,31 +84,33 @@ class StressHistory(Result):
             )
         return "\n".join(lines)
 
-    def plot(self, axes: Axes | None = None, count: int = 3) -> Figure:
-        """Draw the von Mises stress of the first `count` nodes over time [MPa]."""
-        made = None
-        if axes is None:
-            made, axes = plotting.figure()
+    def plot(self, ax: Axes | None = None, count: int = 3) -> Axes:
+        """Draw the von Mises stress [MPa] of the first `count` nodes over time.
+
+        `ax` are axes to draw in; those of a new figure by default.
+        """
+        count = checks.count(count, "count", least=1)
+        ax = plotting.axes_or_new(ax)
         values = 1e-6 * self.von_mises
         for index, color in zip(range(min(count, len(self.nodes))), plotting.COLORS, strict=False):
             label = f"node {self.nodes[index]}"
-            axes.plot(self.time, values[:, index], color=color, lw=1.0, label=label)
-        axes.set_xlabel("time [s]")
-        axes.set_ylabel("von Mises stress [MPa]")
-        axes.grid(alpha=0.3)
-        plotting.legend_above(axes, columns=3)
-        return made or axes.figure
+            ax.plot(self.time, values[:, index], color=color, lw=1.0, label=label)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("von Mises stress [MPa]")
+        ax.grid(alpha=0.3)
+        plotting.legend_above(ax, columns=3)
+        return ax
 
-    def plot_peak(self) -> Figure:
-        """Draw the peak of the run on the surface [MPa]."""
+    def plot_peak(self, ax: Axes3D | None = None) -> Axes3D:
+        """Draw the peak of the run on the surface [MPa]; `ax` are 3D axes to draw in."""
         label = "largest von Mises stress [MPa]"
-        return plotting.draw_surface(self.positions, self.triangles, 1e-6 * self.peak, label)
+        return plotting.draw_surface(self.positions, self.triangles, 1e-6 * self.peak, label, ax)
 
 
 def stress_history(
     field: StressField,
     time: ArrayLike,
-    zeta: ArrayLike,
+    modal_coordinates: ArrayLike,
     speed: ArrayLike | float,
     *,
     nodes: Sequence[int] | None = None,
@@ -124,8 +123,8 @@ def stress_history(
     field : StressField
     time : array_like, shape (s,)
         [s]
-    zeta : array_like, shape (s, m)
-        Modal coordinates over time; a native sensor of ``body.nodes["modes"]`` records them.
+    modal_coordinates : array_like, shape (s, m)
+        Over time; a native sensor of ``body.nodes["modes"]`` records them.
     speed : array_like, shape (s,), or float
         Spin speed [rad/s].
     nodes : sequence of int, optional
@@ -137,16 +136,28 @@ def stress_history(
     Raises
     ------
     TypeError
-        If `field` is no StressField.
+        If an argument is of another kind.
     ValueError
         If shapes do not fit, values are not finite, a node does not exist, or `count` is below 1.
+
+    Examples
+    --------
+    A bar whose stress along z is its only modal coordinate, and 1 Pa at 1 rad/s by the spin:
+
+    >>> import numpy as np
+    >>> nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> along = np.zeros((4, 6))
+    >>> along[:, 2] = 1.0
+    >>> field = StressField(nodes, [[0, 1, 2]], along[:, :, None], along, True, 0.0 * along)
+    >>> history = stress_history(field, [0.0, 1.0], [[5.0], [-2.0]], speed=[0.0, 3.0], count=1)
+    >>> print(history.peak, history.von_mises[:, 0])
+    [7. 7. 7. 7.] [5. 7.]
     """
-    time, zeta, speed = _checked(field, time, zeta, speed)
+    time, coordinates, speed = _checked(field, time, modal_coordinates, speed)
     chosen = None if nodes is None else _node_numbers(nodes, len(field.positions))
-    if not isinstance(count, Integral) or count < 1:
-        raise ValueError(f"count: needs a number of nodes, 1 or more, got {count!r}")
+    count = checks.count(count, "count", least=1)
     warn_without_static(field, speed)
-    peak, when = _envelope(field, zeta, speed)
+    peak, when = _envelope(field, coordinates, speed)
     if chosen is None:
         chosen = np.argsort(peak)[::-1][:count]
     else:
@@ -155,7 +166,7 @@ def stress_history(
         time=time,
         speed=speed,
         nodes=chosen,
-        stress=field.history(zeta, speed, chosen),
+        stress=field.history(coordinates, speed, chosen),
         peak=peak,
         peak_time=time[when],
         positions=field.positions,
@@ -164,55 +175,46 @@ def stress_history(
 
 
 def _checked(
-    field: StressField, time: ArrayLike, zeta: ArrayLike, speed: ArrayLike | float
+    field: StressField, time: ArrayLike, coordinates: ArrayLike, speed: ArrayLike | float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    if not isinstance(field, StressField):
-        raise TypeError(
-            f"field: expected a StressField, got {type(field).__name__}; make one with "
-            "StressField.of(reduced, body)"
-        )
-    time, zeta = np.asarray(time, dtype=float), np.asarray(zeta, dtype=float)
-    wanted = (time.size, field.modes.shape[2])
-    if time.ndim != 1 or zeta.shape != wanted or time.size == 0:
+    how = "make one with StressField.of(reduced, body)"
+    count = checks.instance(field, "field", StressField, how).modes.shape[2]
+    time = checks.vector(time, "time", "s", size=None)
+    coordinates = checks.array(coordinates, "modal_coordinates")
+    if time.size == 0 or coordinates.shape != (time.size, count):
         raise ValueError(
-            f"zeta: needs one row of {wanted[1]} modal coordinates for each of the "
-            f"{time.size} times, got the shape {zeta.shape}"
+            f"modal_coordinates: needs one row of {count} for each of the {time.size} times, got "
+            f"the shape {coordinates.shape}"
         )
-    speed = np.asarray(speed, dtype=float)
+    speed = checks.array(speed, "speed", "rad/s")
     if speed.shape not in ((), time.shape):
         raise ValueError(
             f"speed: needs one number, or one for each of the {time.size} times, got the shape "
             f"{speed.shape}"
         )
-    speed = np.broadcast_to(speed, time.shape)
-    for name, values in (("time", time), ("zeta", zeta), ("speed", speed)):
-        if not np.all(np.isfinite(values)):
-            raise ValueError(f"{name}: has values that are not finite; the run may have failed")
-    return time, zeta, speed
+    return time, coordinates, np.broadcast_to(speed, time.shape)
 
 
 def _node_numbers(nodes: Sequence[int], total: int) -> np.ndarray:
     """Return chosen node numbers as an array; a message names the first that does not fit."""
-    numbers, wanted = np.asarray(nodes), f"nodes: needs node numbers from 0 to {total - 1}"
-    if numbers.ndim != 1 or numbers.size == 0 or numbers.dtype.kind not in "iu":
-        kind = "a mask; use np.flatnonzero(mask)" if numbers.dtype.kind == "b" else numbers.dtype
-        raise ValueError(f"{wanted} in one row, got the shape {numbers.shape} of {kind}")
-    outside = numbers[(numbers < 0) | (numbers >= total)]
-    if outside.size:
-        raise ValueError(f"{wanted}, got {outside[0]}")
+    if isinstance(nodes, np.ndarray) and nodes.dtype.kind == "b":
+        raise TypeError("nodes: needs node numbers, got a mask; use np.flatnonzero(mask)")
+    numbers = checks.whole_numbers(nodes, "nodes", most=total - 1)
+    if numbers.size == 0:
+        raise ValueError(f"nodes: needs node numbers from 0 to {total - 1}, got none")
     return numbers
 
 
 def _envelope(
-    field: StressField, zeta: np.ndarray, speed: np.ndarray
+    field: StressField, coordinates: np.ndarray, speed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the largest von Mises stress of every node and its time index; chunks of nodes."""
     total = len(field.positions)
-    width = max(1, _CHUNK // (6 * len(zeta)))
+    width = max(1, _CHUNK // (6 * len(coordinates)))
     peak, when = np.zeros(total), np.zeros(total, dtype=np.int64)
     for start in tqdm(range(0, total, width), desc="stress", disable=total < 20 * width):
         part = slice(start, start + width)
-        values = von_mises(field.history(zeta, speed, part))
+        values = von_mises(field.history(coordinates, speed, part))
         when[part] = np.argmax(values, axis=0)
         peak[part] = values.max(axis=0)
     return peak, when

@@ -113,7 +113,7 @@ class Campbell(Result):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            A new figure without a window by default.
+            Those of a new figure by default.
         frame : {'inertial', 'rotating'}
 
         Raises
@@ -124,7 +124,7 @@ class Campbell(Result):
         from exudyn_rotor.linear.modal.diagram import draw_campbell
 
         checks.choice(frame, "frame", FRAMES)
-        return draw_campbell(self, options.axes_or_none(ax, "ax"), frame)
+        return draw_campbell(self, ax, frame)
 
     def table(self, count: int | None = None) -> str:
         """Return the lowest `count` modes at every speed as lines of text, frequencies in Hz."""

@@ -151,9 +151,7 @@ class CriticalSpeedMap(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
-        ax = options.axes_or_none(ax, "ax")
-        if ax is None:
-            _, ax = plotting.figure()
+        ax = plotting.axes_or_new(ax)
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
             color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))

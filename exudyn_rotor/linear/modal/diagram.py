@@ -32,8 +32,7 @@ _STYLES = {  # colour, line
 
 def draw_campbell(result: Campbell, ax: Axes | None, frame: str) -> Axes:
     """Draw tracked modes in Hz, coloured by whirl, with the line of the spin speed."""
-    if ax is None:
-        _, ax = plotting.figure()
+    ax = plotting.axes_or_new(ax)
     tracked = result.tracked()
     values = tracked.frequencies_inertial if frame == "inertial" else tracked.frequencies_rotating
     speeds = _HERTZ * tracked.speeds

@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear import options
 from exudyn_rotor.linear.response.results import DIRECTIONS
-from exudyn_rotor.plotting import COLORS, LINES, figure
+from exudyn_rotor.plotting import COLORS, LINES, axes_or_new, figure
 
 if TYPE_CHECKING:
     from exudyn_rotor.linear.response.results import Response
@@ -26,7 +25,7 @@ def plot_bode(
     *,
     directions: Sequence[str] = ("n1", "n2"),
     order: int | None = None,
-    axes: tuple[Axes, Axes] | None = None,
+    ax: tuple[Axes, Axes] | None = None,
     log: bool = True,
 ) -> tuple[Axes, Axes]:
     """Draw size and phase of the displacement over speed or frequency [Hz].
@@ -39,18 +38,18 @@ def plot_bode(
     directions : sequence of {'n1', 'n2', 'e', 'forward', 'backward'}
     order : int, optional
         Harmonic; the main one by default.
-    axes : pair of matplotlib Axes, optional
+    ax : pair of matplotlib Axes, optional
         For size and phase; made if not given.
     log : bool, optional
         Logarithmic sizes.
     """
     names = checks.labels(directions, "directions", (*DIRECTIONS, "forward", "backward"))
     checks.flag(log, "log")
-    if axes is None:
-        axes = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
-    pair = checks.instances(list(axes) if isinstance(axes, np.ndarray) else axes, "axes", Axes)
+    if ax is None:
+        ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
+    pair = checks.instances(list(ax) if isinstance(ax, np.ndarray) else ax, "ax", Axes)
     if len(pair) != 2:
-        raise ValueError(f"axes: needs two, for size and phase, got {len(pair)}")
+        raise ValueError(f"ax: needs two, for size and phase, got {len(pair)}")
     size, phase = pair
     forward, backward = response.whirl(place, order)
     circular = {"forward": forward, "backward": backward}
@@ -77,7 +76,7 @@ def plot_polar(
     *,
     direction: str = "n1",
     order: int | None = None,
-    axes: Axes | None = None,
+    ax: Axes | None = None,
     marks: int = 5,
 ) -> Axes:
     """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
@@ -89,31 +88,31 @@ def plot_polar(
     response, place, order
         See :func:`plot_bode`.
     direction : {'n1', 'n2', 'e', 'forward', 'backward'}
-    axes : matplotlib Axes, optional
+    ax : matplotlib Axes, optional
     marks : int, optional
         How many points are labelled with their speed or frequency [Hz].
     """
     checks.choice(direction, "direction", (*DIRECTIONS, "forward", "backward"))
     marks = checks.count(marks, "marks")
-    axes = options.axes_or_none(axes, "axes") or figure(size=(5.5, 5.5))[1]
+    ax = axes_or_new(ax, (5.5, 5.5))
     forward, backward = response.whirl(place, order)
     circular = {"forward": forward, "backward": backward}
     values = circular.get(direction)
     values = 1e6 * (response.phasor(place, direction, order) if values is None else values)
-    axes.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
+    ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
     for index in _spread(values, marks):
-        axes.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
-        axes.annotate(f"{HERTZ * response.abscissa[index]:.3g} Hz",
+        ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
+        ax.annotate(f"{HERTZ * response.abscissa[index]:.3g} Hz",
                       (values.real[index], values.imag[index]),
                       textcoords="offset points", xytext=(5, 4), fontsize=8)  # fmt: skip
-    axes.axhline(0.0, color="0.6", lw=0.7)
-    axes.axvline(0.0, color="0.6", lw=0.7)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(f"in phase, {direction} [µm]")
-    axes.set_ylabel("a quarter turn ahead [µm]")
-    axes.grid(alpha=0.3)
-    axes.set_title(_title(response, place, order), loc="right", fontsize=10)
-    return axes
+    ax.axhline(0.0, color="0.6", lw=0.7)
+    ax.axvline(0.0, color="0.6", lw=0.7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel(f"in phase, {direction} [µm]")
+    ax.set_ylabel("a quarter turn ahead [µm]")
+    ax.grid(alpha=0.3)
+    ax.set_title(_title(response, place, order), loc="right", fontsize=10)
+    return ax
 
 
 def plot_orbit(
@@ -122,7 +121,7 @@ def plot_orbit(
     *,
     places: Sequence[str] | None = None,
     order: int | None = None,
-    axes: Axes | None = None,
+    ax: Axes | None = None,
 ) -> Axes:
     """Draw one revolution of the orbits [µm] at a speed or frequency [rad/s].
 
@@ -136,27 +135,27 @@ def plot_orbit(
         The nearest computed speed or frequency is taken.
     places : sequence of str, optional
         All by default.
-    axes : matplotlib Axes, optional
+    ax : matplotlib Axes, optional
     """
     value = checks.number(value, "value", "rad/s")
     names = response.places
     if places is not None:
         names = checks.labels(places, "places", response.places)
-    axes = options.axes_or_none(axes, "axes") or figure(size=(5.5, 5.5))[1]
+    ax = axes_or_new(ax, (5.5, 5.5))
     for name, color, line in zip(names, COLORS, LINES, strict=False):
         x, y = 1e6 * response.orbit(value, name, order).T
-        axes.plot(x, y, ls=line, color=color, lw=1.4, label=name)
-        axes.plot(x[0], y[0], "o", color=color, ms=5)
-        axes.annotate("", (x[24], y[24]), (x[20], y[20]),
+        ax.plot(x, y, ls=line, color=color, lw=1.4, label=name)
+        ax.plot(x[0], y[0], "o", color=color, ms=5)
+        ax.annotate("", (x[24], y[24]), (x[20], y[20]),
                       arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("n1 [µm]")
-    axes.set_ylabel("n2 [µm]")
-    axes.grid(alpha=0.3)
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("n1 [µm]")
+    ax.set_ylabel("n2 [µm]")
+    ax.grid(alpha=0.3)
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
     nearest = response.abscissa[np.argmin(np.abs(response.abscissa - value))]
-    axes.set_title(f"{response._what} {HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
-    return axes
+    ax.set_title(f"{response._what} {HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
+    return ax
 
 
 def _phase(values: np.ndarray) -> np.ndarray:

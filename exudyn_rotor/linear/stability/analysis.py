@@ -67,21 +67,21 @@ class Stability(Result):
     base: np.ndarray = numbers("speeds")
     tolerance: float
 
-    def plot(self, axes: Axes | None = None) -> Axes:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth over the spin speed; unstable speeds are shaded."""
-        axes = options.axes_or_none(axes, "axes") or plotting.figure()[1]
+        ax = plotting.axes_or_new(ax)
         hertz = self.speeds / (2.0 * np.pi)
-        axes.plot(hertz, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
-        low, high = axes.get_ylim()
-        axes.fill_between(
+        ax.plot(hertz, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
+        low, high = ax.get_ylim()
+        ax.fill_between(
             hertz, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
         )
-        axes.set_ylim(low, high)
-        axes.axhline(0.0, color="0.3", lw=0.8)
-        axes.set_xlabel("spin speed [Hz]")
-        axes.set_ylabel("growth of the least stable motion [1/s]")
-        axes.grid(alpha=0.3)
-        return axes
+        ax.set_ylim(low, high)
+        ax.axhline(0.0, color="0.3", lw=0.8)
+        ax.set_xlabel("spin speed [Hz]")
+        ax.set_ylabel("growth of the least stable motion [1/s]")
+        ax.grid(alpha=0.3)
+        return ax
 
     def table(self) -> str:
         """Return speed, growth, frequency of the least stable motion and verdict as text."""

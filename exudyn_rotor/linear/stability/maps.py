@@ -46,21 +46,21 @@ class StabilityMap(Result):
     stable: np.ndarray = numbers("x", "y", dtype=bool)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
 
-    def plot(self, axes: Axes | None = None) -> Axes:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line."""
-        axes = options.axes_or_none(axes, "axes") or plotting.figure()[1]
+        ax = plotting.axes_or_new(ax)
         growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
         largest = np.abs(growth).max() or 1.0
         levels = np.linspace(-largest, largest, 21)
-        filled = axes.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
-        axes.figure.colorbar(filled, ax=axes, label="growth [1/s]")
+        filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
+        ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
         if not (self.stable.all() or not self.stable.any()):
             verdict = np.where(self.stable, -1.0, 1.0).T
             crossing = growth if growth.min() < -1e-6 * largest else verdict
-            axes.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
-        axes.set_xlabel(self.labels[0])
-        axes.set_ylabel(self.labels[1])
-        return axes
+            ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
+        ax.set_xlabel(self.labels[0])
+        ax.set_ylabel(self.labels[1])
+        return ax
 
 
 def stability_map(
