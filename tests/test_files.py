@@ -4,7 +4,7 @@ import os
 import stat
 import tracemalloc
 import zipfile
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -221,10 +221,19 @@ def test_whole_files_come_back_bit_for_bit(name, tmp_path):
 # ------------------------------------------------------------------ damage
 
 
+@dataclass(repr=False)
+class Whole:
+    """A file to damage, and what it was before."""
+
+    path: Path
+    content: bytes
+    checksum: str
+
+
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> tuple[Path, bytes, str]:
+def whole(tmp_path_factory) -> Whole:
     path, data = saved("ReducedRotor", tmp_path_factory.mktemp("whole"))
-    return path, path.read_bytes(), str(data["sha256"])
+    return Whole(path, path.read_bytes(), str(data["sha256"]))
 
 
 def refused_or_same(path: Path, checksum: str) -> None:
@@ -240,19 +249,17 @@ def refused_or_same(path: Path, checksum: str) -> None:
 
 @given(share=st.floats(0.0, 1.0, exclude_max=True))
 def test_truncated_files_are_refused(whole, share):
-    path, content, _ = whole
-    path.write_bytes(content[: int(share * len(content))])
+    whole.path.write_bytes(whole.content[: int(share * len(whole.content))])
     with pytest.raises(ValueError, match=r"kept\.npz: damaged"):
-        ReducedRotor.load(path)
+        ReducedRotor.load(whole.path)
 
 
 @given(share=st.floats(0.0, 1.0, exclude_max=True), flip=st.integers(1, 255))
 def test_flipped_bytes_are_noticed_or_harmless(whole, share, flip):
-    path, content, checksum = whole
-    changed = bytearray(content)
-    changed[int(share * len(content))] ^= flip
-    path.write_bytes(bytes(changed))
-    refused_or_same(path, checksum)
+    changed = bytearray(whole.content)
+    changed[int(share * len(changed))] ^= flip
+    whole.path.write_bytes(bytes(changed))
+    refused_or_same(whole.path, whole.checksum)
 
 
 def bomb(path: Path, size: int) -> None:
