@@ -19,7 +19,7 @@ import zipfile
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -115,19 +115,10 @@ def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
 
 
 class Entries:
-    """Entries of a file, taken one by one with a check of type and shape; none may be left.
+    """Entries of a file, taken one by one with a check of their type; none may be left."""
 
-    Sizes may be given as words: the first array with a word tells its size to those after it.
-    """
-
-    def __init__(
-        self,
-        data: Mapping[str, np.ndarray],
-        sizes: Mapping[str, int] | None = None,
-        prefix: str = "",
-    ) -> None:
+    def __init__(self, data: Mapping[str, np.ndarray], prefix: str = "") -> None:
         self._data, self._prefix = dict(data), prefix
-        self.sizes = dict(sizes or {})
 
     def __len__(self) -> int:
         return len(self._data)
@@ -135,42 +126,40 @@ class Entries:
     def __contains__(self, name: str) -> bool:
         return name in self._data
 
-    def numbers(self, name: str, *shape: int | str, dtype: type = float) -> np.ndarray:
-        """Return a finite array of a type and shape."""
-        value = self._taken(name, np.dtype(dtype))
-        if value.ndim == len(shape):
-            for word, size in zip(shape, value.shape, strict=True):
-                if isinstance(word, str):
-                    self.sizes.setdefault(word, size)
-        wanted = tuple(self.sizes.get(size, size) for size in shape)
-        if value.shape != wanted:
-            raise ValueError(f"{self._prefix}{name}: needs the shape {wanted}, got {value.shape}")
-        if not np.all(np.isfinite(value)):
-            raise ValueError(f"{self._prefix}{name}: holds values that are not finite")
+    def array(self, name: str, dtype: type = float) -> np.ndarray:
+        """Return an array of exactly this type."""
+        value = self._taken(name)
+        if value.dtype != dtype:
+            raise ValueError(f"{self._prefix}{name}: needs {np.dtype(dtype)}, holds {value.dtype}")
         return value
 
-    def number(self, name: str, **limits: float) -> float:
-        """Return a finite number within limits of :func:`exudyn_rotor.checks.number`."""
-        return checks.number(float(self.numbers(name)), self._prefix + name, **limits)
+    def arrays(self, *names: str, optional: bool = False) -> dict[str, np.ndarray]:
+        """Return arrays of floats by their names; those that are there, if they are optional."""
+        return {name: self.array(name) for name in names if name in self or not optional}
+
+    def number(self, name: str) -> float:
+        """Return one number."""
+        return self._one(self.array(name), name)
 
     def flag(self, name: str) -> bool:
         """Return True or False."""
-        return bool(self.numbers(name, dtype=bool))
+        return self._one(self.array(name, bool), name)
 
-    def words(self, name: str, unique: bool = False) -> tuple[str, ...]:
-        """Return a row of names."""
-        value = self._taken(name, None)
-        words = tuple(str(word) for word in np.atleast_1d(value))
-        if value.ndim != 1 or not all(words) or (unique and len(set(words)) < len(words)):
-            each = ", each once" if unique else ""
-            raise ValueError(f"{self._prefix}{name}: needs one row of names{each}")
+    def words(self, name: str, unique: bool = True) -> tuple[str, ...]:
+        """Return a row of words, each once if `unique`."""
+        value = self._taken(name)
+        if value.dtype.kind != "U" or value.ndim != 1:
+            raise ValueError(f"{self._prefix}{name}: needs a row of words, holds {value.dtype}")
+        words = tuple(str(word) for word in value)
+        if unique and len(set(words)) < len(words):
+            raise ValueError(f"{self._prefix}{name}: needs each word once")
         return words
 
     def group(self, prefix: str) -> Entries:
         """Take all entries whose names begin with `prefix`, without it."""
         names = [name for name in self._data if name.startswith(prefix)]
         taken = {name.removeprefix(prefix): self._data.pop(name) for name in names}
-        return Entries(taken, self.sizes, self._prefix + prefix)
+        return Entries(taken, self._prefix + prefix)
 
     def close(self) -> None:
         """Refuse what was not taken."""
@@ -178,15 +167,15 @@ class Entries:
             names = ", ".join(repr(self._prefix + name) for name in sorted(self._data))
             raise ValueError(f"the entries {names} are unknown")
 
-    def _taken(self, name: str, dtype: np.dtype | None) -> np.ndarray:
-        """Return an entry of a type, None for text."""
+    def _taken(self, name: str) -> np.ndarray:
         if name not in self._data:
             raise ValueError(f"the entry {self._prefix + name!r} is missing")
-        value = self._data.pop(name)
-        if not (value.dtype.kind == "U" if dtype is None else value.dtype == dtype):
-            needed = "text" if dtype is None else dtype
-            raise ValueError(f"{self._prefix}{name}: needs {needed}, holds {value.dtype}")
-        return value
+        return self._data.pop(name)
+
+    def _one(self, value: np.ndarray, name: str) -> Any:
+        if value.ndim:
+            raise ValueError(f"{self._prefix}{name}: needs one value, got {value.shape}")
+        return value.item()
 
 
 # ------------------------------------------------------------------ writing

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import savers
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from point_rotors import SKEW_AXIS, random_rotor
 
@@ -28,7 +28,7 @@ from exudyn_rotor import (
     load_result,
     storage,
 )
-from exudyn_rotor.reduction.reduced_rotor import Centrifugal
+from exudyn_rotor.reduction.fields import Centrifugal
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 RNG = np.random.default_rng(3)
@@ -185,7 +185,7 @@ WRONG_ROTORS = {
 def test_no_impossible_rotor_loads(key, tmp_path):
     path, data = saved("ReducedRotor", tmp_path)
     forge(path, data | {f"invariants.{key}": WRONG_ROTORS[key](data)})
-    with pytest.raises(ValueError, match=rf"kept\.npz: .*invariants\.{key}|\({key}: "):
+    with pytest.raises(ValueError, match=rf"kept\.npz: .*{key}\b"):
         ReducedRotor.load(path)
 
 
@@ -249,6 +249,7 @@ def refused_or_same(path: Path, checksum: str) -> None:
     assert str(entries(path.with_name("found.npz"))["sha256"]) == checksum
 
 
+@settings(deadline=None)
 @given(share=st.floats(0.0, 1.0, exclude_max=True))
 def test_truncated_files_are_refused(whole, share):
     whole.path.write_bytes(whole.content[: int(share * len(whole.content))])
@@ -256,6 +257,7 @@ def test_truncated_files_are_refused(whole, share):
         ReducedRotor.load(whole.path)
 
 
+@settings(deadline=None)
 @given(share=st.floats(0.0, 1.0, exclude_max=True), flip=st.integers(1, 255))
 def test_flipped_bytes_are_noticed_or_harmless(whole, share, flip):
     changed = bytearray(whole.content)

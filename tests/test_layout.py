@@ -14,13 +14,11 @@ NAME = PACKAGE.name
 
 # edges against the order that still stand, as (importing, imported)
 LEFT = (
-    ("plotting", "linear.modal.campbell"),
     ("linear.modal.diagram", "linear.modal.campbell"),
     ("linear.equations.probe", "linear.equations.scene"),
     ("linear.response.plots", "linear.response.results"),
     ("multibody.record", "multibody.rotor_body"),
     ("multibody.sensors", "multibody.rotor_body"),
-    ("reduction.reduced_rotor", "reduction.reduced_file"),
 )
 
 

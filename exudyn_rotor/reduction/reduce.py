@@ -15,12 +15,8 @@ from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
-from exudyn_rotor.reduction.reduced_rotor import (
-    Centrifugal,
-    ModeShapes,
-    ReducedInterface,
-    ReducedRotor,
-)
+from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor

@@ -10,150 +10,17 @@ from os import PathLike
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.fields import (
+    Centrifugal,
+    ModeShapes,
+    ReducedInterface,
+    set_checked,
+)
+from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
 _SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
-
-
-@dataclass(frozen=True, eq=False)
-class ReducedInterface:
-    """Mean motion of an interface in the reduced basis.
-
-    Attributes
-    ----------
-    reference, center : ndarray, shape (3,)
-        Point whose motion is reported, and weighted centre of the nodes, mesh coordinates [m].
-    radius : float
-        Root mean square radius of the nodes [m].
-    motion : ndarray, shape (6, k)
-        Displacement of the reference point and rotation vector per column, mesh axes.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If shapes do not fit, an entry is not finite, or the radius is negative.
-    """
-
-    reference: np.ndarray
-    center: np.ndarray
-    radius: float
-    motion: np.ndarray
-
-    def __post_init__(self) -> None:
-        _set(
-            self,
-            reference=checks.vector(self.reference, "interface: reference", "m"),
-            center=checks.vector(self.center, "interface: center", "m"),
-            radius=checks.number(self.radius, "interface: radius", "m", least=0.0),
-            motion=checks.array(self.motion, "interface: motion", shape=(6, None)),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class ModeShapes:
-    """Mode shapes at mesh nodes, for sensors and drawing.
-
-    Attributes
-    ----------
-    nodes : ndarray, shape (n, 3)
-        Reference positions, mesh coordinates [m].
-    matrix : ndarray, shape (3n, k)
-        Displacement columns, mesh axes.
-    triangles : ndarray of int, shape (t, 3) or (t, 6)
-    stress : ndarray or None, shape (n, 6, k)
-        Stress columns xx, yy, zz, yz, xz, xy, mesh axes [Pa].
-
-    Raises
-    ------
-    TypeError, ValueError
-        If shapes do not fit, an entry is not finite, or a triangle names a node that is not there.
-    """
-
-    nodes: np.ndarray
-    matrix: np.ndarray
-    triangles: np.ndarray
-    stress: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        nodes = checks.array(self.nodes, "shapes: nodes", "m", shape=(None, 3))
-        matrix = checks.array(self.matrix, "shapes: matrix", shape=(nodes.size, None))
-        triangles = checks.array(self.triangles, "shapes: triangles", shape=(None, None), dtype=int)
-        if triangles.shape[1] not in (3, 6):
-            raise ValueError(f"shapes: triangles need 3 or 6 nodes, got {triangles.shape[1]}")
-        if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(nodes):
-            raise ValueError(
-                f"shapes: triangles need nodes 0 to {len(nodes) - 1}, got {triangles.min()} to "
-                f"{triangles.max()}"
-            )
-        stress = self.stress
-        if stress is not None:
-            shape = (len(nodes), 6, matrix.shape[1])
-            stress = checks.array(stress, "shapes: stress", "Pa", shape=shape)
-        _set(self, nodes=nodes, matrix=matrix, triangles=triangles, stress=stress)
-
-
-@dataclass(frozen=True, eq=False)
-class Centrifugal:
-    """Static fields about which the rotor vibrates; all of them, not modes only.
-
-    Attributes
-    ----------
-    displacement : ndarray or None, shape (3n,)
-        Per ω², mesh axes [m s²].
-    stress : ndarray or None, shape (n, 6)
-        Per ω² at the nodes, components xx, yy, zz, yz, xz, xy, mesh axes [Pa s²].
-    yield_stress : float or None
-        Yield stress of the material [Pa].
-    constant_stress : ndarray or None, shape (n, 6)
-        Stress at rest, which does not depend on the speed, components as in `stress` [Pa].
-
-    Raises
-    ------
-    TypeError, ValueError
-        If shapes do not fit, an entry is not finite, or the yield stress is not positive.
-    """
-
-    displacement: np.ndarray | None = None
-    stress: np.ndarray | None = None
-    yield_stress: float | None = None
-    constant_stress: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        fields = {}
-        if self.displacement is not None:
-            name = "centrifugal: displacement"
-            fields["displacement"] = checks.vector(self.displacement, name, "m s²", size=None)
-        for name in ("stress", "constant_stress"):
-            if getattr(self, name) is not None:
-                values = checks.array(getattr(self, name), f"centrifugal: {name}", shape=(None, 6))
-                fields[name] = values
-        counts = {name: f.size // (3 if f.ndim == 1 else 6) for name, f in fields.items()}
-        if len(set(counts.values())) > 1:
-            raise ValueError(f"centrifugal: all fields need the same nodes, got {counts}")
-        if self.yield_stress is not None:
-            name = "centrifugal: yield_stress"
-            fields["yield_stress"] = checks.number(self.yield_stress, name, "Pa", above=0.0)
-        _set(self, **fields)
-
-    @property
-    def node_count(self) -> int | None:
-        """Number of nodes n; None where all fields are None."""
-        for field, width in ((self.displacement, 3), (self.stress, 6), (self.constant_stress, 6)):
-            if field is not None:
-                return field.size // width
-        return None
-
-    def stress_at(self, speed: float) -> np.ndarray | None:
-        """Return the static stress at a spin speed [rad/s], with that at rest, (n, 6) [Pa].
-
-        None where the stress per ω² is not known.
-        """
-        speed = checks.number(speed, "speed", "rad/s")
-        if self.stress is None:
-            return None
-        by_spin = speed**2 * self.stress
-        return by_spin if self.constant_stress is None else self.constant_stress + by_spin
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +88,7 @@ class ReducedRotor:
         rigid = checks.labels(self.rigid, "rigid")
         if len(rigid) > size:
             raise ValueError(f"rigid: names {len(rigid)} of {size} columns")
-        _set(
+        set_checked(
             self,
             center_of_mass=checks.vector(self.center_of_mass, "center_of_mass", "m"),
             rigid=rigid,
@@ -342,17 +209,33 @@ class ReducedRotor:
         return field
 
     def save(self, path: str | PathLike) -> None:
-        """Write the rotor to an ``.npz`` file, lossless and without pickle."""
-        from exudyn_rotor.reduction.reduced_file import save_reduced
+        """Write the rotor to an ``.npz`` file, lossless and without pickle.
 
+        A file of that name is replaced only by a complete one.
+
+        Raises
+        ------
+        TypeError
+            If `path` is no path.
+        OSError
+            If the folder does not exist, `path` is a folder or read-only, or the disk is full.
+        """
         save_reduced(self, path)
 
     @classmethod
     def load(cls, path: str | PathLike) -> ReducedRotor:
-        """Read a rotor written by :meth:`save`; never executes code from the file."""
-        from exudyn_rotor.reduction.reduced_file import load_reduced
+        """Read a rotor written by :meth:`save`; never executes code from the file.
 
-        return load_reduced(path)
+        Raises
+        ------
+        TypeError
+            If `path` is no path.
+        OSError
+            If there is no such file.
+        ValueError
+            If the file holds no reduced rotor, is damaged, or was written by another version.
+        """
+        return load_reduced(path, cls)
 
     def __repr__(self) -> str:
         return (
@@ -364,9 +247,3 @@ class ReducedRotor:
 def _check_columns(matrix: np.ndarray, name: str, size: int) -> None:
     if matrix.shape[1] != size:
         raise ValueError(f"{name}: needs one column for each of {size}, got {matrix.shape[1]}")
-
-
-def _set(owner: object, **values: object) -> None:
-    """Set checked fields of a frozen dataclass."""
-    for name, value in values.items():
-        object.__setattr__(owner, name, value)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.reduction.reduced_rotor import ModeShapes, ReducedInterface, ReducedRotor
+from exudyn_rotor.reduction.fields import ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import with_prestress

@@ -22,7 +22,8 @@ from exudyn_rotor.linear.equations.system import LinearRotor, warn_of_eccentrici
 from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes
 from exudyn_rotor.linear.modal.whirl import WhirlContent, spread
 from exudyn_rotor.prestress.static_solution import relief_rotations
-from exudyn_rotor.reduction.reduced_rotor import ReducedInterface, ReducedRotor
+from exudyn_rotor.reduction.fields import ReducedInterface
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.solvers.lanczos import lanczos_modes
