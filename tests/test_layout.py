@@ -17,8 +17,6 @@ LEFT = (
     ("linear.modal.diagram", "linear.modal.campbell"),
     ("linear.equations.probe", "linear.equations.scene"),
     ("linear.response.plots", "linear.response.results"),
-    ("multibody.record", "multibody.rotor_body"),
-    ("multibody.sensors", "multibody.rotor_body"),
 )
 
 
