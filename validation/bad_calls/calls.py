@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from exudyn import OutputVariableType
+from exudyn import OutputVariableType, SystemContainer
 
 import exudyn_rotor as er
 from bad_calls.world import SPEEDS, World, arguments
+from exudyn_rotor.linear.response import plots
 
 Call = tuple[Callable, dict[str, Any]]
 
@@ -38,7 +39,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "Proposal": lambda w: w.proposal,
     "ReducedRotor": lambda w: w.reduced,
     "RotorBody": lambda w: w.body,
-    "RotorBody.watch": lambda w: er.add_rotor(w.mbs, w.reduced, name=None),
+    "RotorBody.watch": lambda w: er.add_rotor(SystemContainer().AddSystem(), w.reduced),
     "RunCheck": lambda w: w.run_check,
     "SolidRotor": lambda w: w.solid,
     "SpinAxis": lambda w: er.SpinAxis([0.0, 0.0, 1.0]),
@@ -225,6 +226,23 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
 }
 
 
+def _sensor_options(*, storeInternal: bool = True, writeToFile: bool = False) -> None: ...
+
+
+# whose keyword arguments ``**options`` are; beside them every call gets one that does not exist
+OPTIONS: dict[str, Callable] = {
+    "stability_threshold": er.stability,
+    "unstable_ranges": er.stability,
+    "*.plot": plots.plot_bode,
+    "*.plot_orbit": plots.plot_orbit,
+    "*.plot_polar": plots.plot_polar,
+    "*.add_drive_torque_sensor": _sensor_options,
+    "*.add_interface_sensor": _sensor_options,
+    "*.add_node_sensor": _sensor_options,
+    "*.add_spin_sensor": _sensor_options,
+}
+
+
 def _state(world: World) -> dict[str, Any]:
     return {"t": 0.0, "q": np.zeros(world.motion.size), "q_t": np.zeros(world.motion.size)}
 
@@ -259,9 +277,16 @@ def function_of(name: str) -> Callable:
 
 
 def parameters(name: str) -> dict[str, inspect.Parameter]:
-    """Return the parameters of a call, without that of its own instance."""
+    """Return the parameters of a call without that of its own instance; options one by one."""
     found = dict(inspect.signature(function_of(name)).parameters)
     found.pop("self", None)
+    rest = [p.name for p in found.values() if p.kind is p.VAR_KEYWORD]
+    if rest:
+        del found[rest[0]]
+        source = OPTIONS.get(name) or OPTIONS[f"*.{name.partition('.')[2]}"]
+        every = inspect.signature(source).parameters.values()
+        found |= {p.name: p for p in every if p.kind is p.KEYWORD_ONLY}
+        found["nonsense"] = inspect.Parameter("nonsense", inspect.Parameter.KEYWORD_ONLY)
     return found
 
 
@@ -283,8 +308,8 @@ def valid(name: str, world: World) -> Call:
         function = getattr(function if bound else instance(world), method)
         required = [
             p
-            for p in parameters(name).values()
-            if p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+            for p in inspect.signature(function).parameters.values()
+            if p.default is p.empty and p.kind is not p.VAR_KEYWORD
         ]
         if make is None and required:
             raise KeyError(f"{name}: no arguments of a valid call in the table")

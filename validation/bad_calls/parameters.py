@@ -15,21 +15,20 @@ _TRANSLATION = v.WORD.but(another_word="axial", speed=3.0)
 _MARKERS = v.MAPPING.but(another_word="soft", another_name={"nowhere": "rigid"})
 _PLACE = v.VECTOR.but("two", no_node=10**6, no_interface="nowhere")
 _ANY_PLACE = Kind(v.VECTOR.good | v.NAME.good | {"two"}).but(below=-1, blank="  ")
-_PLACES = Kind(frozenset({"two"})).but(
+_PLACES = Kind(frozenset({"two", "range"})).but(
     no_interface=["nowhere"], twice=["left", "left"], no_node=10**6, far=[[0.0, math.nan, 0.0]]
 )
 _HARMONIC = v.WHOLE.but(another=99)
 _ROWS = Kind(frozenset({"range", "slice"}) | v.EMPTY, spoiled=True)
-_COEFFICIENT = v.SIGNED.but("table", "function", other_shape=[[1.0, 2.0, 3.0]], nan=[[math.nan]])
+_COEFFICIENT = v.COEFFICIENT.but(other_shape=[[1.0, 2.0, 3.0]], nan=[[math.nan]])
 _SUPPORTS = v.OBJECTS.but(names=["left"])
 _SQUARE = Kind(spoiled=True).but(flat=[1.0] * 9, reflection=-np.eye(3), scaled=2.0 * np.eye(3))
 _NODES = Kind(spoiled=True)
 _TOLERANCE = v.SHARE.but(below=-1e-9)
 _INTERFACES = v.NAMES.but(unknown=["nowhere"], number_among=["left", 3])
-_ORDERED = v.SERIES.but("minus one")
-_POSITIVE_SERIES = Kind(v.SERIES.good - {"zero", "range"}, v.SERIES.more, spoiled=True)
+_ORDERED = v.UNORDERED.but("minus one", falling=[3.0, 2.0, 1.0], repeated=[1.0, 1.0, 2.0])
+_POSITIVES = Kind(v.SERIES.good - {"zero", "range"}, spoiled=True).but(negative=[-2.0, -1.0])
 _FIELD = v.ARRAY
-_WORDS = Kind(frozenset({"empty tuple", "empty list"}), spoiled=True)
 
 BY_NAME: dict[str, Kind] = {
     "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "J": _FIELD, "K": _FIELD, "K2": _FIELD,
@@ -65,10 +64,11 @@ BY_NAME: dict[str, Kind] = {
     "damping": _FIELD,
     "damping_ratio": v.ANY_VALUES,
     "direction": _AXIS,
+    "directions": v.NAMES.but(unknown=["n3"]),
     "displacement": _FIELD,
     "distance": v.NOT_NEGATIVE,
     "drive": v.WORD.but(another_word="soft"),
-    "dropped": _WORDS,
+    "dropped": v.WORDS,
     "duration": v.POSITIVE,
     "elements": v.OBJECT,
     "end_speed": v.SIGNED,
@@ -82,7 +82,7 @@ BY_NAME: dict[str, Kind] = {
     "field": v.OBJECT,
     "formulation": v.OBJECT,
     "frame": v.WORD.but(another_word="moving"),
-    "free_motions": _WORDS,
+    "free_motions": v.WORDS,
     "frequencies": v.SERIES,
     "frequencies_inertial": v.ANY_VALUES,
     "frequencies_rotating": v.ANY_VALUES,
@@ -113,9 +113,11 @@ BY_NAME: dict[str, Kind] = {
     "loads": v.OBJECTS,
     "locking": v.WORD.but(another_word="springs"),
     "log_decrement": v.ANY_VALUES,
+    "log": v.FLAG,
     "low": v.POSITIVE.but("zero"),
     "marker_offsets": v.MAPPING.but(unknown={"nowhere": [0.0, 0.0, 0.0]}, flat={"left": 1.0}),
     "markers": _MARKERS,
+    "marks": v.COUNT,
     "mass": v.POSITIVE,
     "massProportionalDamping": v.NOT_NEGATIVE,
     "mass_damping": v.NOT_NEGATIVE,
@@ -144,6 +146,7 @@ BY_NAME: dict[str, Kind] = {
     "node": v.COUNT.but(beyond=10**6),
     "node_count": v.COUNT_FROM_ONE.but(too_few=1),
     "nodes": _NODES,
+    "nonsense": Kind(frozenset(v.POOL) - {"two"}),
     "objects": v.MAPPING,
     "order": v.SIGNED,
     "orders": _FIELD,
@@ -155,12 +158,12 @@ BY_NAME: dict[str, Kind] = {
     "peak": _FIELD,
     "peak_time": _FIELD,
     "place": v.KNOWN,
-    "places": _WORDS,
+    "places": v.WORDS,
     "plan": v.OBJECT,
     "plane": _FIELD,
     "point": v.VECTOR,
     "point_masses": v.OBJECTS,
-    "points": _FIELD,
+    "points": v.VECTOR,
     "position": v.VECTOR,
     "positions": _FIELD,
     "prestress": v.OBJECT,
@@ -170,14 +173,14 @@ BY_NAME: dict[str, Kind] = {
     "q_t": _FIELD,
     "rank_tolerance": _TOLERANCE,
     "rate": v.FUNCTION,
-    "reasons": _WORDS,
+    "reasons": v.WORDS,
     "reduced": v.OBJECT,
     "reference": v.VECTOR,
     "referencePosition": v.VECTOR,
     "referenceRotationMatrix": _SQUARE,
     "residual": _TOLERANCE,
     "rest": _FIELD,
-    "rigid": _WORDS,
+    "rigid": v.NAMES,
     "rigid_motions": v.COUNT.but(seven=7),
     "rotation": _SQUARE,
     "rotor": v.OBJECT,
@@ -200,12 +203,13 @@ BY_NAME: dict[str, Kind] = {
     "stiffness": _FIELD,
     "stiffnessProportionalDamping": v.NOT_NEGATIVE,
     "stiffness_damping": v.NOT_NEGATIVE,
-    "stiffnesses": _POSITIVE_SERIES,
+    "stiffnesses": _POSITIVES,
+    "storeInternal": v.FLAG,
     "stress": v.FLAG,
     "stress_recovery": v.FUNCTION,
     "superElementRigidMarkersOffsets": _FIELD,
     "supports": _SUPPORTS,
-    "t": v.SIGNED,
+    "t": v.SIGNED.but("large"),
     "target": v.OBJECT,
     "tilt": v.SHARE,
     "tilt_damping": _COEFFICIENT,
@@ -221,9 +225,10 @@ BY_NAME: dict[str, Kind] = {
     "verbose": v.FLAG,
     "warn": v.FLAG,
     "weights": _FIELD,
-    "whirl": _WORDS,
+    "whirl": v.WORDS,
     "whirl_codes": _FIELD,
     "with_attachments": v.OBJECT,
+    "writeToFile": v.FLAG,
     "x": _ORDERED,
     "y": _ORDERED,
     "yield_stress": v.POSITIVE,
@@ -241,8 +246,8 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("HarmonicForce", "at"): _ANY_PLACE,
     ("HarmonicResponse", "frequencies"): _FIELD,
     ("Invariants.of", "damping"): _FIELD,
-    ("ModeBasis", "frequencies"): _FIELD,
-    ("ModeBasis", "labels"): _WORDS,
+    ("ModeBasis", "frequencies"): v.ANY_VALUES,
+    ("ModeBasis", "labels"): v.WORDS,
     ("ModeBasis", "stress"): _FIELD,
     ("Motion.momentum", "q"): _FIELD,
     ("PointMass", "mass"): v.SIGNED,
@@ -251,7 +256,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Prestress", "euler"): _FIELD,
     ("Prestress", "stress"): _FIELD,
     ("Prestress.from_matrix", "euler"): _FIELD,
-    ("Proposal", "labels"): _WORDS,
+    ("Proposal", "labels"): v.WORDS,
     ("Proposal", "modes"): Kind(frozenset({"range"}) | v.EMPTY, spoiled=True),
     ("Proposal", "speeds"): _FIELD,
     ("ReducedRotor", "axis"): v.OBJECT,
@@ -290,15 +295,23 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("*.peak", "order"): _HARMONIC,
     ("*.phasor", "direction"): v.WORD.but(another_word="n3"),
     ("*.phasor", "order"): _HARMONIC,
+    ("*.plot", "order"): _HARMONIC,
+    ("*.plot_orbit", "order"): _HARMONIC,
+    ("*.plot_orbit", "places"): v.NAMES.but(unknown=["nowhere"]),
+    ("*.plot_polar", "direction"): v.WORD.but(another_word="n3"),
+    ("*.plot_polar", "order"): _HARMONIC,
     ("*.rates", "order"): v.WHOLE,
     ("*.semi_axes", "order"): _HARMONIC,
     ("*.table", "order"): _HARMONIC,
     ("*.whirl", "order"): _HARMONIC,
     ("craig_bampton_modes", "count"): v.COUNT,
     ("harmonic_response", "at"): _PLACES,
+    ("select_modes", "negligible"): _TOLERANCE.but("zero"),
+    ("Stiffening", "B"): _FIELD.but("sparse"),
+    ("Stiffening", "K2"): _FIELD.but("sparse"),
     ("propose", "spin"): v.OBJECT,
     ("propose", "supports"): v.OBJECTS,
-    ("spinning_modes", "speeds"): _POSITIVE_SERIES,
+    ("spinning_modes", "speeds"): _POSITIVES,
     ("stress_history", "nodes"): Kind(frozenset({"range"}), spoiled=True),
     ("stress_history", "speed"): Kind(v.SIGNED.good, spoiled=True),
     ("stress_history", "time"): _FIELD,
@@ -321,7 +334,3 @@ def kind_of(name: str, parameter: str) -> Kind:
     if parameter not in BY_NAME:
         raise KeyError(f"{name}: no table says what its argument {parameter!r} takes")
     return BY_NAME[parameter]
-
-
-OPTIONS: dict[str, dict[str, Kind]] = {}
-OPTIONAL: frozenset[Kind] = frozenset()

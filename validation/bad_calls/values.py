@@ -191,6 +191,8 @@ def spoils(good: Any, finite: bool) -> list[tuple[str, Callable[[Any], Any]]]:
 
 
 def _as_array(good: Any) -> np.ndarray | None:
+    if isinstance(good, list | tuple) and not good:
+        return None
     try:
         array = np.asarray(good)
     except ValueError:
@@ -258,15 +260,18 @@ NAME = Kind(frozenset({"text", "digits", "numpy text"})).but(blank="  ")
 KNOWN = Kind().but(list_of_names=["left"], other="Left ")
 EMPTY = frozenset({"empty list", "empty tuple", "empty set", "empty array"})
 NAMES = Kind(EMPTY, spoiled=True)
+WORDS = Kind(EMPTY | NAME.good | {"texts", "array of texts"}, spoiled=True)
 ARRAY = Kind(spoiled=True)
 ANY_VALUES = Kind(spoiled=True, finite=False)
 VECTOR = Kind(frozenset({"three numbers", "range"}), spoiled=True)
 COMPLEX = Kind(VECTOR.good | {"imaginary"}, spoiled=True)
-SERIES = Kind(frozenset({"two", "fraction", "zero", "three numbers", "range"}), spoiled=True).but(
+UNORDERED = Kind(NOT_NEGATIVE.good | VECTOR.good, spoiled=True)
+SERIES = UNORDERED.but(
     falling=[3.0, 2.0, 1.0], repeated=[1.0, 1.0, 2.0], negative=[-3.0, -2.0, -1.0]
 )
 OBJECT = Kind()
 OBJECTS = Kind(EMPTY, spoiled=True)
 MAPPING = Kind(frozenset({"empty dict"}), spoiled=True)
 FUNCTION = Kind(frozenset({"function", "class"}))
+COEFFICIENT = Kind(SIGNED.good | FUNCTION.good | {"table"})
 FILE = Kind(frozenset({"text", "digits", "numpy text", "path"})).but(null_in_path="a\0b")

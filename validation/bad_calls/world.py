@@ -120,7 +120,7 @@ class World:
         return exudyn.SystemContainer().AddSystem()
 
     @cached_property
-    def free_mbs(self) -> exudyn.MainSystem:
+    def assembled(self) -> exudyn.MainSystem:
         """The scene of `body`: the bar at constant speed on two springs, assembled."""
         mbs = exudyn.SystemContainer().AddSystem()
         body = er.add_rotor(mbs, self.reduced, spin=10.0, translation="none")
@@ -138,13 +138,13 @@ class World:
 
     @property
     def body(self) -> er.RotorBody:
-        """The rotor in `free_mbs`."""
-        _ = self.free_mbs
+        """The rotor in `assembled`."""
+        _ = self.assembled
         return self._body
 
     def renew(self) -> None:
-        """Forget the scenes, after a call that should have been refused has changed them."""
-        for name in ("mbs", "free_mbs", "motion", "run_check"):
+        """Forget scenes and mesh, after a call that should have been refused has changed them."""
+        for name in ("mbs", "assembled", "motion", "run_check", "mesh"):
             self.__dict__.pop(name, None)
 
     # -------------------------------------------------------------- results
