@@ -7,6 +7,7 @@ range a ValueError. Arrays that are kept are copies and read-only.
 from __future__ import annotations
 
 import copyreg
+import operator
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ Shape = tuple[int | None, ...]
 _LONGEST = 80  # characters of a value in a message
 _LARGEST = 1e150  # squares of numbers stay finite
 _MOST = 2**31 - 1  # nodes, modes or points: more than any machine holds
+_SIGNS = {">": operator.gt, "≥": operator.ge, "<": operator.lt, "≤": operator.le}
 _SYMMETRY = 1e-8  # of the largest entry: above the rounding of sums, far below a wrong matrix
 
 
@@ -38,7 +40,7 @@ def shown(value: object) -> str:
     except Exception:
         return f"a value of type {type(value).__name__}"
     text = " ".join(text.split())
-    text = text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+    text = text[: _LONGEST - 1] + "…" if len(text) > _LONGEST else text
     return text if isinstance(value, _PLAIN) else f"{text} ({type(value).__name__})"
 
 
@@ -67,17 +69,12 @@ def number(
     most: float | None = None,
 ) -> float:
     """Return a finite real number; `above` and `below` are excluded, `least` and `most` not."""
-    signs = {">": above, "≥": least, "<": below, "≤": most}
-    limits = " and ".join(f"{sign} {n:g}" for sign, n in signs.items() if n is not None)
-    needed = f"a finite number{_unit(unit)}{' ' if limits else ''}{limits}"
+    given = zip(_SIGNS.items(), (above, least, below, most), strict=True)
+    limits = [(sign, holds, n) for (sign, holds), n in given if n is not None]
+    words = " and ".join(f"{sign} {n:g}" for sign, _, n in limits)
+    needed = f"a finite number{_unit(unit)}{' ' if words else ''}{words}"
     result = _scalar(value, name, needed)
-    outside = (
-        (above is not None and not result > above)
-        or (least is not None and not result >= least)
-        or (below is not None and not result < below)
-        or (most is not None and not result <= most)
-    )
-    if outside or not np.isfinite(result):
+    if not np.isfinite(result) or not all(holds(result, n) for _, holds, n in limits):
         raise ValueError(_told(name, needed, value))
     if abs(result) > _LARGEST:
         raise ValueError(f"{name}: needs a number below {_LARGEST:g} in size, got {shown(value)}")
@@ -164,10 +161,9 @@ def labels(
     listed = (values,) if isinstance(values, str) else items(values, name, "names (a sequence)")
     result = tuple(label(value, name) for value in listed)
     there = result if known is None else tuple(known)
-    for value in result:
-        if value not in there:
-            names = ", ".join(repr(item) for item in there) or "none"
-            raise ValueError(f"{name}: {shown(value)} is unknown; there are: {names}")
+    for value in (one for one in result if one not in there):
+        names = ", ".join(repr(item) for item in there) or "none"
+        raise ValueError(f"{name}: {shown(value)} is unknown; there are: {names}")
     return result
 
 
@@ -194,8 +190,9 @@ def array(
         raise ValueError(_told(name, needed, values) + f" with the shape {result.shape}")
     if finite and not np.all(np.isfinite(result)):
         raise ValueError(_told(name, needed, values))
-    if finite and np.max(np.abs(result), initial=0) > _LARGEST:
-        raise ValueError(f"{name}: needs numbers below {_LARGEST:g} in size, got {shown(values)}")
+    largest = _MOST if dtype is int else _LARGEST
+    if finite and np.max(np.abs(result), initial=0) > largest:
+        raise ValueError(f"{name}: needs numbers below {largest:g} in size, got {shown(values)}")
     return result
 
 
@@ -218,9 +215,8 @@ def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None
     """Return a matrix of finite numbers: a read-only array, or a sparse one as ``csr_array``."""
     if not sp.issparse(values):
         return array(values, name, unit, shape=shape)
-    needed = f"finite numbers{_unit(unit)}{_of_shape(shape)}"
     if not _has_shape(values.shape, shape):
-        raise ValueError(f"{name}: needs {needed}, got a sparse matrix of shape {values.shape}")
+        raise ValueError(_told(name, f"finite numbers{_unit(unit)}{_of_shape(shape)}", values))
     rows = values.tocsr()
     result = sp.csr_array(rows)
     result.data = array(rows.data, f"{name}: its entries", unit, shape=(None,))
@@ -253,10 +249,9 @@ def rotation(values: ArrayLike, name: str = "rotation") -> np.ndarray:
 
 def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
     """Return `values` as an array of numbers that `dtype` can hold without loss."""
-    if isinstance(values, str | bytes | Mapping | set | frozenset) or values is None:
+    foreign = str | bytes | Mapping | set | frozenset | None
+    if isinstance(values, foreign) or sp.issparse(values):
         raise TypeError(_told(name, needed, values))
-    if sp.issparse(values):
-        raise TypeError(f"{name}: needs {needed}, got a sparse matrix; give a dense array")
     if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
         raise ValueError(f"{name}: needs {needed}, got an array with masked entries; fill them")
     try:
@@ -342,10 +337,7 @@ def _named(kinds: type | tuple[type, ...]) -> str:
 def mapping(
     value: Mapping[str, Kind], name: str, what: str = "", known: Iterable[str] | None = None
 ) -> Mapping[str, Kind]:
-    """Return a mapping whose keys are names; `what` says what it maps names to.
-
-    The names are those that are `known`, if that is given.
-    """
+    """Return a mapping whose keys are names, `known` ones if given, to what `what` says."""
     if not isinstance(value, Mapping):
         raise TypeError(_told(name, f"a dictionary of name to {what or 'value'}", value))
     labels(tuple(value), name, known)

@@ -274,7 +274,7 @@ def test_mappings():
     with pytest.raises(TypeError, match=r"^limits: needs a dictionary of name to number, got"):
         checks.mapping([("left", 1)], "limits", "number")
     for key in (None, 3, ("left",)):
-        with pytest.raises(TypeError, match=r"^limits: its key: needs a name \(text\), got "):
+        with pytest.raises(TypeError, match=r"^limits: needs a name \(text\), got "):
             checks.mapping({key: 1}, "limits")
     given_mapping = {"a": 1}
     kept = checks.read_only_mapping(given_mapping)
