@@ -6,7 +6,7 @@
 import warnings
 
 import pytest
-from bad_calls import calls, judge, report
+from bad_calls import calls, judge, parameters, report
 from bad_calls.world import World
 
 CALLS = 400  # of some ten thousands
@@ -25,6 +25,19 @@ def test_valid_call_passes(world, name):
         warnings.simplefilter("ignore")
         function(**given)
     world.renew()
+
+
+def test_tables_hold_nothing_else():
+    """Every argument has a kind, and no entry is left of what is gone."""
+    names = list(calls.public_calls())
+    used = {(name, argument) for name in names for argument in calls.parameters(name)}
+    for name, argument in used:
+        parameters.kind_of(name, argument)
+    beside = {(f"*.{name.partition('.')[2]}", argument) for name, argument in used}
+    assert set(parameters.BY_NAME) <= {argument for _, argument in used}
+    assert set(parameters.BY_CALL) <= used | beside
+    places = {*names, *(f"*.{name.partition('.')[2]}" for name in names)}
+    assert set(calls.ARGUMENTS) | set(calls.OPTIONS) | set(calls.INSTANCES) <= places
 
 
 def test_bad_calls_are_refused_clearly(world, monkeypatch):

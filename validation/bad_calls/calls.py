@@ -113,7 +113,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "stress_history": lambda w: {
         "field": w.stress,
         "time": [0.0, 0.1, 0.2, 0.3],
-        "zeta": w.coordinates,
+        "modal_coordinates": w.coordinates,
         "speed": 10.0,
         "nodes": [0, 1],
     },
@@ -142,15 +142,6 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "ConstantSpeed.acceleration": lambda w: {"t": 0.0},
     "ConstantSpeed.rate": lambda w: {"t": 0.0},
     "ConstantSpeed.value": lambda w: {"t": 0.0},
-    "Campbell.load": lambda w: {"path": w.stored(w.campbell)},
-    "CriticalSpeedMap.load": lambda w: {"path": w.stored(w.critical_map)},
-    "CriticalSpeeds.load": lambda w: {"path": w.stored(w.critical)},
-    "HarmonicResponse.load": lambda w: {"path": w.stored(w.harmonic)},
-    "ReducedRotor.load": lambda w: {"path": w.stored(w.reduced)},
-    "Stability.load": lambda w: {"path": w.stored(w.stability)},
-    "StabilityMap.load": lambda w: {"path": w.stored(w.stability_map)},
-    "StressHistory.load": lambda w: {"path": w.stored(w.history)},
-    "UnbalanceResponse.load": lambda w: {"path": w.stored(w.unbalance)},
     "*.save": lambda w: {"path": w.folder / "saved.npz"},
     "*.orbit": lambda w: {"value": 10.0},
     "*.plot_orbit": lambda w: {"value": 10.0},
@@ -212,14 +203,14 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "SpinAxis.radial": lambda w: {"points": np.zeros((4, 3))},
     "SpinAxis.rotation": lambda w: {"angle": 0.1},
     "SpinAxis.turned": lambda w: {"rotation": np.eye(3)},
-    "StressField.at": lambda w: {"zeta": w.coordinates[0], "speed": 10.0, "nodes": np.arange(3)},
+    "StressField.at": lambda w: {"modal_coordinates": w.coordinates[0], "speed": 10.0, "nodes": np.arange(3)},
     "StressField.history": lambda w: {
-        "zeta": w.coordinates,
+        "modal_coordinates": w.coordinates,
         "speed": np.full(4, 10.0),
         "nodes": np.arange(3),
     },
     "StressField.of": lambda w: {"reduced": w.reduced, "selection": w.selection},
-    "StressField.plot": lambda w: {"zeta": w.coordinates[0], "speed": 10.0},
+    "StressField.plot": lambda w: {"modal_coordinates": w.coordinates[0], "speed": 10.0},
     "Support.matrices": lambda w: {"speed": 10.0},
     "Support.terms": lambda w: {"speed": 10.0},
     "Unbalance.from_grade": lambda w: {"at": "left", "grade": 2.5, "mass": 5.0, "speed": 300.0},
@@ -299,6 +290,8 @@ def valid(name: str, world: World) -> Call:
         If the call has no entry in the tables above.
     """
     owner, _, method = name.partition(".")
+    if method == "load":
+        return function_of(name), {"path": world.stored(INSTANCES[owner](world))}
     make = ARGUMENTS.get(name) or ARGUMENTS.get(f"*.{method}")
     function = getattr(er, owner)
     if method:

@@ -40,7 +40,6 @@ BY_NAME: dict[str, Kind] = {
     "allow_parts": v.FLAG,
     "at": _PLACE,
     "ax": v.OBJECT,
-    "axes": v.OBJECT,
     "axial": v.FLAG,
     "axis": _AXIS,
     "balanced": v.FLAG,
@@ -132,7 +131,6 @@ BY_NAME: dict[str, Kind] = {
     "modal_coordinates": _FIELD,
     "modal_velocities": _FIELD,
     "mode_mass": _FIELD,
-    "model": v.OBJECT,
     "modes": v.COUNT_FROM_ONE,
     "moment": v.COMPLEX,
     "force": v.COMPLEX,
@@ -232,7 +230,6 @@ BY_NAME: dict[str, Kind] = {
     "x": _ORDERED,
     "y": _ORDERED,
     "yield_stress": v.POSITIVE,
-    "zeta": _FIELD,
     "zeta_tt": _FIELD,
 }  # fmt: skip
 
