@@ -203,7 +203,11 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "SpinAxis.radial": lambda w: {"points": np.zeros((4, 3))},
     "SpinAxis.rotation": lambda w: {"angle": 0.1},
     "SpinAxis.turned": lambda w: {"rotation": np.eye(3)},
-    "StressField.at": lambda w: {"modal_coordinates": w.coordinates[0], "speed": 10.0, "nodes": np.arange(3)},
+    "StressField.at": lambda w: {
+        "modal_coordinates": w.coordinates[0],
+        "speed": 10.0,
+        "nodes": np.arange(3),
+    },
     "StressField.history": lambda w: {
         "modal_coordinates": w.coordinates,
         "speed": np.full(4, 10.0),
