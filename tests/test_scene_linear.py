@@ -18,6 +18,7 @@ from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
 from exudyn_rotor.linear.stability.analysis import exponents, stability
 from exudyn_rotor.linear.stability.floquet import constant_exponents, fold, monodromy
+from exudyn_rotor.reduction.mode_kind import ModeKind
 
 BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
 SPEED = 200.0
@@ -53,13 +54,13 @@ def on_springs(markers="position", rotation=None, law=None, **options):
 def linear_rings(turn=None):
     """Return the rings on the same springs; `turn` takes mesh axes to inertial axes.
 
-    With another name for the spin nothing of its coupling by unbalance is left out, as in scenes.
+    With the spin as any free motion nothing of its coupling by unbalance is left out, as in scenes.
     """
     turn = np.eye(3) if turn is None else turn
     K, D = (turn.T @ np.diag(values) @ turn for values in BEARING)
-    rigid = tuple("turn" if name == "spin" else name for name in rings().rigid)
+    kinds = [ModeKind.FREE if kind is ModeKind.SPIN else kind for kind in rings().rigid_kinds]
     supports = [Support(name, K, D) for name in ("left", "right")]
-    return LinearRotor.of(replace(rings(), rigid=rigid), supports)
+    return LinearRotor.of(replace(rings(), rigid_kinds=kinds), supports)
 
 
 def spin_held(linear, speed, moving):

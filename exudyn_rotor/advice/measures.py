@@ -11,7 +11,7 @@ import scipy.linalg
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.multibody.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
@@ -44,8 +44,8 @@ class Measures:
     def flexible(self) -> np.ndarray:
         """Which modal coordinates are flexible modes, ascending in frequency."""
         stiff = np.diag(self.invariants.K) > 0.0
-        named = [name not in RIGID for name in self.body.selection.labels]
-        return np.flatnonzero(stiff & named)
+        elastic = [kind is ModeKind.ELASTIC for kind in self.body.selection.kinds]
+        return np.flatnonzero(stiff & elastic)
 
     @cached_property
     def size(self) -> float:

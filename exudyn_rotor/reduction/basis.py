@@ -13,10 +13,11 @@ import scipy.linalg
 import scipy.sparse as sp
 
 from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 
-RIGID = ("translation 1", "translation 2", "translation along axis", "spin", "tilt 1", "tilt 2")
+RIGID = rigid_names(RIGID_KINDS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +28,8 @@ class OrthonormalBasis:
     ----------
     matrix : ndarray, shape (3n, k)
         Displacement columns, mesh axes.
-    rigid : tuple of str
-        Names of the leading rigid columns, out of :data:`RIGID`.
+    rigid_kinds : tuple of ModeKind
+        What the leading rigid columns are.
     from_modes : ndarray, shape (r, k)
         Share of every component mode in every column.
     dropped : tuple of str
@@ -36,13 +37,13 @@ class OrthonormalBasis:
     """
 
     matrix: np.ndarray
-    rigid: tuple[str, ...]
+    rigid_kinds: tuple[ModeKind, ...]
     from_modes: np.ndarray
     dropped: tuple[str, ...]
 
 
 def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.ndarray:
-    """Return the six rigid motions (3n × 6) in the order of :data:`RIGID`.
+    """Return the six rigid motions (3n × 6) in the order of ``RIGID_KINDS``.
 
     Translations along n1, n2, e, then rotations about e, n1, n2 through `center`.
     """
@@ -55,7 +56,7 @@ def rigid_columns(nodes: np.ndarray, axis: SpinAxis, center: np.ndarray) -> np.n
 
 def orthonormal_basis(
     rigid: np.ndarray,
-    rigid_names: tuple[str, ...],
+    rigid_kinds: tuple[ModeKind, ...],
     modes: ModeBasis,
     mass: sp.csr_array,
     stiffness: sp.csr_array,
@@ -67,21 +68,21 @@ def orthonormal_basis(
     smaller than `rank_tolerance` times its own norm. The flexible columns are then turned so that
     M and K become diagonal on them, ascending in frequency.
     """
-    columns, kept_rigid, _ = _gram_schmidt(np.zeros((len(rigid), 0)), rigid, mass, rank_tolerance)
-    flexible, kept, triangle = _gram_schmidt(columns, modes.matrix, mass, rank_tolerance)
+    columns, rigid_used, _ = _gram_schmidt(np.zeros((len(rigid), 0)), rigid, mass, rank_tolerance)
+    flexible, modes_used, triangle = _gram_schmidt(columns, modes.matrix, mass, rank_tolerance)
     _, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
-    from_modes = np.zeros((modes.matrix.shape[1], columns.shape[1] + len(kept)))
-    from_modes[kept, columns.shape[1] :] = scipy.linalg.solve_triangular(triangle, turn)
+    from_modes = np.zeros((modes.matrix.shape[1], columns.shape[1] + len(modes_used)))
+    from_modes[modes_used, columns.shape[1] :] = scipy.linalg.solve_triangular(triangle, turn)
     return OrthonormalBasis(
         matrix=np.hstack([columns, flexible @ turn]),
-        rigid=tuple(rigid_names[i] for i in kept_rigid),
+        rigid_kinds=tuple(rigid_kinds[i] for i in rigid_used),
         from_modes=from_modes,
-        dropped=_missing(rigid_names, kept_rigid) + _missing(modes.labels, kept),
+        dropped=_unused(rigid_names(rigid_kinds), rigid_used) + _unused(modes.labels, modes_used),
     )
 
 
-def _missing(names: tuple[str, ...], kept: list[int]) -> tuple[str, ...]:
-    return tuple(name for i, name in enumerate(names) if i not in kept)
+def _unused(names: tuple[str, ...], used: list[int]) -> tuple[str, ...]:
+    return tuple(name for i, name in enumerate(names) if i not in used)
 
 
 def _gram_schmidt(
@@ -89,35 +90,35 @@ def _gram_schmidt(
 ) -> tuple[np.ndarray, list[int], np.ndarray]:
     """Orthonormalise `columns` against `first` and each other; two passes keep full precision.
 
-    Returns the new columns, the indices of those kept, and the triangle that maps the new columns
-    back to the kept ones (less their share in `first`).
+    Returns the new columns, the indices of those used, and the triangle that maps the new columns
+    back to the used ones (less their share in `first`).
     """
     size, limit = len(columns), first.shape[1] + columns.shape[1]
     basis, weighted = np.empty((size, limit)), np.empty((size, limit))
     count = first.shape[1]
     basis[:, :count], weighted[:, :count] = first, mass @ first
-    start, kept, shares = count, [], []
+    start, used, shares = count, [], []
     largest = np.max(np.sqrt(np.maximum(_squared_norms(columns, mass), 0.0)), initial=0.0)
     for index in range(columns.shape[1]):
         column = np.array(columns[:, index], dtype=float)
-        own_norm = np.sqrt(max(column @ (mass @ column), 0.0))
+        full_norm = np.sqrt(max(column @ (mass @ column), 0.0))
         share = np.zeros(count)
         for _ in range(2):
-            part = weighted[:, :count].T @ column
-            column -= basis[:, :count] @ part
-            share += part
+            projection = weighted[:, :count].T @ column
+            column -= basis[:, :count] @ projection
+            share += projection
         weight = mass @ column
         norm = np.sqrt(max(column @ weight, 0.0))
-        if norm <= tolerance * own_norm or own_norm <= 1e-12 * largest:
+        if norm <= tolerance * full_norm or full_norm <= 1e-12 * largest:
             continue
         basis[:, count], weighted[:, count] = column / norm, weight / norm
-        kept.append(index)
+        used.append(index)
         shares.append(np.append(share[start:], norm))
         count += 1
-    triangle = np.zeros((len(kept), len(kept)))
+    triangle = np.zeros((len(used), len(used)))
     for j, share in enumerate(shares):
         triangle[: len(share), j] = share
-    return basis[:, start:count], kept, triangle
+    return basis[:, start:count], used, triangle
 
 
 def _squared_norms(columns: np.ndarray, mass: sp.csr_array) -> np.ndarray:

@@ -12,10 +12,11 @@ from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attachment import attachment_modes
-from exudyn_rotor.reduction.basis import RIGID, OrthonormalBasis, orthonormal_basis, rigid_columns
+from exudyn_rotor.reduction.basis import OrthonormalBasis, orthonormal_basis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
@@ -52,8 +53,8 @@ def _reduced(
     attach: bool = True,
 ) -> ReducedRotor:
     center = rotor.center_of_mass
-    rigid, names = _rigid_motions(rotor, center)
-    basis = orthonormal_basis(rigid, names, component, rotor.mass, rotor.stiffness, rank_tolerance)
+    rigid, kinds = _rigid_motions(rotor, center)
+    basis = orthonormal_basis(rigid, kinds, component, rotor.mass, rotor.stiffness, rank_tolerance)
     if basis.matrix.shape[1] == 0:
         raise ValueError("the reduced basis is empty: ask for at least one component mode")
     invariants = Invariants.of(
@@ -64,13 +65,14 @@ def _reduced(
         basis.matrix,
         rotor.axis.direction,
     )
-    _check_stable(invariants, len(basis.rigid))
+    rigid_count = len(basis.rigid_kinds)
+    _check_stable(invariants, rigid_count)
     own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
-        invariants=_stiffened(rotor, _cleaned(invariants, len(basis.rigid)), basis.matrix),
-        rigid=basis.rigid,
+        invariants=_stiffened(rotor, _cleaned(invariants, rigid_count), basis.matrix),
+        rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
         mode_mass=own_share.T @ (rotor.mass @ own_share),
         dropped=basis.dropped,
@@ -118,17 +120,17 @@ def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
 
 def _rigid_motions(
     rotor: FiniteElementRotor, center: np.ndarray
-) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the rigid motions that the stiffness matrix leaves free, with their names."""
+) -> tuple[np.ndarray, tuple[ModeKind, ...]]:
+    """Return the rigid motions that the stiffness matrix leaves free, and what they are."""
     rigid = rigid_columns(rotor.nodes, rotor.axis, center)
     if not rotor.grounded:
-        return rigid, RIGID
+        return rigid, RIGID_KINDS
     if rotor.rigid_motions == 0:
         return rigid[:, :0], ()
     scaled = rigid / np.maximum(np.linalg.norm(rigid, axis=0), 1e-300)
     _, _, vt = scipy.linalg.svd(rotor.stiffness @ scaled, full_matrices=False)
     free = scaled @ vt[6 - rotor.rigid_motions :].T
-    return free, tuple(f"free motion {i + 1}" for i in range(rotor.rigid_motions))
+    return free, (ModeKind.FREE,) * rotor.rigid_motions
 
 
 def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
@@ -140,8 +142,6 @@ def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
         M=np.eye(invariants.size),
         K=np.diag(stiffness),
         center=np.zeros(3),
-        G=0.5 * (invariants.G - invariants.G.T),
-        C=0.5 * (invariants.C + invariants.C.T),
     )
 
 

@@ -8,7 +8,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -34,7 +36,7 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     data = {
         "axis": np.vstack([rotor.axis.direction, rotor.axis.point]),
         "center_of_mass": rotor.center_of_mass,
-        "rigid": np.array(rotor.rigid, dtype=str),
+        "rigid_kinds": np.array([kind.name for kind in rotor.rigid_kinds], dtype=str),
         "interface_names": np.array(list(rotor.interfaces), dtype=str),
         "mode_mass": rotor.mode_mass,
         "dropped": np.array(rotor.dropped, dtype=str),
@@ -90,7 +92,7 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
         "axis": SpinAxis(*axis),
         "center_of_mass": entries.array("center_of_mass"),
         "invariants": _invariants(entries.group("invariants.")),
-        "rigid": entries.words("rigid"),
+        "rigid_kinds": _kinds(entries.words("rigid_kinds", unique=False)),
         "interfaces": {
             name: _interface(entries.group(f"interface{index}."))
             for index, name in enumerate(entries.words("interface_names"))
@@ -104,6 +106,11 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
     }
     attached.close()
     return fields
+
+
+def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:
+    checks.labels(names, "rigid_kinds", ModeKind.__members__)
+    return tuple(ModeKind[name] for name in names)
 
 
 def _invariants(entries: Entries) -> Invariants:

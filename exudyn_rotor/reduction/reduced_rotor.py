@@ -16,6 +16,7 @@ from exudyn_rotor.reduction.fields import (
     ReducedInterface,
     set_checked,
 )
+from exudyn_rotor.reduction.mode_kind import ModeKind, rigid_names
 from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -38,8 +39,8 @@ class ReducedRotor:
         Mesh coordinates [m].
     invariants : Invariants
         In the basis of k columns, about the centre of mass, mesh axes.
-    rigid : tuple of str
-        Names of the leading rigid columns; empty for a grounded rotor.
+    rigid_kinds : tuple of ModeKind
+        What the leading rigid columns are; empty for a grounded rotor. All others are elastic.
     interfaces : mapping of str to ReducedInterface
     mode_mass : ndarray, shape (k, k)
         Mass matrix of the component modes alone, the base of mass-proportional damping.
@@ -66,7 +67,7 @@ class ReducedRotor:
     axis: SpinAxis
     center_of_mass: np.ndarray
     invariants: Invariants
-    rigid: tuple[str, ...]
+    rigid_kinds: tuple[ModeKind, ...]
     interfaces: Mapping[str, ReducedInterface]
     mode_mass: np.ndarray
     dropped: tuple[str, ...] = ()
@@ -85,13 +86,17 @@ class ReducedRotor:
         for name, interface in self.interfaces.items():
             checks.instance(interface, f"interfaces[{name!r}]", ReducedInterface)
             _check_columns(interface.motion, f"interfaces[{name!r}]: motion", size)
-        rigid = checks.labels(self.rigid, "rigid")
-        if len(rigid) > size:
-            raise ValueError(f"rigid: names {len(rigid)} of {size} columns")
+        kinds = checks.instances(self.rigid_kinds, "rigid_kinds", ModeKind)
+        repeated = len(set(kinds)) < len(kinds) and set(kinds) != {ModeKind.FREE}
+        if len(kinds) > size or ModeKind.ELASTIC in kinds or repeated:
+            raise ValueError(
+                f"rigid_kinds: needs at most {size} rigid motions, each once, got "
+                f"{[kind.name for kind in kinds]}"
+            )
         set_checked(
             self,
             center_of_mass=checks.vector(self.center_of_mass, "center_of_mass", "m"),
-            rigid=rigid,
+            rigid_kinds=kinds,
             interfaces=checks.read_only_mapping(self.interfaces),
             mode_mass=checks.symmetric(self.mode_mass, "mode_mass", size=size),
             dropped=checks.labels(self.dropped, "dropped"),
@@ -123,6 +128,17 @@ class ReducedRotor:
     def frequencies(self) -> np.ndarray:
         """Eigenfrequencies at rest of the columns [rad/s], shape (k,); zero for rigid motions."""
         return checks.read_only(np.sqrt(np.maximum(np.diag(self.invariants.K), 0.0)))
+
+    @property
+    def kinds(self) -> tuple[ModeKind, ...]:
+        """What each column is."""
+        elastic = self.size - len(self.rigid_kinds)
+        return (*self.rigid_kinds, *(ModeKind.ELASTIC,) * elastic)
+
+    @property
+    def rigid(self) -> tuple[str, ...]:
+        """Names of the leading rigid columns."""
+        return rigid_names(self.rigid_kinds)
 
     @property
     def labels(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
@@ -27,7 +27,10 @@ class Selection:
     origin : ndarray, shape (3,)
         Frame origin, mesh coordinates [m]: the centre of mass where the translation is free, else
         the foot of its perpendicular on the spin axis.
+    kinds : tuple of ModeKind
+        What each column is.
     labels : tuple of str
+        Names of the columns, for people.
     invariants : Invariants
         In the basis Ψ, about the origin, mesh axes.
     source : ReducedRotor
@@ -36,6 +39,7 @@ class Selection:
 
     T: np.ndarray
     origin: np.ndarray
+    kinds: tuple[ModeKind, ...]
     labels: tuple[str, ...]
     invariants: Invariants
     source: ReducedRotor
@@ -83,15 +87,21 @@ def select_modes(
         origin = reduced.center_of_mass
     else:
         origin = reduced.axis.project(reduced.center_of_mass)
-    T, labels = _columns(reduced, formulation, origin)
+    T, columns = _columns(reduced, formulation, origin)
     invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
-    kept = _without_noise(invariants, negligible)
-    return Selection(T, origin, labels, kept, reduced.without_shapes())
+    return Selection(
+        T=checks.read_only(T),
+        origin=checks.read_only(origin),
+        kinds=tuple(reduced.kinds[i] for i in columns),
+        labels=tuple(reduced.labels[i] for i in columns),
+        invariants=_without_noise(invariants, negligible),
+        source=reduced.without_shapes(),
+    )
 
 
 def _same_basis(one: ReducedRotor, two: ReducedRotor) -> bool:
     """Compare what is linear or bilinear in the columns, and kept without shapes."""
-    if one.rigid != two.rigid or one.size != two.size:
+    if one.rigid_kinds != two.rigid_kinds or one.size != two.size:
         return False
     a, b = one.invariants, two.invariants
     pairs = [
@@ -131,28 +141,36 @@ def _check_possible(reduced: ReducedRotor, formulation: Formulation) -> None:
             "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
             "without mass cannot move freely: use translation='none' and a prescribed spin"
         )
-    if formulation.has_spin and "spin" not in reduced.rigid:
+    if formulation.has_spin and ModeKind.SPIN not in reduced.rigid_kinds:
         raise ValueError(
             "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
             "prescribe the spin, or give the rotor mass off the axis"
         )
 
 
+_HELD_BY_TRANSLATIONS = {
+    0: (),
+    2: (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
+    3: (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.AXIAL),
+}
+
+
 def _columns(
     reduced: ReducedRotor, formulation: Formulation, origin: np.ndarray
-) -> tuple[np.ndarray, tuple[str, ...]]:
+) -> tuple[np.ndarray, list[int]]:
+    """Return the basis T and which columns of the reduced basis it consists of."""
     identity = np.eye(reduced.size)
-    holds_spin = formulation.has_spin or formulation.drive == "rigid"
-    held = RIGID[: formulation.translation_count]
     if reduced.grounded:
-        return identity, reduced.labels
+        return identity, list(range(reduced.size))
+    held = _HELD_BY_TRANSLATIONS[formulation.translation_count]
+    holds_spin = formulation.has_spin or formulation.drive == "rigid"
     if holds_spin:
-        held = (*held, "spin")
-    keep = [i for i, name in enumerate(reduced.labels) if name not in held]
-    T = identity[:, keep]
+        held = (*held, ModeKind.SPIN)
+    columns = [i for i, kind in enumerate(reduced.kinds) if kind not in held]
+    T = identity[:, columns]
     if holds_spin and not formulation.translation_count:
         T = _orthogonal_to(_spin_about(reduced, origin), T)
-    return T, tuple(reduced.labels[i] for i in keep)
+    return T, columns
 
 
 def _spin_about(reduced: ReducedRotor, origin: np.ndarray) -> np.ndarray:

@@ -34,7 +34,7 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
         If an index does not exist or is given twice, or nothing would be left.
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
-    rigid = len(reduced.rigid)
+    rigid = len(reduced.rigid_kinds)
     chosen = _checked(indices, reduced.size - rigid)
     columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
     if columns.size == 0:

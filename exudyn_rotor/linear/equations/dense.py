@@ -19,7 +19,7 @@ def as_reduced(rotor: SolidRotor) -> ReducedRotor:
         axis=rotor.axis,
         center_of_mass=rotor.center_of_mass,
         invariants=_invariants(rotor),
-        rigid=(),
+        rigid_kinds=(),
         interfaces={
             name: ReducedInterface(
                 entry.reference,
