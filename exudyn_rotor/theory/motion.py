@@ -53,8 +53,9 @@ class Motion:
     second_order : Stiffening
     orientation : ndarray, shape (3, 3), optional
         Rotation from rotor axes at θ = 0 to inertial axes.
-    plane : ndarray, shape (3, 2), optional
-        Inertial directions of the in-plane translations, ``N`` (89).
+    plane : array_like, shape (3, 2), optional
+        Inertial directions of the in-plane translations, ``N`` (89). Of no effect where the
+        formulation has none; any number of columns will do then.
     gravity : array_like, shape (3,), optional
         Acceleration, inertial axes [m/s²] (App. A).
 
@@ -99,7 +100,8 @@ class Motion:
             self.orientation = checks.rotation(orientation, "orientation")
         self.gravity = checks.vector(np.zeros(3) if gravity is None else gravity, "gravity", "m/s²")
         if plane is not None:
-            plane = checks.array(plane, "plane", shape=(3, 2))
+            columns = 2 if formulation.translation_count == 2 else None
+            plane = checks.array(plane, "plane", shape=(3, columns))
         self._e = skew(invariants.direction)
         self._axis = SpinAxis(invariants.direction)
         self.free_directions = self._free_directions(plane)
