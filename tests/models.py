@@ -1,17 +1,28 @@
 """Small rotors that several tests share."""
 
+from functools import cache
+
 import ngsolve as ngs
 import numpy as np
 from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, Z
+
+from exudyn_rotor import SolidRotor
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 ALUMINIUM = {"youngsModulus": 7.0e10, "poissonsRatio": 0.33, "density": 2700.0}
 
 
-def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0) -> ngs.Mesh:
+@cache
+def disc_rotor(order: int = 2, safety: float = 1.0) -> SolidRotor:
+    """Return the rotor of :func:`disc_on_shaft`; made once, for rotors do not change."""
+    return SolidRotor.from_ngsolve(disc_on_shaft(safety=safety), STEEL, "z", order=order)
+
+
+def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0, safety: float = 1.0) -> ngs.Mesh:
     """Return a steel disc (radius 0.15 m) on a shaft (radius 0.02 m, z from 0 to 0.5 m).
 
-    Material 'steel'; the end faces of the shaft are named 'left' and 'right'.
+    Material 'steel'; the end faces of the shaft are named 'left' and 'right'. `safety` is the
+    radius of the curves over the length of the elements there; Netgen's default is 2.
     """
     shaft = Cylinder(Pnt(0, 0, 0), Z, 0.02 * scale, 0.5 * scale)
     disc = Cylinder(Pnt(0, 0, 0.2 * scale), Z, 0.15 * scale, 0.03 * scale)
@@ -19,7 +30,8 @@ def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0) -> ngs.Mesh:
     solid.mat("steel")
     solid.faces.Min(Z).name = "left"
     solid.faces.Max(Z).name = "right"
-    return ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=maxh * scale))
+    geometry = OCCGeometry(solid)
+    return ngs.Mesh(geometry.GenerateMesh(maxh=maxh * scale, curvaturesafety=safety))
 
 
 def two_material_cylinder(maxh: float = 0.06) -> ngs.Mesh:

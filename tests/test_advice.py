@@ -7,7 +7,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import STEEL, disc_on_shaft
+from models import disc_rotor
 from point_rotors import ring_rotor
 from run_scenes import scene, solve
 
@@ -16,7 +16,6 @@ from exudyn_rotor import (
     BaseAcceleration,
     HarmonicForce,
     PrescribedMotion,
-    SolidRotor,
     Support,
     add_rotor,
     campbell,
@@ -34,7 +33,7 @@ SUPPORTS = [Support(name, STIFFNESS, damping=DAMPING) for name in ("left", "righ
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z").center_interfaces()
+    rotor = disc_rotor().center_interfaces()
     return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
 
 

@@ -4,7 +4,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import MarkerNodeCoordinate
-from models import STEEL, disc_on_shaft
+from models import disc_rotor
 
 from exudyn_rotor import PrescribedMotion, SolidRotor, add_rotor
 
@@ -14,7 +14,7 @@ RUN_UP = PrescribedMotion.run_up(0.0, 100.0, 1.0)
 
 @pytest.fixture(scope="module")
 def solid():
-    return SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
+    return disc_rotor(1)
 
 
 @pytest.fixture(scope="module")

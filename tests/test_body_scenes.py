@@ -6,7 +6,7 @@ import pytest
 import scipy.sparse as sp
 from exudyn.itemInterface import SensorMarker
 from exudyn.utilities import InertiaSphere
-from models import STEEL, disc_on_shaft
+from models import disc_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -26,7 +26,7 @@ UNIT = np.eye(3)
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1).center_interfaces()
+    rotor = disc_rotor(1).center_interfaces()
     return rotor.add_point_mass([0.15, 0.0, 0.2], 0.1)
 
 

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorUserFunction
-from models import STEEL, disc_on_shaft, two_masses
+from models import disc_rotor, two_masses
 from scipy.integrate import simpson
 
 from exudyn_rotor import Motion, PrescribedMotion, SolidRotor, SpinAxis, add_rotor
@@ -28,7 +28,7 @@ TORQUE = 7.0
 
 @pytest.fixture(scope="module")
 def reduced():
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1).center_interfaces()
+    rotor = disc_rotor(1).center_interfaces()
     return rotor.add_point_mass([0.15, 0.0, 0.2], 0.1).reduce(2)
 
 
@@ -151,7 +151,7 @@ def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, lock
     kinds = exu.OutputVariableType
     mbs.Assemble()
     run = settings(100, 2e-3)
-    run.staticSolver.newton.relativeTolerance = 1e-12
+    run.staticSolver.newton.relativeTolerance = 1e-10  # rounding leaves 1e-12 of the torque
     mbs.SolveStatic(run, updateInitialValues=True)
     # θ is that of the load time, 1 s, but for the compliance of the hold
     angle = mbs.GetNodeOutput(body.nodes["rigid"], kinds.Coordinates)[5]

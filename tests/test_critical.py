@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from models import STEEL, disc_on_shaft, two_masses
+from models import disc_rotor, two_masses
 from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
@@ -100,7 +100,7 @@ def test_table_of_a_constant_stiffness_is_a_constant():
 
 @pytest.fixture(scope="module")
 def disc():
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.08), STEEL, "z", order=1)
+    rotor = disc_rotor(1)
     return rotor.center_interfaces()
 
 

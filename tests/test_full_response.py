@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from models import STEEL, block_beam, disc_on_shaft
+from models import STEEL, block_beam, disc_rotor
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor
@@ -51,7 +51,7 @@ def complete(beam):
 @pytest.fixture(scope="module")
 def disc() -> SolidRotor:
     """Return a disc on a shaft with 15 000 degrees of freedom."""
-    return SolidRotor.from_ngsolve(disc_on_shaft(0.05), STEEL, "z", order=2).center_interfaces()
+    return disc_rotor(safety=2.0).center_interfaces()
 
 
 def assert_same(found, expected, tolerance):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
-from models import ALUMINIUM, STEEL, block_beam, disc_on_shaft
+from models import ALUMINIUM, STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import Prestress, SolidRotor, SpinAxis, free_modes
@@ -38,7 +38,7 @@ def beam() -> SolidRotor:
 @pytest.fixture(scope="module")
 def unbalanced() -> SolidRotor:
     """A free rotor whose axis is no principal axis."""
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z")
+    rotor = disc_rotor()
     return rotor.add_point_mass((0.15, 0, 0.2), 0.4).add_point_mass((-0.1, 0.1, 0.23), 0.2)
 
 

@@ -6,7 +6,7 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from models import STEEL, disc_on_shaft
+from models import STEEL, disc_rotor
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
@@ -152,7 +152,7 @@ def test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs(speed):
 
 @pytest.fixture(scope="module")
 def rotor() -> SolidRotor:
-    return SolidRotor.from_ngsolve(disc_on_shaft(0.09), STEEL, "z", order=1)
+    return disc_rotor(1)
 
 
 def test_modes_at_speed_of_a_free_rotor(rotor):

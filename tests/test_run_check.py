@@ -4,7 +4,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import LoadForceVector, LoadTorqueVector, MarkerNodeRigid
-from models import STEEL, disc_on_shaft
+from models import disc_rotor
 from point_rotors import ring_rotor
 from run_scenes import scene, solve
 
@@ -23,7 +23,7 @@ from exudyn_rotor.theory.nodal import rotations, translations
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z").center_interfaces()
+    rotor = disc_rotor().center_interfaces()
     return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
 
 

@@ -8,11 +8,11 @@ import pytest
 from asymmetric import LENGTH, asymmetric_shaft
 from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import STEEL, disc_on_shaft
+from models import disc_rotor
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import Formulation, PrescribedMotion, SolidRotor, add_rotor, select_modes
+from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
 from exudyn_rotor.linear.equations.scene import LinearScene
 from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
@@ -370,7 +370,7 @@ def test_a_load_that_nothing_holds_has_no_steady_motion():
 @pytest.mark.parametrize("translation", ["free", "none"])
 def test_free_axial_motion_without_a_load_stays_at_rest(translation):
     """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(0.08), STEEL, "z").center_interfaces()
+    rotor = disc_rotor().center_interfaces()
     reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
     SC = exu.SystemContainer()
     mbs = SC.AddSystem()

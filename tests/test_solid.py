@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
-from models import ALUMINIUM, STEEL, block_beam, disc_on_shaft, two_masses, two_material_cylinder
+from models import ALUMINIUM, STEEL, block_beam, disc_rotor, two_masses, two_material_cylinder
 
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid import rigid_residuals
@@ -35,7 +35,7 @@ def springs(rotor, nodes, stiffness):
 
 @pytest.fixture(scope="module")
 def disc():
-    return SolidRotor.from_ngsolve(disc_on_shaft(), STEEL, "z")
+    return disc_rotor()
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, KirchhoffMaterial
-from models import STEEL, disc_on_shaft
+from models import STEEL, disc_on_shaft, disc_rotor
 from scipy.spatial.transform import Rotation
 
 # the package adds the call to MainSystem
-from exudyn_rotor import Formulation, Prestress, SolidRotor, select_modes
+from exudyn_rotor import Formulation, Prestress, select_modes
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
@@ -75,7 +75,7 @@ DIRECTIONS = {
 def fem():
     model = FEMinterface()
     _, _, space = model.ImportMeshFromNGsolve(
-        disc_on_shaft(0.1),
+        disc_on_shaft(),
         materials={"steel": STEEL},
         boundaryNamesList=["left", "right"],
         meshOrder=1,
@@ -356,7 +356,7 @@ def test_rotor_at_rest_without_seats_needs_an_axis(fem):
 
 @pytest.fixture(scope="module")
 def solid():
-    return SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
+    return disc_rotor(1)
 
 
 def stiffness_at_speed(fem, **options):
