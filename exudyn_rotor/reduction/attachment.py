@@ -39,21 +39,21 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
         If the rotor has loose parts.
     """
     interfaces, moving = rotor.interfaces.values(), coupled(rotor.stiffness).reshape(-1, 3)
-    rigid = [one for one in interfaces if _kept_rigid(one, others)]
+    rigid = [one for one in interfaces if _stays_rigid(one, others)]
     loads = [
         one.mean_motion(rotor.node_count).T.toarray()
         for one in interfaces
         if one not in rigid and (moving[one.nodes].any() or not rotor.grounded)
     ]
     inertia = rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
-    found = [np.zeros((rotor.nodes.size, 0))]
+    responses = [np.zeros((rotor.nodes.size, 0))]
     if rotor.grounded:
         loads.append(inertia)
     if loads:
-        found.append(inertia_relief(rotor).solve(np.hstack(loads)))
+        responses.append(inertia_relief(rotor).solve(np.hstack(loads)))
     if rigid and not rotor.grounded:
-        found.append(_held_at(rotor, rigid, inertia))
-    columns = np.hstack(found)
+        responses.append(_held_at(rotor, rigid, inertia))
+    columns = np.hstack(responses)
     norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
     columns = columns[:, norms > 0.0] / norms[norms > 0.0]
     labels = tuple(f"attachment mode {i + 1}" for i in range(columns.shape[1]))
@@ -71,7 +71,7 @@ def _held_at(
     return columns
 
 
-def _kept_rigid(interface: Interface, modes: np.ndarray) -> bool:
+def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:
     """Return True if no mode deforms the interface."""
     if modes.shape[1] == 0 or len(interface.nodes) < 3:
         return False

@@ -41,6 +41,13 @@ class ModeBasis:
     ------
     TypeError, ValueError
         If shapes do not fit or a number that must be finite is not.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import ModeBasis
+    >>> basis = ModeBasis([[1.0], [0], [0]], ["sideways"], nodes=[[0, 0, 0]])
+    >>> print(basis.labels, basis.frequencies)
+    ('sideways',) [nan]
     """
 
     matrix: np.ndarray
@@ -97,6 +104,19 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     -----
     The iteration needs ``K⁻¹`` on the motions without a rigid part. Inertia relief gives it with
     no shift, so that nothing depends on a guess of the lowest frequency.
+
+    Examples
+    --------
+    Two unit masses on the axis with a spring between them, ``ω² = 2k/m``:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, free_modes
+    >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> modes = free_modes(rotor, 1)
+    >>> print(modes.labels, np.round(modes.frequencies**2))
+    ('eigenmode 1',) [2000000.]
     """
     check_rotor(rotor)
     checks.tolerance(tolerance)

@@ -72,6 +72,21 @@ def craig_bampton_modes(
     TypeError, ValueError
         If an interface or coupling is unknown, RBE2 interfaces share nodes, an interface has its
         nodes on one line, the interfaces do not hold the rotor, or there are fewer eigenmodes.
+
+    Examples
+    --------
+    A unit mass on springs at another one, which is the interface:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, craig_bampton_modes
+    >>> springs = 1e6 * np.kron([[1, -1], [-1, 1]], np.eye(3))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), springs, ends, "z", interfaces={"hub": [0]})
+    >>> modes = craig_bampton_modes(rotor, 1)
+    >>> modes.labels
+    ('hub translation x', 'hub translation y', 'hub translation z', 'eigenmode 1')
+    >>> print(np.round(modes.frequencies))
+    [  nan   nan   nan 1000.]
     """
     check_rotor(rotor)
     checks.count(count, "count")

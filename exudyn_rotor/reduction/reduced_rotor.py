@@ -62,6 +62,22 @@ class ReducedRotor:
         If something is of another kind, shapes do not fit, an entry is not finite, or a matrix that
         must be symmetric is not. With the checks of :class:`Invariants` that makes sure of a file,
         too.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor
+    >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> reduced = rotor.reduce(1)
+    >>> reduced
+    ReducedRotor(5 rigid + 1 flexible modes, 2 kg, interfaces: none)
+    >>> reduced.labels[-1], reduced.dropped
+    ('mode 1 (225.1 Hz)', ('spin',))
+    >>> damped = reduced.with_damping(stiffness=1e-5)
+    >>> print(np.round(np.diag(damped.invariants.D), 6))
+    [ 0.  0.  0.  0.  0. 20.]
     """
 
     axis: SpinAxis

@@ -78,6 +78,16 @@ def select_modes(
     ------
     TypeError, ValueError
         When the rotor cannot be used in this formulation, or `negligible` is not in [0, 1).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import Formulation, SolidRotor, select_modes
+    >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> select_modes(rotor.reduce(1), Formulation("free", 300.0)).labels
+    ('tilt 1', 'tilt 2', 'mode 1 (225.1 Hz)')
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     checks.instance(formulation, "formulation", Formulation)

@@ -53,6 +53,19 @@ def spinning_modes(
     TypeError, ValueError
         If the rotor carries no prestress, no speed is given or one is not positive, there are not
         that many modes, or the prestress makes the rotor unstable at a speed.
+
+    Examples
+    --------
+    Two unit masses on springs; strings to the axis would give each the tension ``m Ω² r``.
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Prestress, SolidRotor, spinning_modes
+    >>> nodes = [[1, 0, 0], [-1, 0, 0]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), 1e6 * np.eye(6), nodes, "z")
+    >>> tension = Prestress.from_matrix(np.diag([0.0, 1, 1, 0, 1, 1]), nodes)
+    >>> modes = spinning_modes(rotor.with_prestress(tension), 1, [100.0])
+    >>> modes.labels[:2]
+    ('eigenmode 1', 'mode 1 at 100 rad/s')
     """
     check_rotor(rotor)
     checks.tolerance(tolerance)

@@ -32,6 +32,16 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
         If `reduced` is not a ReducedRotor, or an index no whole number.
     ValueError
         If an index does not exist or is given twice, or nothing would be left.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, keep_modes
+    >>> spring = 1e6 * np.kron([[1, -1], [-1, 1]], np.diag([0, 0, 1]))
+    >>> ends = [[0, 0, 0], [0, 0, 1]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), spring, ends, "z", grounded=False)
+    >>> keep_modes(rotor.reduce(1), [])
+    ReducedRotor(5 rigid + 0 flexible modes, 2 kg, interfaces: none)
     """
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     rigid = len(reduced.rigid_kinds)

@@ -30,6 +30,16 @@ class SpinAxis:
     ------
     TypeError, ValueError
         If the direction has no length, or they are not three finite numbers each.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import SpinAxis
+    >>> axis = SpinAxis([0, 0, 2], point=[0.1, 0, 0])
+    >>> print(axis.direction, axis.radial([0.3, 0, 5]))
+    [0. 0. 1.] [0.2 0.  0. ]
+    >>> print(SpinAxis.of("x").plane.T)
+    [[0. 1. 0.]
+     [0. 0. 1.]]
     """
 
     direction: np.ndarray

@@ -15,6 +15,7 @@ its acceleration goes to the right-hand side.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -36,6 +37,13 @@ class PrescribedMotion:
     ----------
     value, rate, acceleration : callable
         Functions of time [s]; scalars for a spin angle, arrays of shape (3,) for a translation.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import PrescribedMotion
+    >>> spin = PrescribedMotion.run_up(0.0, 300.0, duration=2.0)
+    >>> spin.rate(1.0), spin.rate(5.0), spin.acceleration(5.0)
+    (150.0, 300.0, 0.0)
     """
 
     value: Callable[[float], float | np.ndarray]
@@ -71,23 +79,30 @@ class PrescribedMotion:
 
         def value(t: float) -> float:
             s = share(t)
-            ramp = 0.5 * s**2 + (np.cos(2 * np.pi * s) - 1.0) / (2 * np.pi) ** 2
+            ramp = 0.5 * s**2 + (math.cos(2 * math.pi * s) - 1.0) / (2 * math.pi) ** 2
             after = max(t - duration, 0.0)
             return angle + start_speed * t + gain * (duration * ramp + after)
 
         def rate(t: float) -> float:
             s = share(t)
-            return start_speed + gain * (s - np.sin(2 * np.pi * s) / (2 * np.pi))
+            return start_speed + gain * (s - math.sin(2 * math.pi * s) / (2 * math.pi))
 
         def acceleration(t: float) -> float:
-            return gain / duration * (1.0 - np.cos(2 * np.pi * share(t)))
+            return gain / duration * (1.0 - math.cos(2 * math.pi * share(t)))
 
         return cls(value, rate, acceleration)
 
 
 @dataclass(frozen=True)
 class ConstantSpeed:
-    """Prescribed constant spin: ``θ(t) = angle + speed · t`` [rad, rad/s, s]."""
+    """Prescribed constant spin: ``θ(t) = angle + speed · t`` [rad, rad/s, s].
+
+    Examples
+    --------
+    >>> from exudyn_rotor import ConstantSpeed
+    >>> ConstantSpeed(100.0, angle=0.5).value(2.0)
+    200.5
+    """
 
     speed: float
     angle: float = 0.0
@@ -155,6 +170,15 @@ class Formulation:
     TypeError, ValueError
         For an unknown keyword, a spin that is not finite, or a prescribed motion that gives no
         finite numbers at t = 0.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Formulation
+    >>> Formulation("in-plane", "free").section
+    '2.3'
+    >>> driven = Formulation("none", 300.0)
+    >>> driven.section, driven.is_constant_speed
+    ('2.5', True)
     """
 
     translation: str | PrescribedMotion = "free"

@@ -61,6 +61,19 @@ class Invariants:
         definite, the direction is no unit vector, M, K, C, J, K2 or B is not symmetric, or G not
         skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
         checked them: of them only shape and entries are looked at.
+
+    Examples
+    --------
+    A unit mass at x = 2 that can move in its three directions:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Invariants
+    >>> unit = np.eye(3)
+    >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
+    >>> point.mass, point.Theta
+    (1.0, 4.0)
+    >>> print(point.h, point.moved([1, 0, 0]).h)
+    [2. 0. 0.] [1. 0. 0.]
     """
 
     direction: np.ndarray

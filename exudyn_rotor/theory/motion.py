@@ -81,6 +81,20 @@ class Motion:
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, or the orientation is no rotation. The
         methods refuse coordinates of a wrong number or kind alike.
+
+    Examples
+    --------
+    A unit mass at x = 2 on springs of 9 N/m, spinning freely at 1 rad/s:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Formulation, Invariants, Motion
+    >>> from exudyn_rotor.theory.stiffening import stiffening
+    >>> unit = np.eye(3)
+    >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
+    >>> motion = Motion(point, Formulation("none", "free"), stiffening(point, "none"))
+    >>> rest, spinning = np.zeros(4), np.array([1.0, 0, 0, 0])  # θ, then the displacements
+    >>> print(motion.forces(0.0, rest, spinning), motion.energy(0.0, rest, spinning))
+    [-0.  2.  0.  0.] 2.0
     """
 
     def __init__(

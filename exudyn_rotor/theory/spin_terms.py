@@ -33,6 +33,19 @@ class SpinTerms:
         ``G + B``, and the stiffness of the Euler field per ω̇.
     h, g : ndarray, shape (k,)
         Centrifugal load per ω² (83), and mass moment of the Euler load per −ω̇ (82).
+
+    Examples
+    --------
+    A unit mass at x = 2 in the plane of rotation, without stiffening:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Invariants
+    >>> from exudyn_rotor.theory.stiffening import stiffening
+    >>> unit = np.eye(3)
+    >>> point = Invariants.of([[2.0, 0, 0]], unit, 9.0 * unit, None, unit, [0, 0, 1])
+    >>> terms = SpinTerms.of(point, stiffening(point, "none"))
+    >>> print(np.diag(terms.stiffness(10.0)), terms.load(10.0))
+    [-100. -100.   -0.] [200.   0.   0.]
     """
 
     G: Matrix

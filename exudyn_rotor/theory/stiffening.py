@@ -59,6 +59,22 @@ class Stiffening:
     ------
     TypeError, ValueError
         If they are not symmetric, finite and of one size.
+
+    Examples
+    --------
+    The tilts of a thin ring of four unit masses, whose polar moment of inertia is 4 and whose
+    transverse one 2: with ``C = I_t − I_p/2`` and ``K2 = I_p/2`` the softening is ``I_t − I_p``.
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Invariants
+    >>> from exudyn_rotor.theory.nodal import rotations
+    >>> from exudyn_rotor.theory.stiffening import stiffening
+    >>> ring = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+    >>> tilts = rotations(ring, [0, 0, 0])[:, :2]
+    >>> free = np.zeros((12, 12))
+    >>> invariants = Invariants.of(ring, np.eye(12), free, None, tilts, [0, 0, 1])
+    >>> print(np.diag(invariants.C), np.diag(stiffening(invariants, "tilt").K2))
+    [0. 0.] [2. 2.]
     """
 
     K2: np.ndarray
@@ -126,13 +142,13 @@ def with_prestress(
     """
     split = _rigid_split(invariants)
 
-    def whole(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    def relieved(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
         return 0.5 * (matrix + matrix.T) - _work_hessian(split, skew(turn))
 
     return replace(
         invariants,
-        K2=whole(K2, relief[0]),
-        B=None if B is None else whole(B, relief[1]),
+        K2=relieved(K2, relief[0]),
+        B=None if B is None else relieved(B, relief[1]),
     )
 
 
@@ -188,7 +204,7 @@ def _work_factors(split: _RigidSplit, field: np.ndarray) -> tuple[np.ndarray, np
     ``f·(φ×ψ) = −φ·Σ f×ψ``.
     """
     H = field @ split.J
-    own = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
+    by_rotation = 0.5 * (H + H.T) - np.trace(H) * np.eye(3)
     mixed = -np.einsum("aib,ac,cbk->ik", _EPSILON, field, split.P_flexible)
-    W = np.block([[own, np.eye(3)], [np.eye(3), np.zeros((3, 3))]])
+    W = np.block([[by_rotation, np.eye(3)], [np.eye(3), np.zeros((3, 3))]])
     return np.vstack([split.rotation, mixed]), W
