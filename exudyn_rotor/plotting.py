@@ -131,7 +131,7 @@ def draw_surface(
         checks.instance(ax, "ax", Axes3D, 'subplot_kw={"projection": "3d"} of pyplot.subplots')
         ax.add_collection3d(faces)
         _frame(ax, points)
-        if not ax.axison:
+        if _is_long(points):
             ax.set_title(_extents(points), fontsize="small")
         ax.figure.colorbar(mapped, ax=ax, label=label)
         return ax
@@ -139,7 +139,7 @@ def draw_surface(
     ax = made.add_subplot(projection="3d")
     ax.add_collection3d(faces)
     place = _fit(ax, *_frame(ax, points))
-    if not ax.axison:
+    if _is_long(points):
         made.text(0.02, 0.03, _extents(points))
     made.colorbar(mapped, cax=made.add_axes(place), label=label)
     pyplot.sca(ax)
@@ -184,7 +184,7 @@ def _frame(ax: Axes3D, points: np.ndarray) -> tuple[np.ndarray, float]:
     ax.set(**dict(zip(("xlim", "ylim", "zlim"), limits, strict=True)))
     ax.set_box_aspect(np.maximum(share, 1e-3), zoom=0.85)
     ax.patch.set_visible(False)  # it may reach under the colour bar
-    if np.sort(share)[1] < 1.0 / _LONG:  # ticks would stand in the body itself
+    if _is_long(points):  # ticks would stand in the body itself
         ax.view_init(*_ACROSS[longest])
         ax.set_axis_off()
         return points, 0.4
@@ -194,6 +194,11 @@ def _frame(ax: Axes3D, points: np.ndarray) -> tuple[np.ndarray, float]:
         locator = MaxNLocator(max(2, round(4 * part)), prune="both") if shown else NullLocator()
         getattr(ax, f"{name}axis").set_major_locator(locator)
     return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, 8).T, 0.7
+
+
+def _is_long(points: np.ndarray) -> bool:
+    _, width, length = np.sort(np.ptp(points, axis=0))
+    return width < length / _LONG
 
 
 def _extents(points: np.ndarray) -> str:

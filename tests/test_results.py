@@ -252,10 +252,13 @@ def test_pictures_are_figures_of_pyplot(ellipses, shaken, tmp_path):
 @pytest.mark.parametrize("corners", [3, 6])
 def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
     nodes = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1]], float)
-    triangles = [list(range(corners)), list(range(corners))[::-1]]
+    triangles = [[0, 1, 3, 2, 4, 5][:corners], [1, 2, 3, 0, 4, 5][:corners]]
     drawn = plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]")
     assert pyplot.gca() is drawn
     assert [ax.get_ylabel() for ax in drawn.figure.axes][1] == "T [K]"
+    assert not drawn.figure.texts  # the ticks tell the size
+    across = plotting.draw_surface(nodes * [1, 1, 9], triangles, np.arange(6.0), "T [K]")
+    assert "z from 0 m to " in across.figure.texts[0].get_text()
     given = pyplot.subplots(subplot_kw={"projection": "3d"})[1]
     size = given.figure.get_size_inches()
     assert plotting.draw_surface(nodes, triangles, np.arange(6.0), "T [K]", given) is given
