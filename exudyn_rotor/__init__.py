@@ -35,7 +35,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import select_modes
 from exudyn_rotor.reduction.spinning import spinning_modes
 from exudyn_rotor.reduction.truncation import keep_modes
-from exudyn_rotor.results import load_result
+from exudyn_rotor.results import Result, load_result
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.point_mass import PointMass
@@ -47,6 +47,8 @@ from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, Prescrib
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import Stiffening
+
+__version__ = "0.2.0.dev0"
 
 __all__ = [
     "AssumptionWarning",
@@ -68,6 +70,7 @@ __all__ = [
     "Prestress",
     "Proposal",
     "ReducedRotor",
+    "Result",
     "RotorBody",
     "RunCheck",
     "SolidRotor",

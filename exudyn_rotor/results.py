@@ -93,7 +93,14 @@ def storable(cls: Class) -> Class:
 
 
 class Result:
-    """Base of result classes: checked, read-only, and saved and loaded by methods."""
+    """Base of result classes: checked, read-only, and saved and loaded by methods.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Result, StabilityMap
+    >>> issubclass(StabilityMap, Result)
+    True
+    """
 
     def __init_subclass__(cls, **options) -> None:
         """Keep the dataclass decorator from making a repr that prints whole arrays."""
@@ -240,6 +247,18 @@ def load_result(path: str | PathLike) -> Result:
     ValueError
         When the file holds no result of a known class, is damaged, was written by another version,
         or its entries do not make a result.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from exudyn_rotor import StabilityMap, load_result
+    >>> growth, stable = [[-0.1, 0.2]], [[True, False]]
+    >>> result = StabilityMap([100.0], [0.0, 50.0], growth, stable, ("Ω [rad/s]", "d [N s/m]"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result.save(Path(folder, "map.npz"))
+    ...     load_result(Path(folder, "map.npz"))
+    StabilityMap(x=array(1,), y=array(2,), growth=array(1, 2), stable=array(1, 2), ...)
     """
     data = read_arrays(path, _KIND)
     name = data.pop("class", None)

@@ -220,6 +220,18 @@ def test_pictures_and_storage(beam, tmp_path):
     assert len(field.plot(zeta, 300.0).figure.axes) == 2
 
 
+def test_a_field_is_stored_and_tabulated(beam, tmp_path):
+    field, zeta = steady_state(beam, 300.0)
+    field.save(tmp_path / "field.npz")
+    again = StressField.load(tmp_path / "field.npz")
+    assert np.array_equal(again.at(zeta, 9.0), field.at(zeta, 9.0))
+    rows = field.table().splitlines()
+    assert len(rows) == 1 + zeta.size
+    index, size, node = rows[-1].split()[:3]
+    expected = 1e-6 * von_mises(field.modes[int(node), :, int(index)])
+    assert float(size) == pytest.approx(expected, rel=1e-3)  # four digits are shown
+
+
 def test_field_of_a_body_is_that_of_its_selection(beam, tmp_path):
     """Shapes, storage and a prestress do not change what a basis is."""
     mbs = exu.SystemContainer().AddSystem()

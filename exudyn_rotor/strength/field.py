@@ -154,6 +154,16 @@ class StressField(Result):
         dynamic = np.einsum("nck,sk->snc", self.modes[nodes], modal_coordinates, optimize=True)
         return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
 
+    def table(self) -> str:
+        """Return what a unit of every modal coordinate does, and where, as text."""
+        lines = ["coordinate   largest von Mises stress per unit [MPa]   node   place [m]"]
+        for index in range(self.modes.shape[2]):
+            sizes = 1e-6 * von_mises(self.modes[:, :, index])
+            node = int(np.argmax(sizes))
+            place = " ".join(f"{x:9.4f}" for x in self.positions[node])
+            lines.append(f"{index:10d}   {sizes[node]:39.4g}  {node:5d}   {place}")
+        return "\n".join(lines)
+
     def plot(self, modal_coordinates: ArrayLike, speed: float, ax: Axes3D | None = None) -> Axes3D:
         """Draw the von Mises stress on the surface [MPa]; see :meth:`at`.
 

@@ -41,6 +41,20 @@ class StressHistory(Result):
         When it occurred [s].
     positions, triangles : ndarray
         Mesh nodes (n, 3) [m] and surface.
+
+    Examples
+    --------
+    Two nodes, the second under 1 MPa along x at the end:
+
+    >>> import numpy as np
+    >>> stress = np.zeros((2, 1, 6))
+    >>> stress[1, 0, 0] = 1e6
+    >>> history = StressHistory(
+    ...     time=[0.0, 1.0], speed=[0.0, 300.0], nodes=[1], stress=stress, peak=[0.0, 1e6],
+    ...     peak_time=[0.0, 1.0], positions=[[0, 0, 0], [1, 0, 0]], triangles=np.zeros((0, 3), int),
+    ... )
+    >>> print(history.hottest, history.von_mises[:, 0])
+    1 [      0. 1000000.]
     """
 
     time: np.ndarray = numbers("steps")

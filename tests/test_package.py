@@ -1,0 +1,36 @@
+"""What the package says about itself agrees."""
+
+import re
+from pathlib import Path
+
+import exudyn_rotor
+
+ROOT = Path(__file__).parents[1]
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_one_version():
+    version = exudyn_rotor.__version__
+    assert 'version = { attr = "exudyn_rotor.__version__" }' in read("pyproject.toml")
+    assert f"version: {version}\n" in read("CITATION.cff")
+    newest = re.search(r"^## \[(.+?)\]", read("CHANGELOG.md"), re.MULTILINE)[1]
+    assert version.removesuffix(".dev0") == newest
+
+
+def test_types_are_published():
+    assert (ROOT / "exudyn_rotor" / "py.typed").exists()
+    assert 'exudyn_rotor = ["py.typed"]' in read("pyproject.toml")
+
+
+def test_licence_is_the_one_of_the_file():
+    assert 'license = "BSD-3-Clause"' in read("pyproject.toml")
+    assert "license: BSD-3-Clause" in read("CITATION.cff")
+    assert read("LICENSE").startswith("BSD 3-Clause License")
+
+
+def test_public_names_are_there_and_sorted():
+    assert exudyn_rotor.__all__ == sorted(exudyn_rotor.__all__)
+    assert all(getattr(exudyn_rotor, name).__doc__ for name in exudyn_rotor.__all__)
