@@ -218,6 +218,9 @@ def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None
     if not _has_shape(values.shape, shape):
         raise ValueError(_told(name, f"finite numbers{_unit(unit)}{_of_shape(shape)}", values))
     rows = values.tocsr()
+    if not rows.has_canonical_format:  # later, in place, it could not be put into it
+        rows = rows.copy()
+        rows.sum_duplicates()
     result = sp.csr_array(rows)
     result.data = array(rows.data, f"{name}: its entries", unit, shape=(None,))
     result.indices = read_only(rows.indices, rows.indices.dtype)

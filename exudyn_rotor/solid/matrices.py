@@ -243,7 +243,8 @@ def _to_csr(label: str, matrix: Any) -> sp.csr_array:
         matrix = checks.array(matrix, label, finite=False)
     if matrix.ndim != 2:
         raise ValueError(f"{label}: needs a square matrix, got the shape {matrix.shape}")
-    rows = sp.csr_array(matrix)
+    rows = sp.csr_array(matrix, copy=True)
+    rows.sum_duplicates()  # now, for entries that are read-only cannot be put in order
     entries = checks.array(rows.data, f"{label}: its entries", finite=False)
     return sp.csr_array((entries, rows.indices, rows.indptr), shape=rows.shape)
 
