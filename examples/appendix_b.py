@@ -23,18 +23,18 @@ print("ẽ_bd (120):\n", block_diagonal(rotor.axis.skew, 2).toarray())
 print("N (121):\n", rotor.axis.plane)
 print("Φ (128):\n", translations(2))
 
-at_rest, at_300 = campbell(rotor, [0.0, 300.0]).frequencies_rotating
+at_rest, at_300 = campbell(rotor, [0.0, 300.0]).frequencies_rotor
 print("ν at rest (125):", at_rest)
 print("ν at 300 rad/s (129):", at_300)
 assert np.allclose(at_rest, [1000, 1000, 1200, 1400, 1400, 2000], rtol=1e-12)
 whirl = [834.497940852066, 1563.206060221641]
 expected = [whirl[0], whirl[0], 1200.0, whirl[1], whirl[1], 2000.0]
 assert np.allclose(at_300, expected, rtol=1e-12)
-assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotating[0], expected, rtol=1e-12)
+assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotor[0], expected, rtol=1e-12)
 
 result = campbell(rotor, np.linspace(0.0, 900.0, 91))
 made, ax = plotting.figure()
-ax.plot(result.speeds, result.frequencies_rotating, color=plotting.COLORS[0])
+ax.plot(result.speeds, result.frequencies_rotor, color=plotting.COLORS[0])
 ax.set_xlabel("spin speed [rad/s]")
 ax.set_ylabel("frequency in the rotor frame [rad/s]")
 plotting.save(made, "appendix_b.png")

@@ -10,8 +10,8 @@ import numpy as np
 from netgen import occ
 
 from exudyn_rotor import SolidRotor, campbell, plotting
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.modal.critical_speeds import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.models.supports import Support
 
 HERTZ = 2.0 * np.pi
 
@@ -22,7 +22,7 @@ point = SolidRotor.from_matrices(
 springs = (HERTZ * 100.0) ** 2 * np.eye(3)
 result = campbell(point, HERTZ * np.array([0.0, 50.0]), supports=[Support("mass", springs)])
 print(result.table())
-assert np.allclose(result.frequencies_rotating[1] / HERTZ, [50, 100, 150], rtol=1e-12)
+assert np.allclose(result.frequencies_rotor[1] / HERTZ, [50, 100, 150], rtol=1e-12)
 assert np.allclose(result.frequencies_inertial / HERTZ, 100.0, rtol=1e-12)
 
 fem = exudyn.FEM.FEMinterface()
@@ -55,7 +55,7 @@ critical = critical_speeds(reduced, supports=bearings, max_speed=HERTZ * 500.0)
 print(critical.table())
 
 made, axes = plotting.figure(1, 2, size=(12.0, 4.8))
-for ax, frame in zip(axes, ("inertial", "rotating"), strict=True):
+for ax, frame in zip(axes, ("inertial", "rotor"), strict=True):
     even_diagram.plot(ax, frame)
     ax.set_ylim(0.0, 800.0)
 plotting.save(made, "campbell_diagram.png")

@@ -13,10 +13,10 @@ import scipy.linalg
 from netgen import occ
 
 from exudyn_rotor import SolidRotor, plotting
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.linear.stability.analysis import unstable_ranges
-from exudyn_rotor.linear.stability.maps import stability_map
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.stability.stability import unstable_ranges
+from exudyn_rotor.linear.stability.stability_map import stability_map
 
 UPRIGHT, SIDEWAYS, ALONG = 6e6, 3e6, 1e7  # stiffness of a bearing [N/m]
 

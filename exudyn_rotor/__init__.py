@@ -6,25 +6,27 @@ Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exud
 from exudyn_rotor.advice.checks import RunCheck, check_run
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.linear.equations.supports import Support
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
-from exudyn_rotor.linear.modal.critical import (
+from exudyn_rotor.linear.modal.critical_speeds import (
     CriticalSpeedMap,
     CriticalSpeeds,
     critical_speed_map,
     critical_speeds,
 )
-from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
-from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
-from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
-from exudyn_rotor.linear.stability.analysis import (
+from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
+from exudyn_rotor.linear.stability.stability import (
     Stability,
     stability,
     stability_threshold,
     unstable_ranges,
 )
-from exudyn_rotor.linear.stability.maps import StabilityMap, stability_map
+from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -62,6 +64,7 @@ __all__ = [
     "HarmonicResponse",
     "Interface",
     "Invariants",
+    "LinearModel",
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
     "Motion",
@@ -92,6 +95,7 @@ __all__ = [
     "free_modes",
     "harmonic_response",
     "keep_modes",
+    "linear_model",
     "load_result",
     "permissible_unbalance",
     "propose",

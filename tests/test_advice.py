@@ -63,7 +63,7 @@ def test_kept_modes_are_those_of_a_smaller_reduction(solid, reduced):
     assert kept.frequencies == pytest.approx(small.frequencies, rel=1e-8)
     speeds = [0.0, 500.0]
     ours, theirs = (
-        np.sort(campbell(r, speeds, supports=SUPPORTS).frequencies_rotating) for r in (kept, small)
+        np.sort(campbell(r, speeds, supports=SUPPORTS).frequencies_rotor) for r in (kept, small)
     )
     assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-3)
     assert kept.shapes.matrix.shape[1] == kept.size == kept.mode_mass.shape[0]
@@ -316,7 +316,7 @@ def test_change_by_the_full_level_is_that_of_the_frequencies(reduced, high):
     supports = [Support(name, STIFFNESS) for name in ("left", "right")]
     options = {"supports": supports}
     tilt, full = (
-        np.sort(np.abs(campbell(reduced, [high], stiffening=s, **options).frequencies_rotating))[0]
+        np.sort(np.abs(campbell(reduced, [high], stiffening=s, **options).frequencies_rotor))[0]
         for s in ("tilt", "full")
     )
     band = (tilt > 1.0) & (tilt < 2 * high)

@@ -138,5 +138,5 @@ def test_contraction_of_the_tilde_basis_gives_the_invariants(rotor):
 def test_frequencies_at_rest_and_at_300_rad_per_s(rotor, modes, stiffening):
     model = rotor if modes is None else rotor.reduce(modes)
     result = campbell(model, [0.0, 300.0], stiffening=stiffening)
-    np.testing.assert_allclose(result.frequencies_rotating, [AT_REST, AT_300], rtol=1e-12)
+    np.testing.assert_allclose(result.frequencies_rotor, [AT_REST, AT_300], rtol=1e-12)
     np.testing.assert_allclose(result.growth, 0.0, atol=1e-12 * 2000)

@@ -7,11 +7,13 @@ import pytest
 from models import STEEL, block_beam, two_masses
 from point_rotors import random_rotor, ring_rotor
 
-from exudyn_rotor import SolidRotor, campbell
-from exudyn_rotor.linear.equations.full import FullRotor, Subspace
-from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor import SolidRotor, campbell, linear_model, stability
 from exudyn_rotor.linear.modal.campbell import Campbell
 from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.results import load_result
 
 HERTZ = 2.0 * np.pi
@@ -53,7 +55,7 @@ def test_whole_diagram_of_appendix_b(modes):
     squares = np.array([half - root, half + root])
     axial = np.full((2, 37), 1e4) * np.array([[144.0], [400.0]])  # (125)
     squares = np.sort(np.vstack([squares, squares, axial]).T, axis=1)
-    eigenvalues = result.growth + 1j * result.frequencies_rotating
+    eigenvalues = result.growth + 1j * result.frequencies_rotor
     found = np.sort(-(eigenvalues**2).real, axis=1)
     # between 1000 and 1400 rad/s one ν² of each mass is negative: growth
     np.testing.assert_allclose(found, squares, rtol=0, atol=1e-12 * squares.max())
@@ -69,7 +71,7 @@ def test_point_mass_in_both_frames(reduced):
     model = rotor.reduce(0) if reduced else rotor
     result = campbell(model, HERTZ * np.array([0.0, 50.0, 130.0]), supports=[support])
     np.testing.assert_allclose(
-        result.frequencies_rotating / HERTZ, [[100] * 3, [50, 100, 150], [30, 100, 230]], rtol=1e-12
+        result.frequencies_rotor / HERTZ, [[100] * 3, [50, 100, 150], [30, 100, 230]], rtol=1e-12
     )
     np.testing.assert_allclose(result.frequencies_inertial / HERTZ, 100.0, rtol=1e-12)
     words = ["forward", "axial", "backward"]
@@ -133,14 +135,14 @@ def test_free_rotor_keeps_all_rigid_modes_and_names_them():
     names = ("translation 1", "translation 2", "translation along axis", "spin", "tilt 1", "tilt 2")
     assert result.free_motions == names
     assert campbell(rotor, 0.0).free_motions == names
-    np.testing.assert_array_equal(result.frequencies_rotating[0, :6], 0.0)
+    np.testing.assert_array_equal(result.frequencies_rotor[0, :6], 0.0)
     assert result.growth.shape == (2, 9)
 
 
 def test_displaced_free_mass_stands_still_in_space():
     """Free translations are double eigenvalues iΩ without a second vector, here to 1e-12."""
     result = campbell(point_mass().reduce(0), [7.0])
-    np.testing.assert_allclose(result.frequencies_rotating[0], [0.0, 7.0, 7.0], rtol=1e-12)
+    np.testing.assert_allclose(result.frequencies_rotor[0], [0.0, 7.0, 7.0], rtol=1e-12)
     np.testing.assert_allclose(result.growth, 0.0, atol=1e-12)
     np.testing.assert_allclose(result.frequencies_inertial, 0.0, atol=1e-11)
     assert result.whirl[0].tolist() == ["axial", "static", "static"]
@@ -180,7 +182,7 @@ def test_columns_ascend_and_tracked_columns_follow_the_modes():
     support = Support("at", np.diag([1e4, 1e4, 3.6e5]))
     speeds = np.linspace(0.0, 900.0, 31)
     result = campbell(point_mass(), speeds, supports=[support])
-    assert np.all(np.diff(result.frequencies_rotating, axis=1) >= 0.0)
+    assert np.all(np.diff(result.frequencies_rotor, axis=1) >= 0.0)
     tracked = result.tracked()
     for column in range(3):
         words = set(tracked.whirl[1:, column])
@@ -203,7 +205,7 @@ def test_a_wave_is_recognised(wave, component):
         "axial": (zero, zero, zero + 1.0),
     }[component]
     field = (shape * np.array(along)).T.reshape(-1, 1)
-    content = WhirlContent.from_points(points, np.eye(1200))
+    content = WhirlContent.from_points(PointMotions(points, np.eye(1200), None, True))
     energy = content.energies(field[None])[0, :, 0]
     assert content.orders[np.argmax(energy)] == wave
     # r^±5 is fitted by r^|l| (1, r²) over 0.8 … 1
@@ -236,10 +238,34 @@ def test_a_nearly_isotropic_support_takes_hills_way_to_the_same_result():
         both.append(campbell(rotor, [50.0, 200.0], supports=supports))
     constant, periodic = both
     assert constant.free_motions == periodic.free_motions == ("spin",)
-    for name in ("frequencies_rotating", "frequencies_inertial"):
+    for name in ("frequencies_rotor", "frequencies_inertial"):
         np.testing.assert_allclose(
             getattr(periodic, name), getattr(constant, name), rtol=1e-7, atol=1e-3
         )
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3], ids=["constant", "periodic"])
+def test_campbell_and_stability_have_the_same_exponents(ratio):
+    """Each to its tolerance, 1e-10 of Ω or of |λ|; real pairs are known by their less damped half.
+
+    Rounding of the eigenvalues is below 1e-12 of the largest |λ| of either.
+    """
+    rotor = rings(SHAFT).reduce(4)
+    supports = [
+        Support("all", np.diag([1e6, ratio * 1e6, 5e5]), 300.0, np.diag([2e3, 3e3, 1e3]), 0.1),
+        Support("all", damping=80.0, frame="rotor"),
+    ]
+    model = linear_model(rotor, supports=supports)
+    speeds = [40.0, 150.0]
+    diagram = campbell(model, speeds, tolerance=1e-10)
+    margins = stability(model, speeds, tolerance=1e-10)
+    for row, speed in enumerate(speeds):
+        values = diagram.growth[row] + 1j * diagram.frequencies_rotor[row]
+        limit = 1e-10 * max(speed, np.abs(values).max())
+        for value in values:
+            apart = fold(margins.exponents[row] - value, margins.base[row])
+            assert np.abs(apart).min() <= limit
+        assert margins.growth[row] == pytest.approx(diagram.growth[row].max(), abs=limit)
 
 
 # ------------------------------------------------------------------ full models
@@ -251,11 +277,11 @@ def test_subspace_of_a_full_model_meets_the_dense_solution(ratio):
     beam = SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1).center_interfaces()
     left = Support("left", np.diag([1e7, ratio * 1e7, 1e6]), 50.0)
     supports = [left, Support("right", 1e7)]
-    subspace = Subspace(FullRotor.of(beam, supports), 8, 900.0)
+    subspace = FullRotor.of(beam, supports).space(8, 900.0, residual=1e-5)
     for speed in (300.0, 900.0):
-        found = subspace.modes(speed, 8, 1e-5).values
+        found = subspace.modes(speed, 1e-8).values
         dense = campbell(beam, speed, supports=supports, modes=8)
-        np.testing.assert_allclose(found.imag, dense.frequencies_rotating[0], rtol=1e-8, atol=1e-3)
+        np.testing.assert_allclose(found.imag, dense.frequencies_rotor[0], rtol=1e-8, atol=1e-3)
         np.testing.assert_allclose(found.real, dense.growth[0], rtol=1e-6, atol=1e-3)
 
 
@@ -265,10 +291,10 @@ def test_large_full_model_by_its_residual():
     assert 3 * rotor.node_count > 600
     speed = 500.0
     result = campbell(rotor, speed, stiffening="none")
-    assert result.frequencies_rotating.shape == (1, 10)
+    assert result.frequencies_rotor.shape == (1, 10)
     assert len(result.free_motions) == 6
     turn = np.kron(np.eye(rotor.node_count), rotor.axis.skew)
-    eigenvalues = result.growth[0] + 1j * result.frequencies_rotating[0]
+    eigenvalues = result.growth[0] + 1j * result.frequencies_rotor[0]
     M, K = rotor.mass, rotor.stiffness
     spin = M @ (turn @ (rotor.nodes - rotor.center_of_mass).ravel())
     spin /= np.sqrt(spin @ (turn @ (rotor.nodes - rotor.center_of_mass).ravel()))
@@ -294,12 +320,12 @@ def test_result_is_stored_and_shown(tmp_path):
     assert loaded.whirl.tolist() == result.whirl.tolist()
     assert "free motions: translation along axis" in loaded.table()
     assert "forward" in result.table(3)
-    for frame in ("inertial", "rotating"):
+    for frame in ("inertial", "rotor"):
         ax = result.plot(frame=frame)
         assert "[Hz]" in ax.get_ylabel()
         assert len(ax.lines) >= 3
-    with pytest.raises(ValueError, match="frame: 'rotor' is unknown"):
-        result.plot(frame="rotor")
+    with pytest.raises(ValueError, match="frame: 'rotating' is unknown"):
+        result.plot(frame="rotating")
 
 
 def test_processes_give_the_same_result():
@@ -308,7 +334,7 @@ def test_processes_give_the_same_result():
     here = campbell(rotor, [0.0, 10.0, 20.0], **given)
     with ProcessPoolExecutor(1) as executor:
         there = campbell(rotor, [0.0, 10.0, 20.0], executor=executor, **given)
-    np.testing.assert_array_equal(here.frequencies_rotating, there.frequencies_rotating)
+    np.testing.assert_array_equal(here.frequencies_rotor, there.frequencies_rotor)
     np.testing.assert_array_equal(here.order, there.order)
 
 
@@ -320,7 +346,7 @@ def test_wrong_input_is_refused():
         campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
     with pytest.raises(TypeError, match=r"supports\[0\]: needs Support, got 'all'"):
         campbell(rotor, 0.0, supports=["all"])
-    with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, or"):
+    with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, a linear"):
         campbell(np.eye(3), 0.0)
     with pytest.raises(TypeError, match="body: is only for"):
         campbell(rotor, 0.0, body=rotor)

@@ -8,10 +8,9 @@ from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import SolidRotor, campbell
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.modal.critical import critical_speed_map, critical_speeds
-from exudyn_rotor.linear.modal.resonance import full_resonances
+from exudyn_rotor.linear.modal.critical_speeds import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.results import load_result
 
 KY, KZ = 196e4, 100e4  # Appendix B, unit masses
@@ -52,7 +51,7 @@ def test_axial_modes_at_any_order(masses):
         result = critical_speeds(masses, order=order, nodal_diameters=[0])
         np.testing.assert_allclose(result.speeds, np.array([1200, 2000]) / order, rtol=1e-12)
         assert set(result.whirl) == {"axial"}
-        np.testing.assert_allclose(result.frequencies_rotating, [1200, 2000], rtol=1e-12)
+        np.testing.assert_allclose(result.frequencies_rotor, [1200, 2000], rtol=1e-12)
 
 
 @BODIES
@@ -114,24 +113,26 @@ def test_campbell_diagram_meets_the_excitation_there(disc, order):
     reduced = disc.reduce(12)
     result = critical_speeds(reduced, supports=SUPPORTS, order=order, max_speed=4000.0)
     assert len(result.speeds) >= 3
-    for speed, nu in zip(result.speeds, result.frequencies_rotating, strict=True):
+    for speed, nu in zip(result.speeds, result.frequencies_rotor, strict=True):
         diagram = campbell(reduced, speed, supports=SUPPORTS)
         # ν = 0 has an eigenvalue 1e-16 K away in ν²
-        close = np.abs(diagram.frequencies_rotating[0] - nu) < 1e-3 + 1e-8 * nu
+        close = np.abs(diagram.frequencies_rotor[0] - nu) < 1e-3 + 1e-8 * nu
         assert np.any(close)
         inertial = diagram.frequencies_inertial[0, close]
         assert np.abs(inertial / (order * speed) - 1.0).min() < 1e-6
 
 
 def test_reduced_comes_close_to_the_full_model(disc):
-    full = full_resonances(FullRotor.of(disc, SUPPORTS), 1.0, [1, -1], 3000.0, 1e-5)
+    full = critical_speeds(
+        FullRotor.of(disc, SUPPORTS), max_speed=3000.0, nodal_diameters=[1], residual=1e-5
+    )
     few, many = (
         critical_speeds(
             disc.reduce(count), supports=SUPPORTS, max_speed=3000.0, nodal_diameters=[1]
         ).speeds
         for count in (6, 30)
     )
-    exact = np.array([entry.speed for entry in full])
+    exact = full.speeds
     assert len(exact) == len(many)
     assert np.all(many >= exact * (1.0 - 1e-9))  # fewer coordinates are stiffer
     assert np.abs(many / exact - 1.0).max() < 0.01

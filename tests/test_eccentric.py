@@ -18,9 +18,10 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from exudyn_rotor.linear.equations import source
-from exudyn_rotor.linear.equations.system import LinearRotor, without_drive
-from exudyn_rotor.linear.response.loads import HarmonicForce
+from exudyn_rotor.linear.models import linear_model as source
+from exudyn_rotor.linear.models.eccentricity import without_drive
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 
 pytestmark = pytest.mark.filterwarnings("ignore:the centre of mass is")
 
@@ -99,7 +100,7 @@ def test_frequencies_are_those_at_constant_speed(rotor, route, level, monkeypatc
     target = on_route(rotor, route, monkeypatch)
     found = campbell(target, SPEEDS, supports=carrier(), modes=8, stiffening=level)
     assert found.free_motions == ("translation along axis", "spin")
-    values = found.growth + 1j * found.frequencies_rotating
+    values = found.growth + 1j * found.frequencies_rotor
     assert np.all(np.sum(values == 0.0, axis=1) == 2)
     for speed, one in zip(SPEEDS, values, strict=True):
         assert distance(one, driven(speed)) < 1e-6 * CRITICAL
@@ -140,7 +141,7 @@ def test_balanced_spin_is_neutral_at_every_level(route, monkeypatch):
     target = on_route(ring(0.0), route, monkeypatch)
     for level in ("none", "tilt"):
         found = campbell(target, SPEEDS, supports=carrier(), modes=8, stiffening=level)
-        values = found.growth + 1j * found.frequencies_rotating
+        values = found.growth + 1j * found.frequencies_rotor
         assert np.all(np.sum(values == 0.0, axis=1) == 2)
 
 
@@ -150,7 +151,7 @@ def test_torsion_spring_that_stands_still_holds_the_spin_alone(rotor, route, mon
     supports = [*carrier(1e5), torsion]
     for level in ("none", "tilt"):
         found = campbell(target, SPEEDS[:3], supports=supports, modes=8, stiffening=level)
-        error = np.abs(found.frequencies_rotating / np.sqrt(80.0 / INERTIA) - 1.0)
+        error = np.abs(found.frequencies_rotor / np.sqrt(80.0 / INERTIA) - 1.0)
         # at speed the rings breathe with it, at their 22 400 rad/s
         assert np.all(error.min(axis=1) < 1e-6 + 2.0 * (SPEEDS[:3] / 22400.0) ** 2 * 1.01)
         assert found.free_motions == ()
@@ -184,7 +185,7 @@ def test_torsion_spring_to_a_turning_hub_is_complete(route, torsion, level, monk
     supports = [Support("all", STIFFNESS), hub]
     speeds = CRITICAL * np.array([0.0, 0.5])
     found = campbell(target, speeds, supports=supports, modes=8, stiffening=level)
-    values = found.growth + 1j * found.frequencies_rotating
+    values = found.growth + 1j * found.frequencies_rotor
     for speed, one in zip(speeds, values, strict=True):
         breathing = 2.0 * (speed / 22400.0) ** 2 * 1.5
         expected = turning_hub(speed, torsion)
@@ -200,7 +201,7 @@ def test_hinged_blade_is_a_pendulum_in_the_centrifugal_field(route, monkeypatch)
     for speed in (20.0, 100.0):
         found = campbell(target, [speed], supports=supports, modes=5)
         expected = speed * np.sqrt(MASS * hinge * lever / (INERTIA + MASS * lever**2))
-        assert np.abs(found.frequencies_rotating / expected - 1.0).min() < 1e-4
+        assert np.abs(found.frequencies_rotor / expected - 1.0).min() < 1e-4
         assert np.abs(found.growth).max() < 1e-3 * speed
 
 
@@ -213,7 +214,7 @@ def test_feet_hold_the_spin_of_a_balanced_rotor(route, monkeypatch):
     supports = [Support(f"foot {number}", 1e5 * np.eye(3)) for number in range(10)]
     found = campbell(target, [0.0], supports=supports, modes=7)
     assert found.free_motions == ()
-    assert np.sort(found.frequencies_rotating[0])[:6] == pytest.approx(np.sqrt(1e6 / MASS))
+    assert np.sort(found.frequencies_rotor[0])[:6] == pytest.approx(np.sqrt(1e6 / MASS))
 
 
 @pytest.mark.parametrize("torsion", [0.0, 80.0])
@@ -227,7 +228,7 @@ def test_breathing_turns_a_spin_by_the_coriolis_force(route, torsion, monkeypatc
     kappa, own = 10 * stiffness / MASS, torsion / INERTIA
     squares = np.roots([1.0, kappa + 3.0 * speed**2 + own, (kappa - speed**2) * own])
     found = campbell(target, [speed], supports=carrier(1e5) + held, modes=30)
-    assert distance(found.frequencies_rotating[0], np.sqrt(-squares)) < 1e-4
+    assert distance(found.frequencies_rotor[0], np.sqrt(-squares)) < 1e-4
 
 
 def test_springs_that_turn_hold_a_spin_off_the_axis(route, monkeypatch):
@@ -240,7 +241,7 @@ def test_springs_that_turn_hold_a_spin_off_the_axis(route, monkeypatch):
     supports = [Support("root", STIFFNESS, frame="rotor")]
     found = campbell(target, [0.0], supports=supports, modes=8)
     expected = np.sqrt(STIFFNESS * (1.0 / MASS + lever**2 / INERTIA))
-    assert np.abs(found.frequencies_rotating / expected - 1.0).min() < 1e-4
+    assert np.abs(found.frequencies_rotor / expected - 1.0).min() < 1e-4
 
 
 # ------------------------------------------------------------------ meshes, flexible
@@ -266,7 +267,7 @@ def test_routes_agree_on_a_mesh(beam, level, centred, monkeypatch):
         target = on_route(rotor, route, monkeypatch)
         result = campbell(target, [0.0, 300.0, 900.0], **given)
         assert "spin" in result.free_motions
-        values = result.growth + 1j * result.frequencies_rotating
+        values = result.growth + 1j * result.frequencies_rotor
         assert np.all(np.sum(values == 0.0, axis=1) >= 2)
         found.append(values)
     for other in found[1:]:
@@ -281,15 +282,15 @@ def test_analyses_of_a_mesh_agree(beam, route, monkeypatch):
     target = on_route(beam, route, monkeypatch)
     given = {"supports": supports}
     modes = campbell(target, [300.0], modes=5, **given)
-    expected = (modes.growth + 1j * modes.frequencies_rotating)[0]
+    expected = (modes.growth + 1j * modes.frequencies_rotor)[0]
     exponents = stability(target, [300.0], **given, **few(route)).exponents[0]
     exponents = np.where(exponents.imag < 0.0, exponents.conj(), exponents)
     assert distance(exponents, expected) < 1e-3
     undamped = [Support(s.interface, s.stiffness, 0.0, s.tilt_stiffness) for s in supports]
     found = critical_speeds(target, supports=undamped, max_speed=600.0)
     assert len(found.speeds) >= 3
-    for speed, frequency in zip(found.speeds, found.frequencies_rotating, strict=True):
-        near = campbell(target, [speed], supports=undamped, modes=6).frequencies_rotating[0]
+    for speed, frequency in zip(found.speeds, found.frequencies_rotor, strict=True):
+        near = campbell(target, [speed], supports=undamped, modes=6).frequencies_rotor[0]
         assert np.abs(near - frequency).min() < 1e-4 * speed
 
 

@@ -8,12 +8,12 @@ from models import STEEL, block_beam, disc_rotor
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.response import full
-from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.balance import Unbalance
-from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.models import subspace
+from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 SPEEDS = np.array([0.0, 100.0, 1000.0, 3000.0])
@@ -147,7 +147,7 @@ def test_reduced_rotor_converges_to_the_full_one(disc):
 
 
 def test_residual_that_is_not_reached_is_an_error(beam, monkeypatch):
-    monkeypatch.setattr(full, "_MOST_ROUNDS", 1)
+    monkeypatch.setattr(subspace, "_MOST_ROUNDS", 1)
     with pytest.raises(ValueError, match=r"residual stays at .* above residual=1.0e-09"):
         unbalance_response(beam, [3000.0], supports=SUPPORTS["damped"])
     response = unbalance_response(beam, [3000.0], supports=SUPPORTS["damped"], residual=0.1)

@@ -20,7 +20,7 @@ from exudyn_rotor import (
     critical_speeds,
     free_modes,
 )
-from exudyn_rotor.linear.equations.full import FullRotor
+from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations
 from exudyn_rotor.theory.stiffening import stiffening
@@ -94,10 +94,10 @@ def test_conical_modes_are_exact(rotor, speed):
     held = replace(stiff, invariants=replace(stiff.invariants, K=np.diag(springs)))
     # rigid axisymmetric rotor: I_t λ² − i I_p ω λ + k = 0 in inertial axes
     roots = np.abs(np.roots([-transverse, theta * speed, stiffness]) - speed)
-    found = campbell(held, speed, stiffening="full").frequencies_rotating[0]
+    found = campbell(held, speed, stiffening="full").frequencies_rotor[0]
     for root in roots:
         assert np.abs(found / root - 1).min() < 1e-4
-    paper = campbell(held, speed, stiffening="none").frequencies_rotating[0]
+    paper = campbell(held, speed, stiffening="none").frequencies_rotor[0]
     if speed >= 400.0:
         assert max(np.abs(paper / root - 1).min() for root in roots) > 0.01
 
@@ -107,9 +107,9 @@ def test_conical_modes_are_exact(rotor, speed):
 
 def test_small_full_model_keeps_all(small):
     carrying = small.with_prestress(small.prestress(euler=True))
-    whole = campbell(carrying, 300.0, stiffening="full").frequencies_rotating[0]
+    whole = campbell(carrying, 300.0, stiffening="full").frequencies_rotor[0]
     basis = np.eye(3 * small.node_count)
-    same = campbell(carrying.reduce(basis), 300.0, stiffening="full").frequencies_rotating[0]
+    same = campbell(carrying.reduce(basis), 300.0, stiffening="full").frequencies_rotor[0]
     np.testing.assert_allclose(np.sort(same), np.sort(whole), rtol=1e-6, atol=1e-2)
 
 
@@ -119,7 +119,7 @@ def test_large_full_model_meets_a_rich_basis(rotor):
     given = {"supports": supports, "modes": 7}
 
     def frequencies(target: object, level: str) -> np.ndarray:
-        return campbell(target, 300.0, stiffening=level, **given).frequencies_rotating[0]
+        return campbell(target, 300.0, stiffening=level, **given).frequencies_rotor[0]
 
     full = frequencies(carrying, "full")
     np.testing.assert_allclose(frequencies(carrying.reduce(40), "full"), full, rtol=3e-3, atol=1e-3)

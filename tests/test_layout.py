@@ -13,11 +13,7 @@ PACKAGE = ROOT / "exudyn_rotor"
 NAME = PACKAGE.name
 
 # edges against the order that still stand, as (importing, imported)
-LEFT = (
-    ("linear.modal.diagram", "linear.modal.campbell"),
-    ("linear.equations.probe", "linear.equations.scene"),
-    ("linear.response.plots", "linear.response.results"),
-)
+LEFT: tuple[tuple[str, str], ...] = ()
 
 
 def order() -> list[str]:

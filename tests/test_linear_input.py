@@ -24,7 +24,7 @@ from exudyn_rotor import (
     unbalance_response,
     unstable_ranges,
 )
-from exudyn_rotor.linear.equations import source
+from exudyn_rotor.linear.models import linear_model as source
 
 ROTOR = (
     ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
@@ -195,7 +195,7 @@ def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
 
 def test_scenes_need_their_body():
     mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(TypeError, match=r"^body: a scene needs"):
+    with pytest.raises(TypeError, match=r"^body: needs RotorBody, got None"):
         campbell(mbs, [1.0])
 
 

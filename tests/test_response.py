@@ -7,13 +7,13 @@ import scipy.linalg as la
 from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import add_rotor
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.linear.response import forced
-from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.balance import Unbalance, permissible_unbalance
-from exudyn_rotor.linear.response.forced import forced_motion
-from exudyn_rotor.linear.response.loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic import harmonic_balance
+from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
+from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
+from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
 
 MASS, RADIUS, LENGTH = 10.0, 0.1, 0.2  # ring rotor: I_p = m r², I_t = m (r²/2 + l²)
 K, C = 4e5, 200.0  # critical speed sqrt(K/MASS) = 200 rad/s
@@ -204,7 +204,7 @@ def test_unsymmetric_rotor_on_anisotropic_supports_obeys_its_equations_at_every_
 
 
 def test_truncation_that_is_too_low_is_an_error(monkeypatch):
-    monkeypatch.setattr(forced, "HIGHEST_HARMONIC", 3)
+    monkeypatch.setattr(harmonic_balance, "HIGHEST_HARMONIC", 3)
     supports = held(np.diag([K, 2 * K]))
     with pytest.raises(ValueError, match=r"at 240\.0: the harmonics do not converge"):
         unbalance_response(rings(point_mass=0.01), [240.0], supports=supports)

@@ -8,11 +8,11 @@ from matplotlib import pyplot
 from point_rotors import ring_rotor
 
 from exudyn_rotor import plotting
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.response.analysis import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.balance import Unbalance
-from exudyn_rotor.linear.response.loads import HarmonicForce
-from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
+from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.results import Result, load_result, numbers, storable, words
 from exudyn_rotor.storage import write_arrays
 

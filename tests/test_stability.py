@@ -8,25 +8,22 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.stability.analysis import (
-    Stability,
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.exponents import (
+    constant_exponents,
     exponents,
+    hill_exponents,
+)
+from exudyn_rotor.linear.periodic.fundamental import _magnus, floquet_exponents, monodromy
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.linear.stability.stability import (
+    Stability,
     stability,
     stability_threshold,
     unstable_ranges,
 )
-from exudyn_rotor.linear.stability.floquet import (
-    UnconvergedError,
-    _magnus,
-    constant_exponents,
-    floquet_exponents,
-    fold,
-    hill_exponents,
-    monodromy,
-)
-from exudyn_rotor.linear.stability.maps import stability_map
+from exudyn_rotor.linear.stability.stability_map import stability_map
 from exudyn_rotor.results import load_result
 
 STIFFNESS, OUTER, INNER, MASS = 2e5, 60.0, 40.0, 5.0
@@ -40,13 +37,14 @@ def mathieu(a: float, q: float) -> PeriodicSystem:
 
 
 def random_system(seed: int, size: int = 4) -> PeriodicSystem:
-    """Return a damped gyroscopic system with harmonics 1 and 3 in all matrices."""
+    """Return a damped gyroscopic system with harmonics 1 and 3 in all matrices, M symmetric."""
     rng = np.random.default_rng(seed)
 
-    def terms(mean: np.ndarray, share: float) -> dict[int, np.ndarray]:
+    def terms(mean: np.ndarray, share: float, symmetric: bool = False) -> dict[int, np.ndarray]:
         made = {0: mean}
         for n in (1, 3):
             term = share * (rng.normal(size=(size, size)) + 1j * rng.normal(size=(size, size)))
+            term = 0.5 * (term + term.T) if symmetric else term
             made[n], made[-n] = term, term.conj()
         return made
 
@@ -54,7 +52,7 @@ def random_system(seed: int, size: int = 4) -> PeriodicSystem:
     stiffness = np.diag(rng.uniform(2.0, 60.0, size))
     return PeriodicSystem(
         1.3,
-        terms(np.eye(size), 0.01),
+        terms(np.eye(size), 0.01, symmetric=True),
         terms(0.3 * np.eye(size) + skew - skew.T, 0.05),
         terms(stiffness, 0.8),
     )
@@ -291,12 +289,12 @@ def test_bad_input(speeds, options, message):
 def test_unreached_tolerances_are_errors(monkeypatch):
     slow = mathieu(50.0, 20.0)
     slow = PeriodicSystem(0.1, slow.M, slow.D, slow.K)
-    monkeypatch.setattr("exudyn_rotor.linear.stability.floquet.MOST_UNKNOWNS", 30)
+    monkeypatch.setattr("exudyn_rotor.linear.periodic.hill.MOST_UNKNOWNS", 30)
     with pytest.raises(UnconvergedError, match="harmonics up to"):
         hill_exponents(slow)
     fallen_back = exponents(slow)
     assert np.array_equal(np.sort(fallen_back), np.sort(floquet_exponents(slow)))
-    monkeypatch.setattr("exudyn_rotor.linear.stability.floquet.MOST_STEPS", 512)
+    monkeypatch.setattr("exudyn_rotor.linear.periodic.fundamental.MOST_STEPS", 512)
     with pytest.raises(UnconvergedError, match="steps a period"):
         floquet_exponents(slow)
     with pytest.raises(UnconvergedError, match="steps a period"):

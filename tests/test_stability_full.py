@@ -8,10 +8,10 @@ from models import STEEL, block_beam
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.linear.equations import full as equations
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.stability.analysis import (
+from exudyn_rotor.linear.models import subspace
+from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.stability.stability import (
     stability,
     stability_threshold,
     unstable_ranges,
@@ -116,7 +116,7 @@ def test_material_damping_drives_the_shaft_unstable(shaft):
 
 
 def test_residual_that_is_not_reached_is_an_error(beam, monkeypatch):
-    monkeypatch.setattr(equations, "_MOST_ROUNDS", 1)
+    monkeypatch.setattr(subspace, "_MOST_ROUNDS", 1)
     source = FullRotor.of(beam, SUPPORTS["isotropic"])
     with pytest.raises(ValueError, match="residual stays at"):
         stability(source, [3000.0], modes=12, residual=1e-12)

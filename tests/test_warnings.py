@@ -82,7 +82,7 @@ PLACES = {
     "prestress/static_solution.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress",
     ),
-    "linear/equations/system.py:warn_of_eccentricity": (
+    "linear/models/eccentricity.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
     ),
     "multibody/sensors.py:_warn_of_static_stress": (

@@ -91,7 +91,7 @@ def solid_frequencies(
     speeds = UNIT * np.asarray(etas)
     found = campbell(rotor, speeds, stiffening=LEVELS[level], modes=modes)
     rows = []
-    for vectors, values in zip(found.vectors, found.frequencies_rotating, strict=True):
+    for vectors, values in zip(found.vectors, found.frequencies_rotor, strict=True):
         energy = (np.abs(vectors.reshape(rotor.node_count, 3, -1)) ** 2).sum(axis=0)
         share = energy / energy.sum(axis=0)
         kinds = {"flap": values[share[2] > 0.8], "lag": values[share[1] > 0.8]}
@@ -233,12 +233,12 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
     for hub in tqdm(hubs, desc="component modes"):
         rotor = blade(size, hub)
         rotor = rotor.with_prestress(rotor.prestress())
-        exact = campbell(rotor, speed, stiffening="full", modes=4).frequencies_rotating[0, :4]
+        exact = campbell(rotor, speed, stiffening="full", modes=4).frequencies_rotor[0, :4]
         bases = {f"{n} at rest": free_modes(rotor, n) for n in (4, 8, 12, 20, 40)}
         bases |= {f"{n} at rest, {n} at speed": spinning_modes(rotor, n, [speed]) for n in (2, 4)}
         for name, modes in bases.items():
             reduced = rotor.reduce(modes)
-            found = campbell(reduced, speed, stiffening="full").frequencies_rotating[0, :4]
+            found = campbell(reduced, speed, stiffening="full").frequencies_rotor[0, :4]
             row: Row = {"hub": hub, "eta": eta, "modes": name, "columns": reduced.size}
             errors = np.abs(found / exact - 1.0)
             rows.append(row | {f"frequency {i + 1} / full": e for i, e in enumerate(errors)})

@@ -222,7 +222,7 @@ def bending_modes(rotor: SolidRotor, speed: float, modes: int = 12) -> Campbell:
 
 def pair(found: Campbell, n: int) -> np.ndarray:
     """Return the rotor-frame frequencies of the first two modes with n nodal diameters [rad/s]."""
-    chosen = found.frequencies_rotating[0][found.nodal_diameters[0] == n]
+    chosen = found.frequencies_rotor[0][found.nodal_diameters[0] == n]
     return np.repeat(chosen[:1], 2) if n == 0 else chosen[:2]
 
 
@@ -295,7 +295,7 @@ def wave_table(disc: Annulus, cells: Sequence[int], speed: float = SPEED) -> lis
     for n in DIAMETERS[1:]:
         slow, fast = plate.thick_frequencies(disc, n, speed)
         chosen = np.flatnonzero(found.nodal_diameters[0] == n)[:2]
-        nu, seen = found.frequencies_rotating[0][chosen], found.frequencies_inertial[0][chosen]
+        nu, seen = found.frequencies_rotor[0][chosen], found.frequencies_inertial[0][chosen]
         ahead = np.argmin(np.abs(seen - nu - n * speed))
         rows.append(
             {

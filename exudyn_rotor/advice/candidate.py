@@ -10,11 +10,13 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
-from exudyn_rotor.linear.equations.source import linear_source
-from exudyn_rotor.linear.equations.supports import Support, axes_of
-from exudyn_rotor.linear.equations.system import PeriodicSystem
-from exudyn_rotor.linear.response.places import Source
+from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.basis import RIGID
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -54,7 +56,7 @@ class Candidate:
         The same with attachment modes; None where that is not known, as in a scene.
     """
 
-    source: Source
+    source: LinearRotor | LinearScene
     invariants: Invariants
     own: np.ndarray
     flexible: np.ndarray
@@ -96,7 +98,7 @@ class Candidate:
 
     def orders(self, speed: float) -> np.ndarray:
         """Return the harmonics of the speed that :meth:`hill` holds."""
-        return harmonics(self.system(speed), _ORDER)
+        return self.system(speed).harmonics(_ORDER)
 
     def motion(self) -> np.ndarray:
         """Return the displacements that count, across the axis and along it if need be, (p, k)."""
@@ -145,7 +147,7 @@ def candidate(
 
 def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
     known = supports is not None
-    source = linear_source(reduced, body=body, supports=supports if known else ())
+    source = linear_model(reduced, body=body, supports=supports if known else ())
     attached = None
     if reduced.with_attachments is not None:
         with warnings.catch_warnings():  # said above
@@ -178,8 +180,6 @@ def _acts_along(support: Support) -> bool:
 
 
 def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
-    from exudyn_rotor.linear.equations.scene import LinearScene
-
     checks.instance(body, "body", RotorBody, "a scene needs what add_rotor returned")
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")

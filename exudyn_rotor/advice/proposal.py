@@ -17,7 +17,7 @@ from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.steps import Step, choose_step
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.linear.equations.supports import Support
+from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.truncation import keep_modes

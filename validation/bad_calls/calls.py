@@ -11,12 +11,14 @@ from exudyn import OutputVariableType, SystemContainer
 
 import exudyn_rotor as er
 from bad_calls.world import SPEEDS, World, arguments
-from exudyn_rotor.linear.response import plots
 
 Call = tuple[Callable, dict[str, Any]]
 
 # what has no arguments of its own to refuse
-LEFT_OUT = {"AssumptionWarning": "a warning takes any text, as every exception of Python"}
+LEFT_OUT = {
+    "AssumptionWarning": "a warning takes any text, as every exception of Python",
+    "LinearModel": "a protocol; linear_model makes what follows it",
+}
 
 # instances of public classes, on which methods are called and from which constructors are given
 # their arguments
@@ -96,6 +98,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "at": ["left"],
     },
     "keep_modes": lambda w: {"reduced": w.reduced, "indices": [0]},
+    "linear_model": lambda w: _rotor(w),
     "load_result": lambda w: {"path": w.stored(w.campbell)},
     "permissible_unbalance": lambda w: {"grade": 2.5, "mass": 10.0, "speed": 300.0},
     "propose": lambda w: {**_rotor(w), "speeds": (0.0, 40.0), "load_frequencies": (0.0, 10.0)},
@@ -137,8 +140,6 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "Motion.jacobian": lambda w: _state(w),
     "Motion.mass_matrix": lambda w: {"t": 0.0, "q": np.zeros(w.motion.size)},
     "Motion.momentum": lambda w: _state(w),
-    "BaseAcceleration.harmonics": lambda w: {"source": w.linear},
-    "HarmonicForce.harmonics": lambda w: {"source": w.linear},
     "ConstantSpeed.acceleration": lambda w: {"t": 0.0},
     "ConstantSpeed.rate": lambda w: {"t": 0.0},
     "ConstantSpeed.value": lambda w: {"t": 0.0},
@@ -228,9 +229,6 @@ def _sensor_options(*, storeInternal: bool = True, writeToFile: bool = False) ->
 OPTIONS: dict[str, Callable] = {
     "stability_threshold": er.stability,
     "unstable_ranges": er.stability,
-    "*.plot": plots.plot_bode,
-    "*.plot_orbit": plots.plot_orbit,
-    "*.plot_polar": plots.plot_polar,
     "*.add_drive_torque_sensor": _sensor_options,
     "*.add_interface_sensor": _sensor_options,
     "*.add_node_sensor": _sensor_options,

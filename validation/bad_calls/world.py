@@ -17,7 +17,6 @@ from exudyn.FEM import FEMinterface
 from netgen.occ import Box, OCCGeometry, Pnt, Z
 
 import exudyn_rotor as er
-from exudyn_rotor.linear.equations.system import LinearRotor
 from exudyn_rotor.theory.stiffening import stiffening
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -108,9 +107,9 @@ class World:
         )
 
     @cached_property
-    def linear(self) -> LinearRotor:
+    def linear(self) -> er.LinearModel:
         """Linear equations of the bar on its bearings."""
-        return LinearRotor.of(self.reduced, self.supports)
+        return er.linear_model(self.reduced, supports=self.supports)
 
     # -------------------------------------------------------------- scenes
 
@@ -206,7 +205,7 @@ class World:
     def build(self, stiffness: float, speed: float) -> tuple[Any, float]:
         """Return a target of the stability map."""
         supports = (*self.axial, er.Support("left", stiffness), er.Support("right", stiffness))
-        return LinearRotor.of(self.reduced, supports), speed
+        return er.linear_model(self.reduced, supports=supports), speed
 
     @cached_property
     def stress(self) -> er.StressField:

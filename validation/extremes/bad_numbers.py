@@ -274,8 +274,7 @@ def denormals(quick: bool = False) -> Row:
         )
     ]
     soft, none = (
-        campbell(rotor, [1.0], supports=supports).frequencies_rotating
-        for supports in (held(tiny), [])
+        campbell(rotor, [1.0], supports=supports).frequencies_rotor for supports in (held(tiny), [])
     )
     at_rest = message(lambda: campbell(rotor, [0.0], supports=held(tiny)))
     return Row(

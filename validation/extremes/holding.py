@@ -116,7 +116,7 @@ def contrast_error(contrast: float) -> float:
     stiff = np.array([0.0, np.cos(0.5), np.sin(0.5)])
     matrix = np.eye(3) + (contrast - 1.0) * np.outer(stiff, stiff)
     support = Support("all", matrix, tilt_stiffness=np.eye(3) * contrast)
-    found = campbell(two_rings().reduce(0), [0.0], supports=[support]).frequencies_rotating[0]
+    found = campbell(two_rings().reduce(0), [0.0], supports=[support]).frequencies_rotor[0]
     exact = np.sqrt(1.0 / MASS)
     # the other soft direction is an axis of its own, and exact
     return float(np.sort(np.abs(found / exact - 1.0))[1])
@@ -138,7 +138,7 @@ def contrast(quick: bool = False) -> Row:
         10.0 * EPS * 1e8,
         f"contrast {found:.1g}: low frequency wrong by 0.1 %",
         "numerics",
-        f"nothing; at 1e15 {np.count_nonzero(lost.frequencies_rotating == 0.0)} of 6 frequencies "
+        f"nothing; at 1e15 {np.count_nonzero(lost.frequencies_rotor == 0.0)} of 6 frequencies "
         "are given as 0",
     )
 

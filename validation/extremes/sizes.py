@@ -41,7 +41,7 @@ def dimensionless(length: float, stress: float = 1.0, density: float = 1.0) -> n
     reduced = rotor.center_interfaces().reduce(MODES)
     unit = np.sqrt(stress / density) / length
     springs = held(1e8 * stress * length, "left", "right")
-    return campbell(reduced, [300.0 * unit], supports=springs).frequencies_rotating[0] / unit
+    return campbell(reduced, [300.0 * unit], supports=springs).frequencies_rotor[0] / unit
 
 
 def mismatch(length: float, stress: float = 1.0, density: float = 1.0) -> float:
@@ -176,7 +176,7 @@ def eccentric_error(distance: float) -> float:
     """
     rotor, inertia = _carried(distance).center_interfaces(), 2.0 * 0.1**2
     exact = np.sqrt(1e5 * np.array([1.0 / 2.0, 1.0 / 2.0 + (0.1 * distance) ** 2 / inertia]))
-    found = campbell(rotor.reduce(0), [0.0], supports=CARRIER).frequencies_rotating[0]
+    found = campbell(rotor.reduce(0), [0.0], supports=CARRIER).frequencies_rotor[0]
     return float(max(np.abs(found / one - 1.0).min() for one in exact))
 
 

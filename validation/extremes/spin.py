@@ -8,7 +8,7 @@ from extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rin
 from extremes.rows import EPS, Row, breaking_point, message
 from extremes.runs import bare_rotor, run
 from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
-from exudyn_rotor.linear.equations.system import LinearRotor
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.theory.stiffening import stiffening
 
 BEARING = 2e5  # N/m at each end of the shaft
@@ -29,7 +29,7 @@ def campbell_error(ratios: np.ndarray) -> float:
     speeds = exact[0] * np.asarray(ratios)
     found = campbell(shaft_rotor().reduce(2), speeds, supports=held(BEARING, "left", "right"))
     worst = 0.0
-    for speed, row in zip(speeds, found.frequencies_rotating, strict=True):
+    for speed, row in zip(speeds, found.frequencies_rotor, strict=True):
         expected = np.abs(np.concatenate([exact + speed, exact - speed]))
         distance = np.abs(row[:, None] - expected).min(axis=0)
         worst = max(worst, distance.max() / max(speed, exact[-1]))
@@ -85,7 +85,7 @@ def definiteness(quick: bool = False) -> Row:
     )
     beyond = stability(rigid_on_support("tilt"), [1.001 * exact, 10.0 * exact])
     verdict = "stable" if beyond.stable.all() else "unstable"
-    lowest = np.sort(campbell(rigid_on_support("tilt"), [exact]).frequencies_rotating[0])[1]
+    lowest = np.sort(campbell(rigid_on_support("tilt"), [exact]).frequencies_rotor[0])[1]
     return Row(
         "spin speed, K − Ω²C, level 'tilt'",
         "to 10 × the speed where definiteness is lost",

@@ -1,0 +1,1 @@
+"""Natural frequencies over the speed, and critical speeds."""

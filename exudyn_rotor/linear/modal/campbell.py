@@ -6,31 +6,30 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
-import exudyn
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.free import free_motions
-from exudyn_rotor.linear.equations.full import FullRotor, Subspace
-from exudyn_rotor.linear.equations.source import linear_source
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor
-from exudyn_rotor.linear.modal.eigen import FloquetModes, floquet_modes, groups
+from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.response.places import Source
+from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.eigenvalues import groups
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
-FRAMES = ("inertial", "rotating")
 _FULL_MODES = 10
+# growth below this share of frequency and speed is not marked: what is left of a free spin of a
+# rotor with an uneven mesh looks like that
+_UNSTABLE = 1e-4
 
 
 @storable
@@ -44,7 +43,7 @@ class Campbell(Result):
     ----------
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
-    frequencies_rotating : ndarray, shape (s, k)
+    frequencies_rotor : ndarray, shape (s, k)
         Natural frequencies ν = |Im λ| seen in the rotor frame, ascending [rad/s].
     growth : ndarray, shape (s, k)
         Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
@@ -64,10 +63,28 @@ class Campbell(Result):
         ``order[i, j]`` is the column at speed i that continues column j of the first speed.
     free_motions : tuple of str
         Rigid motions that nothing holds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, campbell
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> result = campbell(rotor, [0.0, 50.0], supports=supports)
+    >>> result.tracked().damping_ratio[:, 1].round(4)
+    array([0.025, 0.025])
+    >>> print(result.table(1))
+      speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
+               0     1                 0              0              0  0  axial
+           7.958     1                 0              0              0  0  axial
+    free motions: translation along axis
     """
 
     speeds: np.ndarray = numbers("speeds")
-    frequencies_rotating: np.ndarray = numbers("speeds", "modes")
+    frequencies_rotor: np.ndarray = numbers("speeds", "modes")
     growth: np.ndarray = numbers("speeds", "modes")
     frequencies_inertial: np.ndarray = numbers("speeds", "modes")
     damping_ratio: np.ndarray = numbers("speeds", "modes")
@@ -100,7 +117,7 @@ class Campbell(Result):
         Neighbouring speeds are matched by the mass-weighted modal assurance criterion and the
         distance in frequency; steps in speed must be small where modes veer.
         """
-        names = ("frequencies_rotating", "growth", "frequencies_inertial", "damping_ratio",
+        names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
         moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
         moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
@@ -113,18 +130,31 @@ class Campbell(Result):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Those of a new figure by default.
-        frame : {'inertial', 'rotating'}
+            A new figure without a window by default.
+        frame : {'inertial', 'rotor'}
 
         Raises
         ------
         ValueError
             For an unknown frame.
         """
-        from exudyn_rotor.linear.modal.diagram import draw_campbell
-
         checks.choice(frame, "frame", FRAMES)
-        return draw_campbell(self, ax, frame)
+        ax = plotting.axes_or_new(ax)
+        hertz = 1.0 / (2.0 * np.pi)
+        tracked, speeds = self.tracked(), hertz * self.speeds
+        inertial = frame == "inertial"
+        values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
+        scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
+        unstable = tracked.growth > _UNSTABLE * scale
+        handles = draw_campbell(ax, speeds, hertz * values, tracked.whirl_codes, unstable)
+        if inertial:
+            handles += ax.plot(speeds, np.abs(speeds), color="0.6", lw=0.8, label="spin speed")
+        ax.set_xlabel("spin speed [Hz]")
+        ax.set_ylabel(f"frequency in the {'inertial' if inertial else 'rotor'} frame [Hz]")
+        ax.set_ylim(bottom=0.0)
+        ax.grid(alpha=0.3)
+        plotting.legend_above(ax, 3, handles)
+        return ax
 
     def table(self, count: int | None = None) -> str:
         """Return the lowest `count` modes at every speed as lines of text, frequencies in Hz."""
@@ -140,7 +170,7 @@ class Campbell(Result):
                 n = self.nodal_diameters[i, j]
                 lines.append(
                     f"{hertz * speed:12.4g}{j + 1:6d}"
-                    f"{hertz * self.frequencies_rotating[i, j]:18.6g}"
+                    f"{hertz * self.frequencies_rotor[i, j]:18.6g}"
                     f"{hertz * self.frequencies_inertial[i, j]:15.6g}"
                     f"{self.damping_ratio[i, j]:15.3g}  {n if n >= 0 else '-'}  {self.whirl[i, j]}"
                 )
@@ -150,7 +180,7 @@ class Campbell(Result):
 
 
 def campbell(
-    target: ReducedRotor | SolidRotor | exudyn.MainSystem,
+    target: Target,
     speeds: ArrayLike,
     *,
     supports: Sequence[Support] = (),
@@ -158,7 +188,8 @@ def campbell(
     modes: int | None = None,
     stiffening: str = "tilt",
     allow_negative: bool = False,
-    tolerance: float = 1e-5,
+    tolerance: float = 1e-8,
+    residual: float = 1e-5,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Campbell:
@@ -171,9 +202,9 @@ def campbell(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor or exudyn.MainSystem
-        A SolidRotor of more than 600 degrees of freedom is solved for its lowest modes, each
-        checked by the residual of the full equations.
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+        See :func:`linear_model`. A SolidRotor of more than 600 degrees of freedom is solved for
+        its lowest modes, each checked by the residual of the full equations.
     speeds : array_like, shape (s,)
         Ascending spin speeds [rad/s].
     supports : sequence of Support, optional
@@ -189,7 +220,10 @@ def campbell(
     allow_negative : bool, optional
         Accept speeds below zero.
     tolerance : float, optional
-        Relative residual of a large SolidRotor; eigenvalues are about its square.
+        Largest error of an eigenvalue by the harmonics that Hill's method leaves out, relative to
+        the larger of its size and the frequency of the turning coefficients.
+    residual : float, optional
+        Largest relative residual of a large SolidRotor; its eigenvalues err by about the square.
     executor : concurrent.futures.Executor, optional
         Computes the speeds. A large SolidRotor does not use it: its speeds share one subspace.
     progress : bool, optional
@@ -219,50 +253,51 @@ def campbell(
     Springs in the frame of the rotor that hold its spin, by torsion or off the axis, and springs
     that stand still with a distance between them, are complete, with the stiffness of the spin by
     their steady forces; tilts lack that stiffness.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, campbell
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> result = campbell(rotor, [0.0, 50.0], supports=supports)
+    >>> result.frequencies_inertial[1, 1:5].round(2)
+    array([99.97, 99.97, 99.97, 99.97])
+    >>> result.whirl[1, 1:5].tolist()
+    ['forward', 'forward', 'backward', 'backward']
     """
     values = _checked_speeds(speeds, checks.flag(allow_negative, "allow_negative"))
     if modes is not None:
         checks.count(modes, "modes", least=1)
     tolerance = options.accuracy(tolerance, "tolerance")
+    residual = options.accuracy(residual, "residual")
     options.check_sweep(executor, progress)
-    source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    count = _checked_count(modes, source)
-    content = WhirlContent.of(source)
-    if isinstance(source, FullRotor):
-        solver = _FullTask(Subspace(source, count, np.abs(values).max()), count, tolerance, content)
-        executor, mass = None, source.invariants.M
-    else:
-        solver, mass = _Task(light(source), count, content), source.at(0.0).M[0]
-    solved = sweep(solver, values, executor=executor, progress=progress, label="Campbell")
-    order = track([entry[0] for entry in solved], values, mass.__matmul__)
-    apart = getattr(source, "free_spin", None) is not None
-    free = free_motions(target, getattr(source, "supports", ()), apart)
-    return _collected(values, solved, order, free)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    count = _checked_count(modes, model)
+    space = model.space(count, np.abs(values).max(), residual=residual)
+    if executor is not None:
+        space = space.prepared(values)
+    task = _Task(space, count, tolerance, WhirlContent.of(model))
+    workers = None if space.is_shared else executor
+    solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
+    order = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
+    return _collected(values, solved, order, model.free_motions)
 
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """Solves one speed; picklable, so that processes can do it."""
+    """Solves one speed; picklable where the space is, so that processes can do it."""
 
-    source: Source
-    count: int
-    content: WhirlContent
-
-    def __call__(self, speed: float) -> Solved:
-        return _classified(floquet_modes(self.source.at(speed)), speed, self.content, self.count)
-
-
-@dataclass(frozen=True, eq=False)
-class _FullTask:
-    """Solves one speed of a full model in the subspace of all."""
-
-    subspace: Subspace
+    space: Space
     count: int
     tolerance: float
     content: WhirlContent
 
     def __call__(self, speed: float) -> Solved:
-        modes = self.subspace.modes(speed, self.count, self.tolerance)
+        modes = self.space.modes(speed, self.tolerance)
         return _classified(modes, speed, self.content, self.count)
 
 
@@ -294,7 +329,7 @@ def _collected(
         decrement = np.where(growth == 0.0, 0.0, -2.0 * np.pi * growth / inertial)
     return Campbell(
         speeds=speeds,
-        frequencies_rotating=eigenvalues.imag,
+        frequencies_rotor=eigenvalues.imag,
         growth=growth,
         frequencies_inertial=inertial,
         damping_ratio=np.where(still, 0.0, -growth / np.where(still, 1.0, size)),
@@ -307,13 +342,6 @@ def _collected(
     )
 
 
-def light(source: Source) -> Source:
-    """Return the source without mode shapes, which workers do not need."""
-    if isinstance(source, LinearRotor):
-        return replace(source, rotor=source.rotor.without_shapes())
-    return source
-
-
 def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
     if allow_negative:
         return ascending(speeds, "speeds")
@@ -321,9 +349,9 @@ def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
     return ascending_from_zero(speeds, "speeds", turn)
 
 
-def _checked_count(modes: int | None, source: Source) -> int:
+def _checked_count(modes: int | None, model: LinearModel) -> int:
     if modes is None:
-        return _FULL_MODES if isinstance(source, FullRotor) else source.size
-    if modes > source.size:
-        raise ValueError(f"modes: {modes} is not between 1 and the {source.size} there are")
+        return model.size if model.gives_all else min(_FULL_MODES, model.size)
+    if modes > model.size:
+        raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     return int(modes)

@@ -22,18 +22,15 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import brentq
 
-from exudyn_rotor.linear.equations.full import FullRotor, Subspace
-from exudyn_rotor.linear.equations.hill import harmonic_step
-from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.modal.eigen import FloquetModes
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.response.places import Source
+from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 # share of a mode's energy that must turn with the excitation
 _SHARE = 0.4
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
-_CONVERGED = 1e-9
 _MOST_STEPS = 8
 _SAME = 1e-7
 # share of the largest inertia; an uneven mesh leaves 1e-10 for the spin
@@ -42,6 +39,7 @@ _NO_INERTIA = 1e-6
 _QUADRATIC = 1e-6
 _BRACKETS = 200
 _MOST_ROUNDS = 20
+_MODES = 10  # that the subspace of a full rotor begins with
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,38 +52,81 @@ class Resonance:
 
 
 def resonances(
-    source: Source, content: WhirlContent, order: float, waves: Sequence[int], limit: float | None
+    model: LinearModel,
+    content: WhirlContent,
+    order: float,
+    waves: Sequence[int],
+    limit: float | None,
+    tolerance: float,
+    residual: float,
+) -> list[Resonance]:
+    """Return all critical speeds, ascending; motions in the coordinates of the model.
+
+    Raises
+    ------
+    ValueError
+        If the largest speed `limit` is needed and missing, or the search does not converge.
+    """
+    if not model.gives_all:
+        limit = _needed(limit, "a large SolidRotor")
+    space = model.space(_MODES, limit or 0.0, residual=residual)
+    for _ in range(_MOST_ROUNDS):
+        equations = _Equations(space, model.stiffness_varies, {})
+        found = _resonances(equations, content.within(space.basis), order, waves, limit, tolerance)
+        if space.basis is not None:
+            found = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in found]
+        if space.holds([(entry.speed, _as_modes(entry)) for entry in found]):
+            return found
+    raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
+
+
+def _as_modes(resonance: Resonance) -> FloquetModes:
+    center = len(resonance.multiples) // 2
+    orders = np.round(resonance.multiples - resonance.multiples[center]).astype(int)
+    value = 1j * resonance.multiples[center] * resonance.speed
+    return FloquetModes(np.array([value]), resonance.vectors[:, :, None], orders, 0.0)
+
+
+def _resonances(
+    equations: _Equations,
+    content: WhirlContent,
+    order: float,
+    waves: Sequence[int],
+    limit: float | None,
+    tolerance: float,
 ) -> list[Resonance]:
     """Return all critical speeds of dense equations, ascending."""
-    source = _Remembered(source, {})
-    step = harmonic_step(source.at(0.0))
+    step = equations.at(0.0).step
     found = []
     if step == 0:
         for n in waves:
-            found += _kept(_solved(source, np.array([order - n]), limit), content, order, waves)
+            found += _kept(_solved(equations, np.array([order - n]), limit), content, order, waves)
     else:
         for start in {n % step: n for n in waves}.values():
-            found += _converged(source, content, order, waves, order - start, step, limit)
+            found += _converged(
+                equations, content, order, waves, order - start, step, limit, tolerance
+            )
     return sorted(found, key=lambda entry: entry.speed)
 
 
 def _converged(
-    source: _Remembered,
+    equations: _Equations,
     content: WhirlContent,
     order: float,
     waves: Sequence[int],
     center: float,
     step: int,
     limit: float | None,
+    tolerance: float,
 ) -> list[Resonance]:
     """Add harmonics until the critical speeds do not change any more."""
     last = None
     for count in range(2, _MOST_STEPS):
         multiples = center + step * np.arange(-count, count + 1)
-        found = _kept(_solved(source, multiples, limit), content, order, waves)
+        found = _kept(_solved(equations, multiples, limit), content, order, waves)
         speeds = np.sort([entry.speed for entry in found])
         same = last is not None and len(last) == len(speeds)
-        if same and np.all(np.abs(speeds - last) <= _CONVERGED * speeds):
+        if same and np.all(np.abs(speeds - last) <= tolerance * speeds):
             return found
         last = speeds
     raise ValueError(
@@ -115,14 +156,14 @@ def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarr
     return 0.5 * (whole + whole.conj().T)
 
 
-def _solved(source: _Remembered, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
+def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
     """Return every speed with a singular dynamic stiffness, with the motion."""
-    stiffness = _Stiffness(source, multiples)
-    if source.varies(stiffness, limit):
+    stiffness = _Stiffness(equations, multiples)
+    if equations.vary(stiffness, limit):
         pairs = _bracketed(stiffness, _needed(limit, "a system that varies with the speed"))
     else:
         at_rest = stiffness(0.0)
-        scale = source.scale(at_rest, limit)
+        scale = equations.scale(at_rest, limit)
         pairs = _direct(at_rest, (at_rest - stiffness(scale)) / scale**2)
     return [
         Resonance(speed, multiples, vector.reshape(len(multiples), -1))
@@ -135,34 +176,38 @@ def _solved(source: _Remembered, multiples: np.ndarray, limit: float | None) -> 
 class _Stiffness:
     """The dynamic stiffness as a function of the speed."""
 
-    source: Source | _Remembered
+    equations: _Equations
     multiples: np.ndarray
 
     def __call__(self, speed: float) -> np.ndarray:
-        return dynamic_stiffness(self.source.at(speed), self.multiples)
+        return dynamic_stiffness(self.equations.at(speed), self.multiples)
 
 
 @dataclass(frozen=True, eq=False)
-class _Remembered:
-    """A source that solves for its equations once per speed: linearising a scene is slow."""
+class _Equations:
+    """The equations of a space, solved for once per speed: linearising a scene is slow.
 
-    source: Source
+    Attributes
+    ----------
+    space : Space
+    supports_vary : bool or None
+        Whether supports depend on the speed; None where that has to be tried.
+    known : dict of float to PeriodicSystem
+    """
+
+    space: Space
+    supports_vary: bool | None
     known: dict[float, PeriodicSystem]
-
-    @property
-    def size(self) -> int:
-        return self.source.size
 
     def at(self, speed: float) -> PeriodicSystem:
         if speed not in self.known:
-            self.known[speed] = self.source.at(speed)
+            self.known[speed] = self.space.at(speed)
         return self.known[speed]
 
-    def varies(self, stiffness: _Stiffness, limit: float | None) -> bool:
+    def vary(self, stiffness: _Stiffness, limit: float | None) -> bool:
         """Return whether anything but the spin itself depends on the speed."""
-        if isinstance(self.source, LinearRotor):
-            supports = self.source.supports
-            return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in supports)
+        if self.supports_vary is not None:
+            return self.supports_vary
         limit = _needed(limit, "a scene")
         at_rest, half, full = (stiffness(speed) for speed in (0.0, 0.5 * limit, limit))
         expected = 0.75 * at_rest + 0.25 * full
@@ -170,7 +215,7 @@ class _Remembered:
 
     def scale(self, at_rest: np.ndarray, limit: float | None) -> float:
         """Return a speed at which inertia and stiffness are alike, within a scene's range."""
-        if not isinstance(self.source, LinearRotor):
+        if self.supports_vary is None:
             return limit
         return np.sqrt(np.abs(at_rest).max() / np.abs(self.at(0.0).M[0]).max()) or 1.0
 
@@ -252,31 +297,6 @@ def _same_speed(found: list[Resonance]) -> list[list[Resonance]]:
         else:
             groups.append([entry])
     return groups
-
-
-def full_resonances(
-    source: FullRotor, order: float, waves: Sequence[int], limit: float | None, tolerance: float
-) -> list[Resonance]:
-    """Solve in a subspace that grows until the full equations hold for each critical speed."""
-    limit = _needed(limit, "a large SolidRotor")
-    subspace = Subspace(source, 10, limit)
-    for _ in range(_MOST_ROUNDS):
-        projected = subspace.projected
-        found = resonances(projected, subspace.content(), order, waves, limit)
-        lifted = [replace(entry, vectors=entry.vectors @ subspace.V.T) for entry in found]
-        wrong = []
-        for entry in lifted:
-            center = len(entry.multiples) // 2
-            orders = np.round(entry.multiples - entry.multiples[center]).astype(int)
-            value = 1j * entry.multiples[center] * entry.speed
-            modes = FloquetModes(np.array([value]), entry.vectors[:, :, None], orders, 0.0)
-            errors, corrections = subspace.errors(entry.speed, modes)
-            if errors[0] > tolerance:
-                wrong += [corrections.real, corrections.imag]
-        if not wrong:
-            return lifted
-        subspace.grow(np.hstack(wrong))
-    raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
 
 
 def _needed(limit: float | None, what: str) -> float:

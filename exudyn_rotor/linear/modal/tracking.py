@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.modal.eigen import FloquetModes
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 
 # how strongly a jump in frequency counts against a likeness of shapes
 _JUMP_WEIGHT = 0.5

@@ -10,17 +10,11 @@ Dynamics of Rotating Systems (2005).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_rotor.linear.equations.supports import axes_of
-from exudyn_rotor.linear.response.places import Source
-
-if TYPE_CHECKING:
-    from exudyn_rotor.linear.equations.scene import LinearScene
-    from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
 
 WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
 FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))
@@ -36,7 +30,6 @@ _HIGHEST = 4
 _SAMPLES = 800
 _AXIAL_TERMS = 6
 _RADIAL_TERMS = 2
-_RING = 8
 # share of a field that others must leave over to count as new
 _NEW_SHARE = 1e-2
 
@@ -70,25 +63,28 @@ class WhirlContent:
     knows_diameters: bool = True
 
     @classmethod
-    def of(cls, source: Source) -> WhirlContent:
-        """Build the content of a linear source from mode shapes, or from its interfaces.
+    def of(cls, model: LinearModel) -> WhirlContent:
+        """Build the content of a linear model from mode shapes, or from its interfaces.
 
         Equal weights for up to 800 mesh nodes, spread over the node numbers. Without mode shapes,
         rings of points that move with the interfaces take their place.
         """
-        points, motion, rows, known = _sample(source)
-        return cls.from_points(points, motion, known, rows)
+        return cls.from_points(model.point_motions(_SAMPLES))
 
     @classmethod
-    def from_points(
-        cls,
-        points: np.ndarray,
-        motion: np.ndarray,
-        knows_diameters: bool = True,
-        rows: np.ndarray | None = None,
-    ) -> WhirlContent:
-        """Build the content from points (s, 3) and their motion (3s, c) along (n1, n2, e)."""
-        return cls(*_operators(points, motion), rows, knows_diameters)
+    def from_points(cls, points: PointMotions) -> WhirlContent:
+        """Build the content from points and their motions."""
+        return cls(*_operators(points.points, points.motion), points.rows, points.is_mesh)
+
+    def within(self, basis: np.ndarray | None) -> WhirlContent:
+        """Return the content of a basis (c, r) of the coordinates; None for all of them."""
+        if basis is None:
+            return self
+        V = self._chosen(basis[None])[0]
+        parts = {
+            name: getattr(self, name) @ V for name in ("axial", "tangential", "radial", "whole")
+        }
+        return replace(self, waves=tuple(wave @ V for wave in self.waves), rows=None, **parts)
 
     def energies(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of each wave (h, o, k) of `vectors` (h, c, k)."""
@@ -276,64 +272,3 @@ def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:
     _, lengths, turn = np.linalg.svd(rest, full_matrices=False)
     kept = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
     return np.linalg.qr(fields @ kept)[0]
-
-
-def _sample(source: Source) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, bool]:
-    """Return points (s, 3) and their motion (3s, c) along (n1, n2, e), the rows, and a flag."""
-    if hasattr(source, "whirl_sample"):
-        return source.whirl_sample(_SAMPLES)
-    if not hasattr(source, "rotor"):
-        return *_rings(source, _of_scene(source)), None, False
-    rotor = source.rotor
-    if rotor.shapes is not None:
-        axes = axes_of(rotor.axis)
-        nodes = spread(len(rotor.shapes.nodes), _SAMPLES)
-        points = (rotor.shapes.nodes[nodes] - rotor.axis.point) @ axes
-        motion = rotor.shapes.matrix.reshape(-1, 3, source.size)[nodes]
-        return (
-            points,
-            np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1),
-            None,
-            True,
-        )
-    return *_rings(source, _of_rotor(rotor)), None, False
-
-
-def spread(count: int, most: int) -> np.ndarray:
-    """Return up to `most` node numbers, evenly spread over `count`."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
-
-
-Ring = tuple[np.ndarray, float, str]
-
-
-def _of_rotor(rotor: ReducedRotor) -> list[Ring]:
-    """Return centre (3,) along (n1, n2, e), radius and name of every interface."""
-    axes = axes_of(rotor.axis)
-    return [
-        ((entry.reference - rotor.axis.point) @ axes, entry.radius, name)
-        for name, entry in rotor.interfaces.items()
-    ]
-
-
-def _of_scene(scene: LinearScene) -> list[Ring]:
-    """Return rings of the rotor's radius of gyration, one for every marker, side by side."""
-    inertia = scene.body.motion.invariants
-    radius = np.sqrt(inertia.Theta / inertia.mass)
-    return [
-        (np.array([0.0, 0.0, float(i)]), radius, name) for i, name in enumerate(scene.body.markers)
-    ]
-
-
-def _rings(source: Source, rings: list[Ring]) -> tuple[np.ndarray, np.ndarray]:
-    """Return rings of points that move with the interfaces."""
-    # a point at rest, so that a rotor without any interface has no whirl instead of an error
-    points, motion = [np.zeros((1, 3))], [np.zeros((3, source.size))]
-    angles = 2.0 * np.pi * np.arange(_RING) / _RING
-    circle = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(_RING)])
-    for center, radius, name in rings:
-        U, arms = source.interface_motion(name), radius * circle
-        points.append(center + arms)
-        turned = np.cross(U[3:].T[None], arms[:, None]).transpose(0, 2, 1)
-        motion.append((U[:3] + turned).reshape(3 * _RING, -1))
-    return np.vstack(points), np.vstack(motion)

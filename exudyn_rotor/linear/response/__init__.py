@@ -1,0 +1,1 @@
+"""Steady motion under unbalance and harmonic loads."""

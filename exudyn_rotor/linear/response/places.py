@@ -4,30 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.supports import axes_of
-from exudyn_rotor.linear.equations.system import PeriodicSystem
+from exudyn_rotor.linear.models.protocol import LinearModel
 
 At = str | int | Sequence[float]
-
-
-class Source(Protocol):
-    """Linear equations at any spin speed, of a rotor with supports or of a whole scene."""
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates k."""
-
-    def at(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a spin speed [rad/s]."""
-
-    def interface_motion(self, name: str) -> np.ndarray:
-        """Return the motion (6, k) of an interface along (n1, n2, e)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +33,7 @@ class Place:
     is_node: bool
 
 
-def place(source: Source, at: At) -> Place:
+def place(model: LinearModel, at: At) -> Place:
     """Find an interface by its name, a mesh node by its number or by a position [m].
 
     Raises
@@ -58,19 +42,15 @@ def place(source: Source, at: At) -> Place:
         If there is no such interface or node, or the rotor was stored without mode shapes.
     """
     if isinstance(at, str):
-        return _interface(source, at)
-    if hasattr(source, "node_motion"):  # a full model
-        number = _node_number(at, source.nodes)
-        return Place(f"node {number}", source.node_motion(number), is_node=True)
-    rotor = getattr(source, "rotor", None)
-    if rotor is None or rotor.shapes is None:
+        return _interface(model, at)
+    mesh = model.mesh
+    if mesh is None:
         raise ValueError(
-            f"place {at!r}: mesh nodes need a ReducedRotor with mode shapes; reduce with "
+            f"place {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
             "keep_shapes=True, or name an interface"
         )
-    number = _node_number(at, rotor.shapes.nodes)
-    rows = axes_of(rotor.axis).T @ rotor.shapes.matrix[3 * number : 3 * number + 3]
-    return Place(f"node {number}", np.vstack([rows, 0.0 * rows]), is_node=True)
+    number = _node_number(at, mesh.nodes)
+    return Place(f"node {number}", mesh.motion(number), is_node=True)
 
 
 def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
@@ -89,9 +69,9 @@ def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
     return tuple(options.place(one, f"at[{index}]") for index, one in enumerate(listed))
 
 
-def places(source: Source, at: Sequence[At] | None) -> list[Place]:
+def places(model: LinearModel, at: Sequence[At] | None) -> list[Place]:
     """Return the places asked for; by default all interfaces."""
-    found = [place(source, one) for one in (interface_names(source) if at is None else at)]
+    found = [place(model, one) for one in (model.interfaces if at is None else at)]
     if not found:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
     labels = [one.label for one in found]
@@ -100,20 +80,13 @@ def places(source: Source, at: Sequence[At] | None) -> list[Place]:
     return found
 
 
-def interface_names(source: Source) -> tuple[str, ...]:
-    """Return the names of all interfaces of a rotor, or of all with a marker in a scene."""
-    if hasattr(source, "rotor"):
-        return tuple(source.rotor.interfaces)
-    return tuple(source.body.markers)
-
-
-def _interface(source: Source, name: str) -> Place:
-    known = interface_names(source)
+def _interface(model: LinearModel, name: str) -> Place:
+    known = model.interfaces
     if name not in known:
         raise ValueError(
             f"place {name!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
         )
-    return Place(name, np.asarray(source.interface_motion(name)), is_node=False)
+    return Place(name, np.asarray(model.interface_motion(name)), is_node=False)
 
 
 def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:

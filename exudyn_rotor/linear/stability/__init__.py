@@ -1,0 +1,1 @@
+"""Growth over the speed, and its limits."""

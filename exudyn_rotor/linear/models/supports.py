@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, turned_harmonics
 from exudyn_rotor.theory.nodal import skew
 
-FRAMES = ("inertial", "rotor")
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
 SpeedTable = tuple[ArrayLike, ArrayLike]
@@ -46,6 +46,17 @@ class Support:
         For an unknown frame, coefficients of the wrong shape or not finite, speeds of a table that
         do not ascend, and ``((a, b), (c, d))``, which may mean a matrix or a table: write a matrix
         as ``[[a, b], [c, d]]`` and a table as ``([a, b], [c, d])``.
+
+    Examples
+    --------
+    A bearing that is softer along n1, and one whose stiffness grows with the speed:
+
+    >>> from exudyn_rotor import Support
+    >>> Support("left", [[1e7, 0.0], [0.0, 2e7]], damping=500.0).matrices(0.0)[0][:2, :2]
+    array([[10000000.,        0.],
+           [       0., 20000000.]])
+    >>> float(Support("right", ([0.0, 1000.0], [1e7, 3e7])).matrices(500.0)[0][0, 0])
+    20000000.0
     """
 
     interface: str
@@ -86,6 +97,16 @@ class Support:
         carried = stiffness + speed * damping @ np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))
         return turned_harmonics(damping), turned_harmonics(carried)
 
+    def undamped(self) -> Support:
+        """Return the support without damping and without the skew part of its stiffness."""
+        parts = {
+            name: partial(_symmetric_part, self, first)
+            if self.stiffness_varies
+            else _symmetric_part(self, first, 0.0)
+            for name, first in (("stiffness", 0), ("tilt_stiffness", 3))
+        }
+        return replace(self, **parts, damping=0.0, tilt_damping=0.0)
+
     @property
     def stiffness_varies(self) -> bool:
         """True when a stiffness depends on the spin speed."""
@@ -101,6 +122,11 @@ class Support:
         elif isinstance(value, tuple):
             value = _interpolate(*value, speed)
         return _in_three_axes(value)
+
+
+def _symmetric_part(support: Support, first: int, speed: float) -> np.ndarray:
+    block = support.matrices(speed)[0][first : first + 3, first : first + 3]
+    return 0.5 * (block + block.T)
 
 
 def _kept(value: Coefficient, name: str) -> Coefficient:
@@ -144,6 +170,11 @@ def _in_three_axes(value: float | np.ndarray) -> np.ndarray:
     return full
 
 
+def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ...]:
+    """Return supports as a tuple; TypeError for anything else."""
+    return checks.instances(supports, "supports", Support)
+
+
 def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
     """Refuse a support at an interface that the rotor does not have.
 
@@ -164,26 +195,3 @@ def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.nda
     flat = values.reshape(len(values), -1)
     columns = [np.interp(speed, speeds, column) for column in flat.T]
     return np.array(columns).reshape(values.shape[1:])
-
-
-def axes_of(axis: SpinAxis) -> np.ndarray:
-    """Return (n1, n2, e) as columns, shape (3, 3)."""
-    return np.column_stack([axis.plane, axis.direction])
-
-
-def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
-
-    R turns both triples of a (6, 6) matrix X about e by θ; the result holds the harmonics
-    −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
-    """
-    angles = 2.0 * np.pi * np.arange(5) / 5.0
-    turn = SpinAxis((0.0, 0.0, 1.0)).rotation
-    samples = []
-    for angle in angles:
-        R = np.kron(np.eye(2), turn(angle))
-        samples.append(R.T @ matrix @ R)
-    spectrum = np.fft.fft(np.array(samples), axis=0) / 5.0
-    largest = np.abs(matrix).max(initial=0.0)
-    terms = {n: spectrum[n % 5] for n in range(-2, 3)}
-    return {n: X for n, X in terms.items() if np.abs(X).max() > 1e-14 * largest}

@@ -14,15 +14,14 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.system import PeriodicSystem
-from exudyn_rotor.linear.stability.analysis import (
-    check_method,
-    excess_growth,
-    exponents,
-    source_of,
-)
+from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.periodic.exponents import exponents
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.stability.stability import check_method, excess_growth, held_space
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.sweep import sweep
+
+_RESIDUAL = 1e-7  # of a large SolidRotor
 
 
 @storable
@@ -38,6 +37,17 @@ class StabilityMap(Result):
     stable : ndarray of bool, shape (a, b)
     labels : tuple of str
         Names of x and y.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import StabilityMap
+    >>> stable = [[True], [False]]
+    >>> result = StabilityMap([1.0, 2.0], [10.0], [[-0.5], [0.5]], stable, ("c", "speed"))
+    >>> print(result.table())
+    growth [1/s]; columns: speed
+                           c           10
+                           1         -0.5
+                           2          0.5*
     """
 
     x: np.ndarray = numbers("x")
@@ -45,6 +55,16 @@ class StabilityMap(Result):
     growth: np.ndarray = numbers("x", "y")
     stable: np.ndarray = numbers("x", "y", dtype=bool)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
+
+    def table(self) -> str:
+        """Return the growth [1/s] at every point as lines of text; '*' marks instability."""
+        first, second = self.labels
+        lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
+        lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
+        for value, growth, stable in zip(self.x, self.growth, self.stable, strict=True):
+            entries = (f"{g:13.5g}{' ' if s else '*'}" for g, s in zip(growth, stable, strict=True))
+            lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
+        return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line."""
@@ -64,7 +84,7 @@ class StabilityMap(Result):
 
 
 def stability_map(
-    build: Callable[[float, float], PeriodicSystem | tuple[object, float]],
+    build: Callable[[float, float], PeriodicSystem | tuple[Target, float]],
     x: ArrayLike,
     y: ArrayLike,
     *,
@@ -80,14 +100,30 @@ def stability_map(
     ----------
     build : callable
         ``build(x, y)`` returns a target of :func:`stability` and the speed [rad/s], e.g.
-        ``(LinearRotor.of(rotor, [Support('left', x)]), y)``, or a :class:`PeriodicSystem`, which
-        is taken as it is; picklable for process pools.
+        ``(linear_model(rotor, supports=[Support('left', x)]), y)``, or a
+        :class:`PeriodicSystem`, which is taken as it is; picklable for process pools.
     x, y : array_like, shapes (a,), (b,)
         Ascending.
     labels : tuple of str
         Names of x and y with units, for the plot.
     method, tolerance, executor, progress
         See :func:`stability`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, linear_model, stability_map
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> def build(damping: float, speed: float) -> tuple:
+    ...     inner = [Support(name, damping=damping, frame="rotor") for name in ("left", "right")]
+    ...     return linear_model(rotor, supports=supports + inner), speed
+    >>> stability_map(build, [2.0, 5.0], [200.0, 400.0]).stable
+    array([[ True,  True],
+           [ True, False]])
     """
     checks.function(build, "build")
     check_method(method, tolerance)
@@ -106,13 +142,16 @@ def stability_map(
 def _map_point(
     point: tuple[float, float], build: Callable, method: str, tolerance: float
 ) -> tuple[float, float]:
-    system = build(*point)
-    if isinstance(system, tuple) and len(system) == 2:
-        target, speed = system
-        speed = checks.number(speed, "build: the speed it returns", "rad/s", least=0.0)
-        system = source_of(target, (), None, "tilt").at(speed)
-    checks.instance(
-        system, "build", PeriodicSystem, "it returns a target of stability and the speed"
-    )
-    values = exponents(system, method, tolerance)
+    built = build(*point)
+    if isinstance(built, PeriodicSystem):
+        values, system = exponents(built, method, tolerance), built
+    else:
+        if not isinstance(built, tuple) or len(built) != 2:
+            raise TypeError(
+                "build: needs to return a target of stability and the speed, or a PeriodicSystem, "
+                f"got {checks.shown(built)}"
+            )
+        speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
+        space = held_space(linear_model(built[0]), speed, None, _RESIDUAL)
+        values, system = space.exponents(speed, method, tolerance)
     return values.real.max(), excess_growth(values, system, tolerance)

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import exudyn
 import numpy as np
 
+from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.locking import SPIN
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
-
-if TYPE_CHECKING:
-    from exudyn_rotor.linear.equations.scene import LinearScene
 
 _CONFIGURATIONS = exudyn.ConfigurationType
 _STATES = (
@@ -36,13 +33,15 @@ _VELOCITY_STEP = 1e-3  # m/s
 class Probe:
     """Exudyn's forces and masses at any state of a scene, spin Ω, beside the rotor's own terms."""
 
-    def __init__(self, scene: LinearScene, speed: float, solver: exudyn.MainSolverStatic) -> None:
+    def __init__(
+        self, scene: SceneCoordinates, speed: float, solver: exudyn.MainSolverStatic
+    ) -> None:
         self.scene, self.speed, self.solver = scene, speed, solver
         self.mbs = scene.body.mbs
         body = scene.body
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
         self.spin = _spin_coordinate(body)
-        self.rotor = np.arange(scene._own.stop)
+        self.rotor = np.arange(scene.own.stop)
         self.step = None
         self.constant = None
         if body.motion.is_constant:
@@ -130,7 +129,7 @@ class Probe:
 
 
 @contextmanager
-def probing(scene: LinearScene, speed: float) -> Iterator[Probe]:
+def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     """Open a scene for probing and leave it as it was."""
     mbs, settings = scene.body.mbs, exudyn.SimulationSettings()
     settings.staticSolver.verboseMode = 0

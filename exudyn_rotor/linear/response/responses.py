@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
+from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
+from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import Result, numbers, storable, words
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
+CIRCULAR = ("forward", "backward")
+_DRAWN = (*DIRECTIONS, *CIRCULAR)
+HERTZ = 1.0 / (2.0 * np.pi)
 
 
 @dataclass(frozen=True, eq=False)
-class Response(Result):
+class Response(Result, ABC):
     """Steady motion ``u(t) = Re Σ_n a_n exp(i rate_n t)`` at places of the rotor.
 
     Attributes
@@ -40,16 +45,16 @@ class Response(Result):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.choice(self.frame, "frame", ("inertial", "rotor"))
+        checks.choice(self.frame, "frame", FRAMES)
 
     @property
+    @abstractmethod
     def abscissa(self) -> np.ndarray:
         """What the response was computed over, shape (s,) [rad/s]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rates(self, order: int) -> np.ndarray:
         """Return the angular frequencies of a harmonic, shape (s,) [rad/s]."""
-        raise NotImplementedError
 
     @property
     def main_order(self) -> int:
@@ -149,27 +154,127 @@ class Response(Result):
             )
         return "\n".join(lines)
 
-    def plot(self, place: str | None = None, **options) -> tuple[Axes, Axes]:
-        """Draw a Bode diagram; see :func:`exudyn_rotor.linear.response_plots.plot_bode`."""
-        from exudyn_rotor.linear.response.plots import plot_bode
+    def plot(
+        self,
+        place: str | None = None,
+        *,
+        directions: Sequence[str] = ("n1", "n2"),
+        order: int | None = None,
+        ax: Sequence[Axes] | None = None,
+        log: bool = True,
+    ) -> np.ndarray:
+        """Draw size and phase of the displacement over speed or frequency [Hz] (Bode diagram).
 
-        return plot_bode(self, place, **options)
+        Parameters
+        ----------
+        place : str, optional
+            The first one by default.
+        directions : sequence of {'n1', 'n2', 'e', 'forward', 'backward'}
+        order : int, optional
+            Harmonic; the main one by default.
+        ax : two matplotlib Axes, optional
+            For size and phase; a new figure by default.
+        log : bool, optional
+            Logarithmic sizes.
 
-    def plot_polar(self, place: str | None = None, **options) -> Axes:
-        """Draw phasors in their plane; see :func:`...response_plots.plot_polar`."""
-        from exudyn_rotor.linear.response.plots import plot_polar
+        Returns
+        -------
+        ndarray of matplotlib.axes.Axes, shape (2,)
+            Size and phase, as ``plt.subplots(2)`` returns them.
+        """
+        names = checks.labels(directions, "directions", _DRAWN)
+        checks.flag(log, "log")
+        place, order = self._place(place), self._order(order)
+        if ax is None:
+            ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
+        pair = checks.instances(list(ax) if isinstance(ax, np.ndarray) else ax, "ax", Axes)
+        if len(pair) != 2:
+            raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
+        curves = {name: self._drawn(name, place, order) for name in names}
+        draw_bode(*pair, HERTZ * self.abscissa, curves, log)
+        pair[0].set_title(self._title(place, order), loc="right", fontsize=10)
+        pair[1].set_xlabel(f"{self._what} [Hz]")
+        return np.array(pair)
 
-        return plot_polar(self, place, **options)
+    def plot_polar(
+        self,
+        place: str | None = None,
+        *,
+        direction: str = "n1",
+        order: int | None = None,
+        ax: Axes | None = None,
+        marks: int = 5,
+    ) -> Axes:
+        """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
 
-    def plot_orbit(self, value: float, **options) -> Axes:
-        """Draw orbits; see :func:`exudyn_rotor.linear.response_plots.plot_orbit`."""
-        from exudyn_rotor.linear.response.plots import plot_orbit
+        A damped resonance is a loop; its place across from the start is the critical speed.
 
-        return plot_orbit(self, value, **options)
+        Parameters
+        ----------
+        place, order
+            See :meth:`plot`.
+        direction : {'n1', 'n2', 'e', 'forward', 'backward'}
+        ax : matplotlib.axes.Axes, optional
+            A new figure by default.
+        marks : int, optional
+            How many points are labelled with their speed or frequency [Hz].
+        """
+        checks.choice(direction, "direction", _DRAWN)
+        marks = checks.count(marks, "marks")
+        place, order = self._place(place), self._order(order)
+        ax = axes_or_new(ax, (5.5, 5.5))
+        draw_polar(ax, HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
+        ax.set_xlabel(f"in phase, {direction} [µm]")
+        ax.set_title(self._title(place, order), loc="right", fontsize=10)
+        return ax
+
+    def plot_orbit(
+        self,
+        value: float,
+        *,
+        places: Sequence[str] | None = None,
+        order: int | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw one revolution of the orbits [µm] at a speed or frequency [rad/s].
+
+        A dot marks t = 0 and an arrow the sense of the motion.
+
+        Parameters
+        ----------
+        value : float
+            The nearest computed speed or frequency is taken.
+        places : sequence of str, optional
+            All by default.
+        order : int, optional
+            Harmonic; the main one by default.
+        ax : matplotlib.axes.Axes, optional
+            A new figure by default.
+        """
+        value = checks.number(value, "value", "rad/s")
+        names = self.places
+        if places is not None:
+            names = checks.labels(places, "places", self.places)
+        order = self._order(order)
+        ax = axes_or_new(ax, (5.5, 5.5))
+        draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
+        nearest = self.abscissa[np.argmin(np.abs(self.abscissa - value))]
+        ax.set_title(f"{self._what} {HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
+        return ax
+
+    def _drawn(self, name: str, place: str, order: int) -> np.ndarray:
+        """Return the amplitudes along a direction, or of a circular component, shape (s,)."""
+        if name in CIRCULAR:
+            return self.whirl(place, order)[CIRCULAR.index(name)]
+        return self.phasor(place, name, order)
+
+    def _title(self, place: str, order: int) -> str:
+        return f"{place}, order {order}, {self.frame} frame"
 
     @property
+    @abstractmethod
     def _what(self) -> str:
-        raise NotImplementedError
+        """What the response was computed over, as a picture names it."""
 
     def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
         """Return the amplitudes (s, 6) of one harmonic at one place."""
@@ -202,6 +307,16 @@ class UnbalanceResponse(Response):
         See :class:`Response`.
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import UnbalanceResponse
+    >>> circle = np.array([1e-6, -1e-6j, 0, 0, 0, 0]).reshape(1, 1, 1, 6)
+    >>> response = UnbalanceResponse(("disc",), [1], circle, "inertial", [100.0])
+    >>> forward, backward = response.whirl("disc")
+    >>> abs(forward), abs(backward)
+    (array([1.e-06]), array([0.]))
     """
 
     speeds: np.ndarray = numbers("abscissa")
@@ -233,6 +348,16 @@ class HarmonicResponse(Response):
         Angular frequencies ω of the loads [rad/s].
     speed : float
         Spin speed Ω [rad/s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import HarmonicResponse
+    >>> circle = np.array([1e-6, -1e-6j, 0, 0, 0, 0]).reshape(1, 1, 1, 6)
+    >>> response = HarmonicResponse(("disc",), [0], circle, "inertial", [100.0], 0.0)
+    >>> forward, backward = response.whirl("disc")
+    >>> abs(forward), abs(backward)
+    (array([1.e-06]), array([0.]))
     """
 
     frequencies: np.ndarray = numbers("abscissa")

@@ -32,6 +32,12 @@ def permissible_unbalance(grade: float, mass: float, speed: float) -> float:
     ------
     TypeError, ValueError
         If one of them is not a positive number.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import permissible_unbalance
+    >>> permissible_unbalance(2.5, mass=40.0, speed=500.0)
+    0.0002
     """
     grade = checks.number(grade, "grade", "mm/s", above=0.0)
     mass = checks.number(mass, "mass", "kg", above=0.0)
@@ -58,6 +64,12 @@ class Unbalance:
     ------
     TypeError, ValueError
         If the place is of another kind, the amount not positive, or a number not finite.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Unbalance
+    >>> Unbalance.from_grade("disc", 2.5, mass=40.0, speed=500.0, share=0.5)
+    Unbalance(at='disc', amount=0.0001, angle=0.0)
     """
 
     at: str | int | Sequence[float]

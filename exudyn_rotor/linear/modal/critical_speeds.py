@@ -7,29 +7,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
-import exudyn
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.source import checked_supports, linear_source
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.modal.resonance import Resonance, full_resonances, resonances
+from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.theory.stiffening import LEVELS
-
-Target = ReducedRotor | SolidRotor | exudyn.MainSystem
 
 
 @storable
@@ -43,18 +39,27 @@ class CriticalSpeeds(Result):
         Excitation order p: the excitation has the frequency pΩ in the inertial frame.
     speeds : ndarray, shape (c,)
         [rad/s]
-    frequencies_rotating : ndarray, shape (c,)
+    frequencies_rotor : ndarray, shape (c,)
         Frequency of the motion in the rotor frame [rad/s].
     whirl : tuple of str
         Words of :attr:`Campbell.whirl`; unbalance alone excites no purely backward mode.
     nodal_diameters : ndarray of int, shape (c,)
     vectors : ndarray, shape (k, c)
         Mode shapes in the coordinates of the rotor frame, unit length; the strongest harmonic.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import CriticalSpeeds
+    >>> result = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
+    >>> print(result.table())
+    critical speeds of order 1
+      [rad/s]      [Hz]        n  whirl
+      100          15.9155     1  forward
     """
 
     order: float
     speeds: np.ndarray = numbers("speeds")
-    frequencies_rotating: np.ndarray = numbers("speeds")
+    frequencies_rotor: np.ndarray = numbers("speeds")
     whirl: tuple[str, ...] = words("speeds")
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
@@ -81,7 +86,8 @@ def critical_speeds(
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (0, 1),
     stiffening: str = "tilt",
-    tolerance: float = 1e-5,
+    tolerance: float = 1e-9,
+    residual: float = 1e-5,
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
 
@@ -89,7 +95,8 @@ def critical_speeds(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor or exudyn.MainSystem
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+        See :func:`linear_model`.
     supports : sequence of Support, optional
         Of a rotor.
     body : RotorBody, optional
@@ -104,7 +111,10 @@ def critical_speeds(
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
     stiffening : {'tilt', 'none', 'full'}
     tolerance : float, optional
-        Relative residual of a large SolidRotor.
+        Largest relative change of a critical speed by further harmonics.
+    residual : float, optional
+        Largest relative residual of a large SolidRotor; its critical speeds err by about the
+        square.
 
     Raises
     ------
@@ -113,17 +123,31 @@ def critical_speeds(
     ValueError
         For an order or speed that is negative or not finite, a missing `max_speed`, an unknown
         interface, or harmonics that do not die away.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, critical_speeds
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> print(critical_speeds(rotor, supports=supports, nodal_diameters=[1]).table())
+    critical speeds of order 1
+      [rad/s]      [Hz]        n  whirl
+      100          15.9155     1  backward
+      100          15.9155     1  backward
+      100          15.9155     1  forward
+      100          15.9155     1  forward
     """
     order, max_speed, waves = _checked(order, max_speed, nodal_diameters)
     tolerance = options.accuracy(tolerance, "tolerance")
-    held = tuple(map(_undamped, checked_supports(supports)))
-    source = linear_source(target, body=body, supports=held, stiffening=stiffening)
-    content = WhirlContent.of(source)
-    if isinstance(source, FullRotor):
-        found = full_resonances(source, order, waves, max_speed, tolerance)
-    else:
-        found = resonances(source, content, order, waves, max_speed)
-    return _collected(found, content, order, source.size)
+    residual = options.accuracy(residual, "residual")
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
+    content = WhirlContent.of(model)
+    found = resonances(model, content, order, waves, max_speed, tolerance, residual)
+    return _collected(found, content, order, model.size)
 
 
 @storable
@@ -140,6 +164,15 @@ class CriticalSpeedMap(Result):
     whirl_codes : ndarray of int, shape (s, c)
         Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
     order : float
+
+    Examples
+    --------
+    >>> from exudyn_rotor import CriticalSpeedMap
+    >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
+    critical speeds of order 1 [rad/s]
+      stiffness [N/m]
+      10000            50 forward
+      40000            100 forward
     """
 
     stiffnesses: np.ndarray = numbers("stiffnesses")
@@ -148,6 +181,20 @@ class CriticalSpeedMap(Result):
         "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
     )
     order: float
+
+    def table(self) -> str:
+        """Return the critical speeds [rad/s] at every stiffness as lines of text."""
+        lines = [f"critical speeds of order {self.order:g} [rad/s]", "  stiffness [N/m]"]
+        for stiffness, speeds, codes in zip(
+            self.stiffnesses, self.speeds, self.whirl_codes, strict=True
+        ):
+            entries = (
+                f"{speed:.6g} {WHIRLS[code]}"
+                for speed, code in zip(speeds, codes, strict=True)
+                if code >= 0
+            )
+            lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
+        return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
@@ -200,6 +247,19 @@ def critical_speed_map(
     ------
     ValueError
         For stiffnesses that are not positive and finite, or an unknown interface.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, critical_speed_map
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> critical_speed_map(rotor, ["left", "right"], [5e3, 2e4]).speeds.round(6)
+    array([[ 50.,  50.,  50.,  50.],
+           [100., 100., 100., 100.]])
     """
     checks.instance(target, "target", (ReducedRotor, SolidRotor))
     values = np.atleast_1d(checks.array(stiffnesses, "stiffnesses", "N/m"))
@@ -262,22 +322,6 @@ def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
     return counts + backward
 
 
-def _undamped(support: Support) -> Support:
-    """Return the support without damping and circulatory stiffness."""
-    given = {
-        name: partial(_symmetric_part, support, part)
-        if support.stiffness_varies
-        else _symmetric_part(support, part, 0.0)
-        for name, part in (("stiffness", 0), ("tilt_stiffness", 3))
-    }
-    return replace(support, **given, damping=0.0, tilt_damping=0.0)
-
-
-def _symmetric_part(support: Support, start: int, speed: float) -> np.ndarray:
-    block = support.matrices(speed)[0][start : start + 3, start : start + 3]
-    return 0.5 * (block + block.T)
-
-
 def _collected(
     found: list[Resonance], content: WhirlContent, order: float, size: int
 ) -> CriticalSpeeds:
@@ -294,7 +338,7 @@ def _collected(
     return CriticalSpeeds(
         order=order,
         speeds=np.array([entry.speed for entry in found]),
-        frequencies_rotating=np.array(rotating),
+        frequencies_rotor=np.array(rotating),
         whirl=tuple(words),
         nodal_diameters=np.array(diameters, dtype=np.int64),
         vectors=np.array(vectors, dtype=complex).reshape(-1, size).T,

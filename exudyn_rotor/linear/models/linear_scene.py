@@ -11,24 +11,28 @@ Neglected: the change of mass matrices and constraint directions along small ste
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import exudyn
 import numpy as np
 import scipy.linalg
 
-from exudyn_rotor.linear.equations.hill import hill_matrices
-from exudyn_rotor.linear.equations.probe import Probe, linearised, probing
-from exudyn_rotor.linear.equations.supports import axes_of
-from exudyn_rotor.linear.equations.system import PeriodicSystem, Terms
-from exudyn_rotor.linear.stability.floquet import UnconvergedError
+from exudyn_rotor import checks
+from exudyn_rotor.linear.models.points import Ring, ring_motions
+from exudyn_rotor.linear.models.probe import Probe, linearised, probing
+from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 from exudyn_rotor.multibody.marker_body import around
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
+ABOUT = ("steady", "given")
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _MOST_ITERATIONS = 25
 _NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
@@ -38,27 +42,25 @@ _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may h
 
 
 @dataclass(frozen=True, eq=False)
-class LinearScene:
+class LinearScene(SceneCoordinates):
     """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`.
 
     Attributes
     ----------
-    body : RotorBody
+    body, free, N, rest
+        See :class:`SceneCoordinates`.
     about : {'steady', 'given'}
         Motion about which the scene is linearised.
-    free : ndarray of int
-        Coordinates of the scene that are unknowns: the rotor's first.
-    N : ndarray, shape (len(free), k)
-        Motions that the scene's constraints allow.
-    rest : ndarray
-        All coordinates of the given state.
     """
 
-    body: RotorBody
-    about: str
-    free: np.ndarray
-    N: np.ndarray
-    rest: np.ndarray
+    gives_all: ClassVar[bool] = True
+    free_motions: ClassVar[tuple[str, ...]] = ()
+    mesh: ClassVar[None] = None
+    base_loads: ClassVar[None] = None
+    radius: ClassVar[float] = 1.0
+    stiffness_varies: ClassVar[None] = None
+
+    about: str = "steady"
 
     @classmethod
     def of(cls, mbs: exudyn.MainSystem, body: RotorBody, *, about: str = "steady") -> LinearScene:
@@ -84,48 +86,31 @@ class LinearScene:
             coordinates of first order, and constraints that turn with the rotor.
         """
         _check(mbs, body)
-        if about not in ("steady", "given"):
-            raise ValueError(f"about {about!r} is unknown; use 'steady' or 'given'")
+        checks.choice(about, "about", ABOUT)
         own = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
         rest = np.array(mbs.systemData.GetODE2Coordinates(), dtype=float)
         others = np.setdiff1d(np.arange(len(rest)), own)
         unknowns = own[_without_spin(body)]
         rest[unknowns[body.motion.formulation.translation_count :]] = 0.0
         free = np.r_[unknowns, others]
-        scene = cls(body, about, free, np.eye(len(free)), rest)
-        with probing(scene, 0.0) as probe:
+        with probing(SceneCoordinates(body, free, np.eye(len(free)), rest), 0.0) as probe:
             C = [probe.constraints(angle) for angle in (0.0, 1.0, 2.5)]
         if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
             raise ValueError(
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints"
             )
-        return cls(body, about, free, _nullspace(C[0]), rest)
+        return cls(body, free, _nullspace(C[0]), rest, about)
 
     @property
-    def size(self) -> int:
-        """Number of coordinates k."""
-        return self.N.shape[1]
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the interfaces that have a marker."""
+        return tuple(self.body.markers)
 
     @property
-    def mass(self) -> float:
-        """Mass of the rotor [kg]."""
-        return self.body.motion.invariants.mass
-
-    @property
-    def _own(self) -> slice:
-        """Where the rotor's modal coordinates stand among the free ones."""
-        return slice(self._count, self._count + self.body.motion.invariants.size)
-
-    @property
-    def _count(self) -> int:
-        """Number of the rotor's translations."""
-        return self.body.motion.formulation.translation_count
-
-    @cached_property
-    def _axes(self) -> np.ndarray:
-        """``(n1, n2, e)`` in mesh axes."""
-        return axes_of(SpinAxis(self.body.motion.invariants.direction))
+    def mass_matrix(self) -> np.ndarray:
+        """Mean mass matrix at rest, shape (k, k)."""
+        return self.at(0.0).M[0]
 
     @cached_property
     def unit_unbalance(self) -> np.ndarray:
@@ -136,9 +121,14 @@ class LinearScene:
         inv, body = self.body.motion.invariants, self.body
         load = np.zeros(len(self.free))
         across = body.axis.radial(body.frame.origin)
-        load[: self._count] = self._axes[:, : self._count].T @ (inv.mass * across)
-        load[self._own] = inv.h
+        load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
+        load[self.own] = inv.h
         return self.N.T @ load
+
+    @property
+    def is_balanced(self) -> bool:
+        """True where the rotor has no unbalance at all."""
+        return not np.any(self.unit_unbalance)
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
@@ -151,22 +141,10 @@ class LinearScene:
             For an interface without a marker.
         """
         motion = np.zeros((6, len(self.free)))
-        motion[: self._count, : self._count] = np.eye(self._count)
-        turn = np.kron(np.eye(2), self._axes.T @ self.body.frame.B.T)
-        motion[:, self._own] = turn @ _marker_motion(self.body, name)
+        motion[: self.count, : self.count] = np.eye(self.count)
+        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
+        motion[:, self.own] = turn @ _marker_motion(self.body, name)
         return motion @ self.N
-
-    def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
-        motion, c = self.body.motion, self._count
-        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
-        e = skew(motion.invariants.direction)
-        blocks = []
-        for full, turned in ((1.0, A), (0.0, A @ e), (0.0, A @ e @ e)):
-            T = full * np.eye(len(self.free))
-            T[:c, :c] = motion.free_directions.T @ turned @ self._axes[:, :c]
-            blocks.append(T @ self.N)
-        return tuple(blocks)
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s], about the steady motion there.
@@ -176,12 +154,11 @@ class LinearScene:
         UnconvergedError
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
-        if not np.isfinite(speed):
-            raise ValueError(f"linear scene: the speed must be finite [rad/s], got {speed}")
+        speed = checks.number(speed, "speed", "rad/s")
         samples = _FIRST_SAMPLES
-        with probing(self, float(speed)) as probe:
+        with probing(self, speed) as probe:
             while samples <= _MOST_SAMPLES:
-                system = _about_steady_motion(probe, samples)
+                system = _about_steady_motion(self, probe, samples)
                 if system is not None:
                     return system
                 samples *= 2
@@ -190,13 +167,39 @@ class LinearScene:
             "resolve the coefficients; is there a stop, contact or friction?"
         )
 
+    def undamped(self) -> LinearScene:
+        """Return the scene itself: its damping does not enter the Hermitian part of equations."""
+        return self
 
-def _about_steady_motion(probe: Probe, samples: int) -> PeriodicSystem | None:
+    def point_motions(self, most: int) -> PointMotions:
+        """Return rings of the rotor's radius of gyration, one for every marker, side by side."""
+        inertia = self.body.motion.invariants
+        radius = np.sqrt(inertia.Theta / inertia.mass)
+        rings = [
+            Ring(np.array([0.0, 0.0, float(i)]), radius, self.interface_motion(name))
+            for i, name in enumerate(self.interfaces)
+        ]
+        return ring_motions(rings, self.size)
+
+    def space(
+        self,
+        count: int,
+        fastest: float,
+        *,
+        loads: Sequence[np.ndarray] = (),
+        held: bool = False,
+        residual: float = 1e-7,
+    ) -> WholeSpace:
+        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+        return WholeSpace(self, can_be_sent=False)
+
+
+def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> PeriodicSystem | None:
     """Linearise about the steady motion, found by Newton's method on its harmonics.
 
     None where more samples are needed.
     """
-    scene, speed = probe.scene, probe.speed
+    speed = probe.speed
     angles = 2.0 * np.pi * np.arange(samples) / samples
     orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
     waves = np.exp(1j * np.outer(angles, orders))
@@ -306,13 +309,9 @@ def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
 
 
 def _check(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    if not isinstance(mbs, exudyn.MainSystem):
-        raise TypeError(f"mbs: needs an exudyn.MainSystem, got {type(mbs).__name__}")
-    if not isinstance(body, RotorBody):
-        raise TypeError(
-            f"body: needs the RotorBody that exudyn_rotor.add_rotor returned for the rotor in this "
-            f"system, got {type(body).__name__}"
-        )
+    checks.instance(mbs, "mbs", exudyn.MainSystem)
+    how = "exudyn_rotor.add_rotor returned it for the rotor in this system"
+    checks.instance(body, "body", RotorBody, how)
     if body.mbs is not mbs:
         raise ValueError(f"rotor {body.name!r} belongs to another mbs")
     if not mbs.systemIsConsistent:

@@ -2,7 +2,7 @@
 
 In the rotor frame, loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give
 ``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with the equations of
-:mod:`exudyn_rotor.linear.equations.hill` at λ = iω.
+:mod:`exudyn_rotor.linear.periodic.hill` at λ = iω.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
 
-from exudyn_rotor.linear.equations.hill import harmonics, hill_matrices
-from exudyn_rotor.linear.equations.system import PeriodicSystem
+from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
 
@@ -25,31 +25,6 @@ _FREE = 1e-12
 _SINGULAR = 1e-14
 # share of a load that may act on a free motion: the rounding of a mesh's own unbalance
 _LOAD_ON_FREE = 1e-6
-
-
-def turning_harmonics(size: int) -> dict[int, np.ndarray]:
-    """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, (3, 3) or twice that, axes (n1, n2, e).
-
-    R turns rotor axes into inertial axes; ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
-    """
-    forward = 0.5 * np.array([[1.0, 1j, 0.0], [-1j, 1.0, 0.0], [0.0, 0.0, 0.0]])
-    terms = {-1: forward.conj(), 0: np.diag([0.0, 0.0, 1.0]).astype(complex), 1: forward}
-    return {n: np.kron(np.eye(size // 3), term) for n, term in terms.items()}
-
-
-def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the harmonics of ``Rᵀ(θ) v`` for v (3,) or (6,) fixed in space; none that is zero."""
-    turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
-    return {n: part for n, part in turned.items() if np.any(part)}
-
-
-def into_inertial_frame(motion: Harmonics) -> dict[int, np.ndarray]:
-    """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
-    turned: dict[int, np.ndarray] = {}
-    for m, part in motion.items():
-        for n, R in turning_harmonics(part.shape[-1]).items():
-            turned[m + n] = turned.get(m + n, 0.0) + part @ R.T
-    return turned
 
 
 def forced_motion(
@@ -85,7 +60,7 @@ def forced_motion(
         system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)))
         loads = {0: sum(loads.values())}
     balance = _Balance(system, loads, rate, list(driven))
-    step = balance.step
+    step = system.step
     reach = max(abs(n) for n in loads) + step
     motion = balance.solved(reach)
     while step:
@@ -122,12 +97,6 @@ class _Balance:
     driven: list[int]
 
     @cached_property
-    def step(self) -> int:
-        """Common step of the coefficients' harmonics; 0 for a constant system."""
-        coupled = harmonics(self.system, self.system.order)
-        return 0 if len(coupled) == 1 else int(coupled[1] - coupled[0])
-
-    @cached_property
     def fastest(self) -> float:
         """The rate that inertia is measured with [rad/s]."""
         return max(abs(self.rate), abs(self.system.speed))
@@ -158,9 +127,9 @@ class _Balance:
         waiting = set(self.loads)
         while waiting:
             group = [min(waiting)]
-            if self.step:
+            if self.system.step:
                 every = range(-reach, reach + 1)
-                group = [n for n in every if (n - group[0]) % self.step == 0]
+                group = [n for n in every if (n - group[0]) % self.system.step == 0]
             waiting -= set(group)
             motion |= dict(zip(group, self._solve(np.array(group)), strict=True))
         return motion

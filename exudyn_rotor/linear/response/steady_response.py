@@ -7,35 +7,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.source import linear_source
-from exudyn_rotor.linear.equations.supports import FRAMES, Support
-from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.response.balance import Unbalance
-from exudyn_rotor.linear.response.forced import forced_motion, into_inertial_frame
-from exudyn_rotor.linear.response.full import FullSteady
-from exudyn_rotor.linear.response.loads import (
+from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.protocol import Space
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_inertial_frame
+from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
     HarmonicForce,
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, Source, checked_places, places
-from exudyn_rotor.linear.response.results import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.places import At, Place, checked_places, places
+from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
-Target = ReducedRotor | SolidRotor | exudyn.MainSystem
+_MODES = 6  # that the subspace of a full rotor begins with
+
 Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 
@@ -63,9 +59,9 @@ def unbalance_response(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor or exudyn.MainSystem
-        A rotor with `supports`, or an assembled scene with its `body`. A SolidRotor is solved
-        unreduced, each speed checked by the residual of the full equations.
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+        See :func:`linear_model`. A SolidRotor is solved unreduced, each speed checked by the
+        residual of the full equations.
     speeds : array_like, shape (s,)
         Ascending spin speeds ≥ 0 [rad/s].
     unbalances : sequence of Unbalance, optional
@@ -98,6 +94,20 @@ def unbalance_response(
     ValueError
         For speeds that do not ascend or are negative, unknown places, no unbalance at all, a
         speed without a steady motion, or a `residual` that is not reached.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, Unbalance, unbalance_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> unbalance = Unbalance("left", 1e-4)
+    >>> response = unbalance_response(rotor, [50.0, 100.0, 150.0], unbalance, supports=supports)
+    >>> response.semi_axes("left")[0].round(6)  # m e Ω² / |k − mΩ² + icΩ|
+    array([1.7e-05, 1.0e-03, 9.0e-05])
     """
     values = ascending_from_zero(speeds, "speeds")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
@@ -105,20 +115,18 @@ def unbalance_response(
     _check(frame, tolerance, residual)
     options.check_sweep(executor, progress)
     at = checked_places(at)
-    source = _source(target, body, supports, stiffening)
-    found = places(source, at)
-    load = unbalance_load(source, unbalances, own)
-    rows = np.array([one.motion for one in found])
-    watch = _Watch(rows, frame, tolerance, _driven(source))
-    if isinstance(source, FullRotor):
-        solver, executor = FullSteady(source, [load], values[-1], residual), None
-    else:
-        solver = _light(source, values[values > 0.0])
-    task = _UnbalanceTask(solver, load, watch)
-    motions = sweep(task, values, executor=executor, progress=progress, label="unbalance response")
-    labels = tuple(one.label for one in found)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
+    seen = places(model, at)
+    load = unbalance_load(model, unbalances, own)
+    space = model.space(_MODES, values[-1], loads=[load], residual=residual)
+    task = _UnbalanceTask(
+        space.prepared(values[values > 0.0]), load, _Watch.of(seen, frame, tolerance)
+    )
+    workers = None if space.is_shared else executor
+    motions = sweep(task, values, executor=workers, progress=progress, label="unbalance response")
+    labels = tuple(one.label for one in seen)
     return UnbalanceResponse(
-        labels, *_collected(motions, found, tolerance, _length(source)), frame, values
+        labels, *_collected(motions, seen, tolerance, model.radius), frame, values
     )
 
 
@@ -156,6 +164,20 @@ def harmonic_response(
     ValueError
         For frequencies that do not ascend or are negative, unknown places, loads that are all
         zero, a frequency without a steady motion, or a `residual` that is not reached.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, HarmonicForce, harmonic_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> force = HarmonicForce("left", (1.0, 0.0))  # 1 N along n1
+    >>> response = harmonic_response(rotor, [50.0, 100.0], force, supports=supports)
+    >>> np.abs(response.phasor("left", "n1")).round(6)
+    array([6.7e-05, 1.0e-03])
     """
     values = ascending_from_zero(
         frequencies, "frequencies", "conjugate the loads: a negative frequency is that"
@@ -165,20 +187,17 @@ def harmonic_response(
     _check(frame, tolerance, residual)
     options.check_sweep(executor, progress)
     at = checked_places(at)
-    source = _source(target, body, supports, stiffening)
-    found = places(source, at)
-    load = total(loads, source)
-    rows = np.array([one.motion for one in found])
-    watch = _Watch(rows, frame, tolerance, _driven(source))
-    if isinstance(source, FullRotor):
-        fastest = max(values[-1], abs(speed))
-        solver, executor = FullSteady(source, load.values(), fastest, residual), None
-    else:
-        solver = _Tabulated({speed: source.at(speed)})
-    task = _HarmonicTask(solver, speed, load, watch)
-    motions = sweep(task, values, executor=executor, progress=progress, label="harmonic response")
-    labels = tuple(one.label for one in found)
-    collected = _collected(motions, found, tolerance, _length(source))
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
+    seen = places(model, at)
+    load = total(loads, model)
+    fastest = max(values[-1], abs(speed))
+    space = model.space(_MODES, fastest, loads=list(load.values()), residual=residual)
+    watch = _Watch.of(seen, frame, tolerance)
+    task = _HarmonicTask(space.prepared([speed]), speed, load, watch)
+    workers = None if space.is_shared else executor
+    motions = sweep(task, values, executor=workers, progress=progress, label="harmonic response")
+    labels = tuple(one.label for one in seen)
+    collected = _collected(motions, seen, tolerance, model.radius)
     return HarmonicResponse(labels, *collected, frame, values, speed)
 
 
@@ -189,17 +208,17 @@ class _Watch:
     rows: np.ndarray
     frame: str
     tolerance: float
-    driven: tuple[int, ...]
+
+    @classmethod
+    def of(cls, seen: Sequence[Place], frame: str, tolerance: float) -> _Watch:
+        return cls(np.array([one.motion for one in seen]), frame, tolerance)
 
     def motion(
-        self, solver: Solver, speed: float, loads: Mapping[int, np.ndarray], rate: float
+        self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
     ) -> Motion:
         """Return the harmonics (p, 6) of the steady motion."""
-        if isinstance(solver, FullSteady):
-            seen = solver.seen(self.rows, speed, loads, rate, self.tolerance)
-        else:
-            solved = forced_motion(solver.at(speed), loads, rate, self.tolerance, self.driven)
-            seen = {n: self.rows @ x for n, x in solved.items()}
+        solved = space.steady_motion(speed, loads, rate, self.tolerance)
+        seen = {n: self.rows @ x for n, x in solved.items()}
         if self.frame == "rotor" or speed == 0.0:  # at θ = 0 the axes are the same
             return seen
         return into_inertial_frame(seen)
@@ -209,7 +228,7 @@ class _Watch:
 class _UnbalanceTask:
     """Steady motion at one speed; picklable but for a full model."""
 
-    solver: Solver
+    space: Space
     load: np.ndarray
     watch: _Watch
 
@@ -217,20 +236,20 @@ class _UnbalanceTask:
         if speed == 0.0:  # no load, and nothing that would have to hold the rotor
             return {0: np.zeros(self.watch.rows.shape[:2])}
         loads = {0: speed**2 * self.load + 0j}
-        return _folded(self.watch.motion(self.solver, float(speed), loads, 0.0))
+        return _folded(self.watch.motion(self.space, float(speed), loads, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
 class _HarmonicTask:
     """Steady motion at one frequency; picklable but for a full model."""
 
-    solver: Solver
+    space: Space
     speed: float
     loads: Mapping[int, np.ndarray]
     watch: _Watch
 
     def __call__(self, frequency: float) -> Motion:
-        return self.watch.motion(self.solver, self.speed, self.loads, float(frequency))
+        return self.watch.motion(self.space, self.speed, self.loads, float(frequency))
 
 
 def _folded(motion: Motion) -> Motion:
@@ -242,11 +261,11 @@ def _folded(motion: Motion) -> Motion:
 
 
 def _collected(
-    motions: Sequence[Motion], found: Sequence[Place], tolerance: float, length: float
+    motions: Sequence[Motion], seen: Sequence[Place], tolerance: float, length: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
     orders = sorted({n for motion in motions for n in motion})
-    full = np.zeros((len(motions), len(found), len(orders), 6), dtype=complex)
+    full = np.zeros((len(motions), len(seen), len(orders), 6), dtype=complex)
     for row, motion in zip(full, motions, strict=True):
         for n, part in motion.items():
             row[:, orders.index(n)] = part
@@ -257,53 +276,8 @@ def _collected(
     keep = sizes > tolerance * sizes.max()
     if not np.any(keep):
         keep[np.argmin(np.abs(orders))] = True
-    full[:, [one.is_node for one in found], :, 3:] = np.nan
+    full[:, [one.is_node for one in seen], :, 3:] = np.nan
     return np.array(orders)[keep], full[:, :, keep]
-
-
-def _source(
-    target: Target, body: RotorBody | None, supports: Sequence[Support], stiffening: str
-) -> Source:
-    # a response is looked at in places of the full model
-    return linear_source(target, body=body, supports=supports, stiffening=stiffening, dense=False)
-
-
-def _driven(source: Source) -> tuple[int, ...]:
-    """Return the coordinate of the rigid spin where no support resists it: the drive does.
-
-    If the spin were free, a constant torque however small would turn it on and on.
-    """
-    if not isinstance(source, LinearRotor) or source.free_spin is None:
-        return ()
-    return (int(np.argmax(source.spin.momentum)),)
-
-
-def _length(source: Source) -> float:
-    """Return the rotor's radius of gyration [m]; one metre where it is unknown."""
-    if not isinstance(source, LinearRotor | FullRotor):
-        return 1.0
-    return float(np.sqrt(np.trace(source.invariants.J) / source.invariants.mass))
-
-
-@dataclass(frozen=True, eq=False)
-class _Tabulated:
-    """Equations at the speeds needed; a scene itself cannot leave its process."""
-
-    systems: Mapping[float, PeriodicSystem]
-
-    def at(self, speed: float) -> PeriodicSystem:
-        return self.systems[float(speed)]
-
-
-def _light(source: Source, speeds: np.ndarray) -> LinearRotor | _Tabulated:
-    """Return what workers need of a source."""
-    if isinstance(source, LinearRotor):
-        return replace(source, rotor=source.rotor.without_shapes())
-    return _Tabulated({float(speed): source.at(speed) for speed in speeds})
-
-
-# what solves the equations at a speed
-Solver = LinearRotor | _Tabulated | FullSteady
 
 
 def _check(frame: str, tolerance: float, residual: float) -> None:

@@ -25,7 +25,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.linear.equations.supports import Support, axes_of
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.basis import RIGID, rigid_columns
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis

@@ -10,13 +10,10 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.supports import FRAMES, axes_of
-from exudyn_rotor.linear.response.balance import Unbalance
-from exudyn_rotor.linear.response.forced import into_rotor_frame
-from exudyn_rotor.linear.response.places import At, Place, Source, place
-
-# rounding leaves this much of the unbalance of a perfectly balanced mesh
-_BALANCED = 1e-13
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_rotor_frame
+from exudyn_rotor.linear.response.places import At, Place, place
+from exudyn_rotor.linear.response.unbalance import Unbalance
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +38,14 @@ class HarmonicForce:
     TypeError, ValueError
         For an unknown frame, a place of another kind, a wrong shape, or an entry that is not
         finite.
+
+    Examples
+    --------
+    A force of 10 N that circles forward in space:
+
+    >>> from exudyn_rotor import HarmonicForce
+    >>> HarmonicForce("disc", (10.0, -10.0j)).force
+    array([10. +0.j, -0.-10.j,  0. +0.j])
     """
 
     at: At
@@ -55,9 +60,9 @@ class HarmonicForce:
             vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
             object.__setattr__(self, name, vector)
 
-    def harmonics(self, source: Source) -> dict[int, np.ndarray]:
+    def _harmonics(self, model: LinearModel) -> dict[int, np.ndarray]:
         """Return the harmonics (k,) of the load in the rotor frame."""
-        point = place(source, self.at)
+        point = place(model, self.at)
         if point.is_node and np.any(self.moment):
             raise ValueError(
                 f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
@@ -84,6 +89,12 @@ class BaseAcceleration:
     ------
     TypeError, ValueError
         For a wrong shape or an entry that is not finite.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import BaseAcceleration
+    >>> BaseAcceleration((0.0, -9.81)).acceleration
+    array([ 0.  +0.j, -9.81+0.j,  0.  +0.j])
     """
 
     acceleration: ArrayLike
@@ -92,18 +103,18 @@ class BaseAcceleration:
         vector = _vector(self.acceleration, "acceleration", "m/s²")
         object.__setattr__(self, "acceleration", vector)
 
-    def harmonics(self, source: Source) -> dict[int, np.ndarray]:
+    def _harmonics(self, model: LinearModel) -> dict[int, np.ndarray]:
         """Return the harmonics (k,) of the load in the rotor frame."""
-        if not hasattr(source, "invariants"):
+        if model.base_loads is None:
             raise ValueError(
                 "base acceleration needs a rotor with supports; in a scene, put a force on "
                 "the moving parts"
             )
-        S = axes_of(source.rotor.axis).T @ source.invariants.S
-        return {n: -S.T @ part for n, part in into_rotor_frame(self.acceleration).items()}
+        parts = into_rotor_frame(self.acceleration)
+        return {n: model.base_loads.T @ part for n, part in parts.items()}
 
 
-def unbalance_load(source: Source, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
+def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
     """Return the load (k,) per Ω² of all unbalances, constant in the rotor frame.
 
     Raises
@@ -111,17 +122,17 @@ def unbalance_load(source: Source, unbalances: Sequence[Unbalance], own: bool) -
     ValueError
         If there is no unbalance at all.
     """
-    if not unbalances and not (own and _has_own(source)):
+    if not unbalances and (model.is_balanced or not own):
         reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
         raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
-    load = np.array(source.unit_unbalance, dtype=float) if own else np.zeros(source.size)
+    load = np.array(model.unit_unbalance, dtype=float) if own else np.zeros(model.size)
     for unbalance in unbalances:
         wrench = np.concatenate([unbalance.vector, np.zeros(3)])
-        load += _pulled(place(source, unbalance.at), wrench)
+        load += _pulled(place(model, unbalance.at), wrench)
     return load
 
 
-def total(loads: Sequence[HarmonicForce | BaseAcceleration], source: Source) -> Mapping:
+def total(loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel) -> Mapping:
     """Return the harmonics of the sum of all loads.
 
     Raises
@@ -131,25 +142,13 @@ def total(loads: Sequence[HarmonicForce | BaseAcceleration], source: Source) -> 
     """
     harmonics: dict[int, np.ndarray] = {}
     for load in loads:
-        for n, part in load.harmonics(source).items():
+        for n, part in load._harmonics(model).items():
             harmonics[n] = harmonics.get(n, 0.0) + part
     if not any(np.any(part) for part in harmonics.values()):
         raise ValueError(
             "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
         )
     return harmonics
-
-
-def _has_own(source: Source) -> bool:
-    """True when centre of mass or principal axis lies off the spin axis by more than rounding."""
-    if not hasattr(source, "invariants"):
-        return bool(np.any(source.unit_unbalance))
-    inv = source.invariants
-    across = np.eye(3) - np.outer(inv.direction, inv.direction)
-    static, couple = inv.mass * across @ inv.center, across @ inv.J @ inv.direction
-    second = np.trace(inv.J)
-    size = np.sqrt(second / inv.mass)
-    return bool(np.linalg.norm(static) * size + np.linalg.norm(couple) > _BALANCED * second)
 
 
 def _pulled(point: Place, wrench: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 The exponents λ are eigenvalues where the equations are constant in the rotor frame (isotropic
 supports, or none at rest), else Floquet exponents
-(:mod:`exudyn_rotor.linear.stability.floquet`). Growth is the largest real part; exact zeros of it,
+(:mod:`exudyn_rotor.linear.periodic.exponents`). Growth is the largest real part; exact zeros of it,
 as without damping, count as stable.
 """
 
@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,18 +19,17 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.equations.full import FullRotor
-from exudyn_rotor.linear.equations.source import linear_source
-from exudyn_rotor.linear.equations.supports import Support
-from exudyn_rotor.linear.equations.system import LinearRotor, PeriodicSystem
-from exudyn_rotor.linear.stability import floquet
-from exudyn_rotor.linear.stability.full import FullExponents, projected
+from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.exponents import METHODS
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
-METHODS = ("auto", "floquet", "hill", "eigen")
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
-_NEUTRAL = 1e-7  # |λ|/Ω of a free rigid motion: a double zero keeps half the digits
+_MODES = 10  # of a large SolidRotor
 
 
 @storable
@@ -57,6 +55,16 @@ class Stability(Result):
     base : ndarray, shape (s,)
         Frequency of the coefficients [rad/s], 0 where they are constant.
     tolerance : float
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import Stability
+    >>> values = [[-1.0 + 100.0j, -1.0 - 100.0j]]
+    >>> result = Stability([50.0], values, np.exp(values), [-1.0], [True], [0.0], 1e-9)
+    >>> print(result.table())
+    speed [rad/s]   growth [1/s]   frequency [rad/s]   verdict
+          50.0000             -1                 100   stable
     """
 
     speeds: np.ndarray = numbers("speeds")
@@ -97,11 +105,11 @@ class Stability(Result):
 
 
 def stability(
-    target: object,
+    target: Target,
     speeds: ArrayLike,
     *,
     supports: Sequence[Support] = (),
-    body: object = None,
+    body: RotorBody | None = None,
     stiffening: str = "tilt",
     method: str = "auto",
     tolerance: float = 1e-9,
@@ -114,10 +122,9 @@ def stability(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor, exudyn.MainSystem, LinearRotor, or with ``at(speed)``
-        ``at(speed)`` returns the :class:`PeriodicSystem` at a speed. Of a SolidRotor with more than
-        600 degrees of freedom only the lowest `modes` are looked at, each checked by the residual
-        of the full equations.
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+        See :func:`linear_model`. Of a SolidRotor with more than 600 degrees of freedom only the
+        lowest `modes` are looked at, each checked by the residual of the full equations.
     speeds : array_like, shape (s,)
         Spin speeds [rad/s], not negative, ascending.
     supports : sequence of Support
@@ -146,105 +153,80 @@ def stability(
     ------
     ValueError
         For bad input, and where `tolerance` or `residual` is not reached.
+
+    Examples
+    --------
+    Damping in the rotor drives it unstable above its critical speed:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, stability
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> inner = [Support(name, damping=5.0, frame="rotor") for name in ("left", "right")]
+    >>> result = stability(rotor, [100.0, 400.0], supports=supports + inner)
+    >>> result.stable.tolist()
+    [True, False]
     """
     values = ascending_from_zero(speeds, "speeds")
     _check(method, tolerance, modes, residual)
     options.check_sweep(executor, progress)
-    source = source_of(target, supports, body, stiffening)
-    if isinstance(source, FullRotor):
-        full = _full(source, modes, values[-1], residual, method, tolerance)
-        found = sweep(partial(_full_exponents, full=full), values, progress=progress,
-                      label="stability")  # fmt: skip
-        return _result(values, [full.at(speed) for speed in values], np.array(found), tolerance)
-    if modes is not None:
-        raise ValueError("modes=: is only for a large SolidRotor; this target gives all exponents")
-    systems = [source.at(speed) for speed in values]
-    found = sweep(
-        partial(exponents, method=method, tolerance=tolerance),
-        systems,
-        executor=executor,
-        progress=progress,
-        label="stability",
-    )
-    return _result(values, systems, np.array(found), tolerance)
-
-
-def _result(
-    speeds: np.ndarray, systems: list[PeriodicSystem], found: np.ndarray, tolerance: float
-) -> Stability:
-    base = np.array([abs(floquet.base_frequency(system)) for system in systems])
-    periodic = np.where(base > 0.0, base, speeds)
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    space = held_space(model, values[-1], modes, residual)
+    if executor is not None:
+        space = space.prepared(values)
+    task = _Task(space, method, tolerance)
+    workers = None if space.is_shared else executor
+    found = sweep(task, values, executor=workers, progress=progress, label="stability")
+    exponents, base, excess = (np.array(part) for part in zip(*found, strict=True))
+    periodic = np.where(base > 0.0, base, values)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-        multipliers = np.exp(2.0 * np.pi * found / periodic[:, None])
+        multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])
     multipliers[periodic == 0.0] = np.nan
-    excess = [
-        excess_growth(row, system, tolerance) for row, system in zip(found, systems, strict=True)
-    ]
     return Stability(
-        speeds=speeds,
-        exponents=found,
+        speeds=values,
+        exponents=exponents,
         multipliers=multipliers,
-        growth=found.real.max(axis=1),
-        stable=np.array(excess) <= 0.0,
+        growth=exponents.real.max(axis=1),
+        stable=excess <= 0.0,
         base=base,
         tolerance=tolerance,
     )
 
 
-def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1e-9) -> np.ndarray:
-    """Return the 2k exponents of one system [1/s], descending in their real parts.
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """Exponents at one speed; picklable where the space is."""
 
-    Free rigid motions (``|λ| < 1e-7 Ω``) are returned as zeros.
+    space: Space
+    method: str
+    tolerance: float
+
+    def __call__(self, speed: float) -> tuple[np.ndarray, float, float]:
+        values, system = self.space.exponents(speed, self.method, self.tolerance)
+        return values, abs(system.base), excess_growth(values, system, self.tolerance)
+
+
+def held_space(model: LinearModel, fastest: float, modes: int | None, residual: float) -> Space:
+    """Return where exponents are found: a spin that nothing holds follows θ = Ωt.
+
+    It is neutral, which round-off would feign to be unstable.
+
+    Raises
+    ------
+    ValueError
+        For a number of modes where all are found, or of more than a quarter of the coordinates.
     """
-    constant = system.is_constant or system.speed == 0.0
-    if method == "eigen" and not constant:
+    if model.gives_all and modes is not None:
+        raise ValueError("modes: is only for a large SolidRotor; this target gives all exponents")
+    count = _MODES if modes is None else modes
+    if not model.gives_all and count > model.size // 4:
         raise ValueError(
-            f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
-            "supports or a foundation); use 'auto', 'hill' or 'floquet'"
+            f"modes: {count} is not between 1 and {model.size // 4}, a quarter of the coordinates"
         )
-    if constant and method != "floquet":
-        values = floquet.constant_exponents(system).astype(complex)
-    elif method == "floquet":
-        values = floquet.floquet_exponents(system, tolerance)
-    else:
-        values = _hill(system, tolerance, fall_back=method == "auto")
-    return _in_order(values, system.speed)
-
-
-def _in_order(values: np.ndarray, speed: float) -> np.ndarray:
-    """Return exponents with neutral ones set to zero, descending in their real parts."""
-    values[np.abs(values) < _NEUTRAL * speed] = 0.0
-    return values[np.lexsort((-values.imag, -values.real))]
-
-
-def _full(
-    source: FullRotor,
-    modes: int | None,
-    speed: float,
-    residual: float,
-    method: str,
-    tolerance: float,
-) -> FullExponents:
-    if method != "auto":
-        raise ValueError(
-            f"method={method!r} needs a reduced rotor; a large SolidRotor takes 'auto' only"
-        )
-    return FullExponents(source, modes, speed, residual, tolerance)
-
-
-def _full_exponents(speed: float, full: FullExponents) -> np.ndarray:
-    """Return one exponent of every pair of a full model, as :func:`exponents` does."""
-    values = full.values(speed)
-    return _in_order(floquet.fold(values, abs(floquet.base_frequency(full.at(speed)))), speed)
-
-
-def _hill(system: PeriodicSystem, tolerance: float, fall_back: bool) -> np.ndarray:
-    try:
-        return floquet.hill_exponents(system, tolerance)[0]
-    except floquet.UnconvergedError:
-        if not fall_back:
-            raise
-        return floquet.floquet_exponents(system, tolerance)
+    return model.space(count, fastest, held=True, residual=residual)
 
 
 def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> float:
@@ -254,7 +236,7 @@ def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) 
     return float(np.max(values.real - margin))
 
 
-def stability_threshold(target: object, low: float, high: float, **given) -> float:
+def stability_threshold(target: Target, low: float, high: float, **given) -> float:
     """Return the speed between `low` and `high` [rad/s] where the stability changes.
 
     By root finding on the growth, to 1e-8 of `high`. The growth counts from `tolerance` times the
@@ -265,6 +247,20 @@ def stability_threshold(target: object, low: float, high: float, **given) -> flo
     ------
     ValueError
         If both ends are stable, or both unstable.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, stability_threshold
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> inner = [Support(name, damping=5.0, frame="rotor") for name in ("left", "right")]
+    >>> limit = stability_threshold(rotor, 100.0, 400.0, supports=supports + inner)
+    >>> round(limit, 3)  # √(k/m) (1 + c_outer/c_inner)
+    300.0
     """
     low = checks.number(low, "low", "rad/s", least=0.0)
     high = checks.number(high, "high", "rad/s", above=low)
@@ -276,12 +272,25 @@ def stability_threshold(target: object, low: float, high: float, **given) -> flo
     return float(brentq(excess, low, high, xtol=1e-8 * high))
 
 
-def unstable_ranges(target: object, speeds: ArrayLike, **given) -> np.ndarray:
+def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
     Every change between two neighbours of `speeds` is found to 1e-8 of the highest speed; a range
     narrower than their spacing can be missed. A range that is open at the first or last speed ends
     there. `given` are further arguments of :func:`stability`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, unstable_ranges
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> inner = [Support(name, damping=5.0, frame="rotor") for name in ("left", "right")]
+    >>> unstable_ranges(rotor, [100.0, 250.0, 400.0], supports=supports + inner).round(3)
+    array([[300., 400.]])
     """
     values = ascending_from_zero(speeds, "speeds")
     excess = _excess_function(target, given, values[-1])
@@ -293,53 +302,17 @@ def unstable_ranges(target: object, speeds: ArrayLike, **given) -> np.ndarray:
     return np.array(edges).reshape(-1, 2)
 
 
-def _excess_function(target: object, given: dict, highest: float) -> Callable[[float], float]:
+def _excess_function(target: Target, given: dict, highest: float) -> Callable[[float], float]:
+    """Return the growth above round-off as a function of the speed."""
     method, tolerance = given.pop("method", "auto"), given.pop("tolerance", 1e-9)
     modes, residual = given.pop("modes", None), given.pop("residual", 1e-7)
     _check(method, tolerance, modes, residual)
-    arguments = {"supports": (), "body": None, "stiffening": "tilt"}
-    unknown = set(given) - set(arguments)
+    unknown = set(given) - {"supports", "body", "stiffening"}
     if unknown:
         raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
-    source = source_of(target, **(arguments | given))
-    if isinstance(source, FullRotor):
-        full = _full(source, modes, highest, residual, method, tolerance)
-        return lambda speed: excess_growth(_full_exponents(speed, full), full.at(speed), tolerance)
-
-    def excess(speed: float) -> float:
-        system = source.at(speed)
-        return excess_growth(exponents(system, method, tolerance), system, tolerance)
-
-    return excess
-
-
-@dataclass(frozen=True, eq=False)
-class _HeldSpin:
-    """A rotor whose spin follows θ = Ωt: its coordinate is left out.
-
-    A spin that nothing holds is neutral, which round-off would feign to be unstable.
-    """
-
-    rotor: LinearRotor
-    rest: np.ndarray
-
-    @property
-    def size(self) -> int:
-        return self.rotor.size - 1
-
-    def at(self, speed: float) -> PeriodicSystem:
-        return projected(self.rotor.at(speed), self.rest)
-
-
-def source_of(target: object, supports: Sequence[Support], body: object, stiffening: str) -> object:
-    """Return what has ``at(speed)``; a free spin is held."""
-    if callable(getattr(target, "at", None)) and not isinstance(target, type):
-        source = target
-    else:
-        source = linear_source(target, body=body, supports=supports, stiffening=stiffening)
-    if not isinstance(source, LinearRotor) or source.free_spin is None:
-        return source
-    return _HeldSpin(source, source.spin.rest())
+    space = held_space(linear_model(target, **given), highest, modes, residual)
+    task = _Task(space, method, tolerance)
+    return lambda speed: task(speed)[2]
 
 
 def check_method(method: str, tolerance: float) -> None:

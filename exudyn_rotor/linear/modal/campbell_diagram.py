@@ -1,0 +1,68 @@
+"""Drawing of Campbell diagrams."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from exudyn_rotor import plotting
+from exudyn_rotor.linear.modal import whirl
+
+_STYLES = {  # colour, line
+    whirl.FORWARD: (plotting.COLORS[0], "-"),
+    whirl.BACKWARD: (plotting.COLORS[1], "--"),
+    whirl.MIXED: (plotting.COLORS[2], "-."),
+    whirl.AXIAL: ("0.45", ":"),
+    whirl.TORSIONAL: (plotting.COLORS[3], ":"),
+    whirl.RADIAL: (plotting.COLORS[4], ":"),
+    whirl.STATIC: ("0.7", ":"),
+    whirl.UNKNOWN: ("0.2", "-"),
+}
+
+
+def draw_campbell(
+    ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray, unstable: np.ndarray
+) -> list[Line2D]:
+    """Draw modes [Hz] over the spin speed [Hz], coloured by whirl; return what the legend needs.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    speeds : ndarray, shape (s,)
+    values : ndarray, shape (s, k)
+        Each column one mode.
+    codes : ndarray of int, shape (s, k)
+        Index into :data:`WHIRLS`.
+    unstable : ndarray of bool, shape (s, k)
+        Where a mode is marked by a cross.
+    """
+    for column in range(values.shape[1]):
+        _draw_mode(ax, speeds, values[:, column], codes[:, column])
+    drawn = codes[1:] if len(speeds) > 1 else codes
+    handles = [
+        Line2D([], [], color=color, ls=line, label=whirl.WHIRLS[code])
+        for code, (color, line) in _STYLES.items()
+        if np.any(drawn == code)
+    ]
+    if np.any(unstable):
+        at = np.broadcast_to(speeds[:, None], unstable.shape)[unstable]
+        handles += ax.plot(at, values[unstable], "kx", ms=4, label="unstable")
+    return handles
+
+
+def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray) -> None:
+    """Draw one mode, changing its style where its whirl changes."""
+    if len(speeds) == 1:
+        ax.plot(speeds, values, "o", color=_STYLES[codes[0]][0], ms=4)
+        return
+    # a piece between two speeds takes the style of its end: at rest the sense is not yet settled
+    start = 0
+    pieces = codes[1:]
+    for stop in range(1, len(pieces) + 1):
+        if stop == len(pieces) or pieces[stop] != pieces[start]:
+            color, line = _STYLES[pieces[start]]
+            ax.plot(
+                speeds[start : stop + 1], values[start : stop + 1], ls=line, color=color, lw=1.3
+            )
+            start = stop

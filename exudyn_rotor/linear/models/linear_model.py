@@ -1,0 +1,111 @@
+"""The linear model of a rotor on supports, or of a scene with a rotor in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import exudyn
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.supports import Support, checked_supports
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.stiffening import LEVELS
+
+# full models up to this size are solved with dense matrices
+DENSE_SIZE = 600
+
+Target = LinearModel | ReducedRotor | SolidRotor | exudyn.MainSystem
+MODELS = (LinearRotor, FullRotor, LinearScene)
+
+
+def linear_model(
+    target: Target,
+    *,
+    supports: Sequence[Support] | Support = (),
+    body: RotorBody | None = None,
+    stiffening: str = "tilt",
+    about: str = "steady",
+    dense: bool | None = None,
+) -> LinearModel:
+    """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
+
+    Every linear analysis takes the model instead of the rotor and its supports, and makes it by
+    this function where it is given those.
+
+    Parameters
+    ----------
+    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+        A linear model is returned as it is.
+    supports : sequence of Support, optional
+        Of a rotor; a scene has its own connectors.
+    body : RotorBody, optional
+        The rotor in a scene, from :func:`exudyn_rotor.add_rotor`.
+    stiffening : {'tilt', 'none', 'full'}
+        Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
+        prestress (:meth:`SolidRotor.prestress`).
+    about : {'steady', 'given'}
+        Motion about which a scene is linearised: the periodic motion under its loads and the
+        rotor's own unbalance at each speed, or its current state with the rotor undeformed.
+    dense : bool, optional
+        Whether a SolidRotor is solved in all its coordinates by dense matrices, or for its lowest
+        modes; by default dense up to 600 degrees of freedom.
+
+    Returns
+    -------
+    LinearModel
+
+    Raises
+    ------
+    TypeError
+        If the target, the body or a support is of another kind.
+    ValueError
+        For an unknown interface or level of stiffening, or supports given with a scene or a model.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, campbell, linear_model, stability
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4 * np.eye(3), 10.0 * np.eye(3)) for name in ("left", "right")]
+    >>> model = linear_model(rotor, supports=supports)
+    >>> campbell(model, [0.0, 50.0]).frequencies_inertial[1, :5].round(2)
+    array([99.97, 99.97, 99.97, 99.97, 99.97])
+    >>> stability(model, [0.0, 50.0]).stable.tolist()
+    [True, True]
+    """
+    supports = checked_supports(supports)
+    checks.choice(stiffening, "stiffening", LEVELS)
+    checks.choice(about, "about", ABOUT)
+    if dense is not None:
+        checks.flag(dense, "dense")
+    if isinstance(target, exudyn.MainSystem):
+        if supports:
+            raise ValueError("supports: are for a rotor; a scene has its own connectors")
+        how = "the rotor in the scene, which add_rotor returned"
+        return LinearScene.of(target, checks.instance(body, "body", RotorBody, how), about=about)
+    if body is not None:
+        raise TypeError(
+            "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
+            f"{checks.shown(body)}"
+        )
+    if isinstance(target, MODELS):
+        if supports:
+            raise ValueError("supports: a linear model has its own; leave them out")
+        return target
+    if isinstance(target, ReducedRotor):
+        return LinearRotor.of(target, supports, stiffening)
+    how = "needs a ReducedRotor, a SolidRotor, a linear model, or an exudyn.MainSystem with body=…"
+    if not isinstance(target, SolidRotor):
+        raise TypeError(f"target: {how}, got {checks.shown(target)}")
+    if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
+        return LinearRotor.of_solid(target, supports, stiffening)
+    return FullRotor.of(target, supports, stiffening).with_spin()

@@ -1,0 +1,262 @@
+"""A reduced rotor with linear supports: dense equations at any spin speed.
+
+The coordinates are those of its basis in the rotor frame, rigid motions included: Eqs. (105) and
+(109) with centrifugal stiffening.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from exudyn_rotor.linear.models.eccentricity import is_balanced, warn_of_eccentricity
+from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
+from exudyn_rotor.linear.models.identity_basis import as_reduced
+from exudyn_rotor.linear.models.points import Ring, radius_of_gyration, ring_motions, spread
+from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
+from exudyn_rotor.linear.models.spin import Spin, spin_of
+from exudyn_rotor.linear.models.supports import Support, check_interfaces
+from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import stiffening as second_order
+
+_SINGULAR = 1e-12  # of a stiffness that leaves motions free
+
+
+@dataclass(frozen=True, eq=False)
+class LinearRotor:
+    """A reduced rotor with linear supports, ready for any spin speed.
+
+    Attributes
+    ----------
+    rotor : ReducedRotor
+    supports : tuple of Support
+    invariants : Invariants
+        In the reduced basis, about the foot of the centre of mass on the axis.
+    terms : SpinTerms
+        What the spin adds to the equations.
+    spin : Spin, optional
+        The spin as a coordinate.
+    free_motions : tuple of str
+        Rigid motions that no spring holds.
+    """
+
+    gives_all: ClassVar[bool] = True
+
+    rotor: ReducedRotor
+    supports: tuple[Support, ...]
+    invariants: Invariants
+    terms: SpinTerms
+    spin: Spin | None = None
+    free_motions: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        rotor: ReducedRotor,
+        supports: Sequence[Support] = (),
+        stiffening: str = "tilt",
+        spin: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> LinearRotor:
+        """Put a rotor on supports; `spin` is its s and Ms where it is no column of the basis.
+
+        Raises
+        ------
+        ValueError
+            If a support is at an unknown interface; the message lists the known ones.
+        """
+        check_interfaces(supports, rotor.interfaces)
+        origin = rotor.axis.project(rotor.center_of_mass)
+        invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+        terms = SpinTerms.of(invariants, second_order(invariants, stiffening))
+        linear = cls(rotor, tuple(supports), invariants, terms)
+        if "spin" in rotor.rigid:
+            spin = (np.eye(rotor.size)[rotor.rigid.index("spin")],) * 2
+        if spin is not None:
+            linear = replace(linear, spin=linear._on_supports(*spin))
+        free = free_motions_of_reduced(rotor, supports, linear.free_spin is not None)
+        return replace(linear, free_motions=free)
+
+    @classmethod
+    def of_solid(
+        cls, rotor: SolidRotor, supports: Sequence[Support] = (), stiffening: str = "tilt"
+    ) -> LinearRotor:
+        """Put a small solid rotor on supports, in all its nodal displacements.
+
+        Raises
+        ------
+        ValueError
+            If a support is at an unknown interface; the message lists the known ones.
+        """
+        linear = cls.of(as_reduced(rotor), supports, stiffening, spin_of(rotor))
+        free = free_motions_of_solid(rotor, supports, linear.free_spin is not None)
+        return replace(linear, free_motions=free)
+
+    def _on_supports(self, motion: np.ndarray, momentum: np.ndarray) -> Spin:
+        """Return the spin on the supports; a warning tells where the rotor is eccentric."""
+        motions = [self.interface_motion(support.interface) for support in self.supports]
+        inv, axis = self.invariants, self.rotor.axis
+        spin = Spin.of(motion, momentum, self.supports, motions, inv, axis)
+        warn_of_eccentricity(inv, spin)
+        return spin
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return self.invariants.size
+
+    @property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the rotor's interfaces."""
+        return tuple(self.rotor.interfaces)
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """Nodes of the mesh; None where the rotor was stored without mode shapes."""
+        shapes = self.rotor.shapes
+        return None if shapes is None else Mesh(shapes.nodes, shapes.matrix, self.rotor.axis)
+
+    @property
+    def mass_matrix(self) -> np.ndarray:
+        """M, shape (k, k)."""
+        return self.invariants.M
+
+    @cached_property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², ``h`` (83), shape (k,), rotor frame."""
+        return self.invariants.h
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return the interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
+        turn = np.kron(np.eye(2), axes_of(self.rotor.axis).T)
+        return turn @ self.rotor.interfaces[name].motion
+
+    @property
+    def free_spin(self) -> Spin | None:
+        """The spin where nothing holds it, else None."""
+        return self.spin if self.spin is not None and self.spin.free else None
+
+    @property
+    def is_balanced(self) -> bool:
+        """True where centre of mass and principal axis are on the spin axis but for rounding."""
+        return is_balanced(self.invariants)
+
+    @property
+    def base_loads(self) -> np.ndarray:
+        """Loads of unit accelerations of the ground (109), shape (3, k)."""
+        return -axes_of(self.rotor.axis).T @ self.invariants.S
+
+    @property
+    def radius(self) -> float:
+        """The rotor's radius of gyration [m]."""
+        return radius_of_gyration(self.invariants)
+
+    @property
+    def stiffness_varies(self) -> bool:
+        """True where the stiffness of a support depends on the speed by a function."""
+        return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in self.supports)
+
+    @cached_property
+    def _centrifugal(self) -> np.ndarray:
+        matrix = self.terms.stiffness(1.0)
+        if self.spin is None:
+            return matrix
+        return self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
+
+    def _supported_motion(self, index: int) -> np.ndarray:
+        """Return the motion (6, k) at a support, which a free spin does not displace."""
+        motion = self.interface_motion(self.supports[index].interface)
+        if self.spin is None:
+            return motion
+        return motion + np.outer(self.spin.shifts[index], self.spin.momentum)
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s]."""
+        inv = self.invariants
+        M = {0: inv.M}
+        D = {0: inv.D + self.terms.damping(speed)}
+        K = {0: inv.K + speed**2 * self._centrifugal}
+        for index, support in enumerate(self.supports):
+            U = self._supported_motion(index)
+            damping, stiffness = support.terms(speed)
+            _add(D, damping, U)
+            _add(K, stiffness, U)
+        if self.spin is not None and self.spin.coupled:
+            own = self.steady_torsion(speed)
+            K[0] = K[0] + own * np.outer(self.spin.momentum, self.spin.momentum)
+        return PeriodicSystem(float(speed), M, D, K)
+
+    def steady_torsion(self, speed: float) -> float:
+        """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].
+
+        ``F·ρ``, see :mod:`exudyn_rotor.linear.models.spin`; F is the mean over a revolution of
+        what the rotor's own unbalance causes.
+        """
+        motions = [self._supported_motion(index) for index in range(len(self.supports))]
+        pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
+        K = self.invariants.K + speed**2 * self._centrifugal
+        for U, pull in zip(motions, pulls, strict=True):
+            K = K + U.T @ pull @ U
+        rest = self.spin.rest()
+        load = speed**2 * (rest.T @ self.unit_unbalance)
+        steady = rest @ np.linalg.lstsq(rest.T @ K @ rest, load, rcond=_SINGULAR)[0]
+        forces = [(pull @ (U @ steady))[:3] for U, pull in zip(motions, pulls, strict=True)]
+        return float(sum(f @ bend for f, bend in zip(forces, self.spin.bends, strict=True)))
+
+    def undamped(self) -> LinearRotor:
+        """Return the model without damping, and without the skew part of supports' stiffness."""
+        supports = tuple(support.undamped() for support in self.supports)
+        return replace(
+            self, supports=supports, invariants=replace(self.invariants, D=0.0 * self.invariants.D)
+        )
+
+    def point_motions(self, most: int) -> PointMotions:
+        """Return points of the mesh, or of rings that move with the interfaces."""
+        rotor = self.rotor
+        axes = axes_of(rotor.axis)
+        if rotor.shapes is None:
+            rings = [
+                Ring((entry.reference - rotor.axis.point) @ axes, entry.radius,
+                     self.interface_motion(name))
+                for name, entry in rotor.interfaces.items()
+            ]  # fmt: skip
+            return ring_motions(rings, self.size)
+        nodes = spread(len(rotor.shapes.nodes), most)
+        points = (rotor.shapes.nodes[nodes] - rotor.axis.point) @ axes
+        motion = rotor.shapes.matrix.reshape(-1, 3, self.size)[nodes]
+        motion = np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1)
+        return PointMotions(points, motion, None, True)
+
+    def space(
+        self,
+        count: int,
+        fastest: float,
+        *,
+        loads: Sequence[np.ndarray] = (),
+        held: bool = False,
+        residual: float = 1e-7,
+    ) -> WholeSpace:
+        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+        light = replace(self, rotor=self.rotor.without_shapes())
+        if self.free_spin is None:
+            return WholeSpace(light, can_be_sent=True)
+        if held:
+            return WholeSpace(light, can_be_sent=True, others=self.spin.rest())
+        # if the spin were free, a constant torque however small would turn it on and on
+        driven = (int(np.argmax(self.spin.momentum)),)
+        return WholeSpace(light, can_be_sent=True, driven=driven)
+
+
+def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
+    for n, X in harmonics.items():
+        block = U.T @ X @ U
+        terms[n] = terms.get(n, 0.0) + (block.real if n == 0 else block)

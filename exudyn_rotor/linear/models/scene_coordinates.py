@@ -1,0 +1,71 @@
+"""The unknowns of a scene with a rotor, and how they turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
+
+
+@dataclass(frozen=True, eq=False)
+class SceneCoordinates:
+    """The unknowns: the rotor's in axes that turn with it, those of everything else as they are.
+
+    Attributes
+    ----------
+    body : RotorBody
+    free : ndarray of int
+        Coordinates of the scene that are unknowns: the rotor's first.
+    N : ndarray, shape (len(free), k)
+        Motions that the scene's constraints allow.
+    rest : ndarray
+        All coordinates of the given state.
+    """
+
+    body: RotorBody
+    free: np.ndarray
+    N: np.ndarray
+    rest: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return self.N.shape[1]
+
+    @property
+    def mass(self) -> float:
+        """Mass of the rotor [kg]."""
+        return self.body.motion.invariants.mass
+
+    @property
+    def own(self) -> slice:
+        """Where the rotor's modal coordinates stand among the free ones."""
+        return slice(self.count, self.count + self.body.motion.invariants.size)
+
+    @property
+    def count(self) -> int:
+        """Number of the rotor's translations."""
+        return self.body.motion.formulation.translation_count
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """``(n1, n2, e)`` in mesh axes."""
+        return axes_of(SpinAxis(self.body.motion.invariants.direction))
+
+    def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        motion, c = self.body.motion, self.count
+        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
+        e = skew(motion.invariants.direction)
+        blocks = []
+        for full, turned in ((1.0, A), (0.0, A @ e), (0.0, A @ e @ e)):
+            T = full * np.eye(len(self.free))
+            T[:c, :c] = motion.free_directions.T @ turned @ self.axes[:, :c]
+            blocks.append(T @ self.N)
+        return tuple(blocks)

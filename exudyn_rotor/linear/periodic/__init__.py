@@ -1,0 +1,1 @@
+"""Linear equations with periodic coefficients, and how they are solved."""

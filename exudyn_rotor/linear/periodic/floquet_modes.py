@@ -1,0 +1,176 @@
+"""Modes of linear equations at one spin speed, constant or periodic.
+
+The 2k exponents are conjugate pairs and an even number of real ones. One of every conjugate pair is
+returned (Im λ > 0), and of the real ones the less damped half, so that k modes stand for all. Of
+each Floquet family ``λ + i p Ω`` the member with the largest central harmonic is taken.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from exudyn_rotor.linear.periodic.eigenvalues import groups, merged, quadratic_modes
+from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+
+# distance of the exponents of two members of a Floquet family, as a share of their step
+_SAME_FAMILY = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class FloquetModes:
+    """Motions ``exp(λt) Σ_m X_m exp(i m Ω t)`` of one system, one for every pair of eigenvalues.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+        λ [1/s], ascending in |Im λ|.
+    vectors : ndarray, shape (h, c, k)
+        Harmonics X_m of the coordinates, rotor frame; columns of unit Euclidean length.
+    orders : ndarray of int, shape (h,)
+        The harmonics m; only 0 for a constant system.
+    resolution : float
+        Eigenvalues closer than this cannot be told apart [1/s].
+    """
+
+    values: np.ndarray
+    vectors: np.ndarray
+    orders: np.ndarray
+    resolution: float
+
+    @property
+    def central(self) -> np.ndarray:
+        """The harmonic 0 of every mode, shape (c, k)."""
+        return self.vectors[np.flatnonzero(self.orders == 0)[0]]
+
+
+def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> FloquetModes:
+    """Return one motion for every pair of exponents of a constant or periodic system.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    tolerance : float, optional
+        Largest error of λ by harmonics that Hill's method leaves out, relative to the larger of
+        |λ| and pΩ.
+
+    Raises
+    ------
+    ValueError
+        If modes are lost, or the harmonics do not die away.
+    """
+    if system.is_constant or system.speed == 0.0:
+        values, vectors, resolution = quadratic_modes(*system.matrices(0.0))
+        return FloquetModes(values, vectors[None], np.array([0]), resolution)
+
+    chosen, solution, _ = solve_hill(
+        system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance
+    )
+    return FloquetModes(chosen.values, chosen.shapes, solution.orders, solution.resolution)
+
+
+def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
+    """Choose one motion for each pair of Floquet families; None where some are not found."""
+    orders, resolution = solution.orders, solution.resolution
+    values = merged(solution.values, solution.states, resolution)
+    lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
+    shapes = solution.shapes / lengths
+    for group in groups(values, resolution):
+        if len(group) > 1:
+            shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
+    base = int(orders[1] - orders[0]) * speed
+    columns = _families(values, shapes, orders, base)
+    if columns is None:
+        return None
+    sizes = np.maximum(np.abs(values[columns]), base)
+    # what is zero to rounding has no error of truncation that could be told
+    sizes = np.where(values[columns] == 0.0, np.inf, sizes)
+    return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
+
+
+def _families(
+    values: np.ndarray, shapes: np.ndarray, orders: np.ndarray, base: float
+) -> np.ndarray | None:
+    """Return the columns of one motion for each pair of families, ascending in Im λ."""
+    size = shapes.shape[1]
+    center = np.flatnonzero(orders == 0)[0]
+    share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
+    spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)
+    upper = np.flatnonzero(values.imag >= 0.0)
+    accepted: list[int] = []
+    alone: list[bool] = []  # where a family is its own conjugate
+    weight = 0
+    for index in upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]:
+        if weight == 2 * size:
+            break
+        mode = (values[index], shapes[:, :, index])
+        known = [(values[i], shapes[:, :, i]) for i in accepted]
+        known = known + [_conjugate(entry) for entry in known]
+        if _is_known(mode, known, base):
+            continue
+        own_pair = mode[0].imag == 0.0 or _is_known(_conjugate(mode), [mode], base)
+        accepted.append(int(index))
+        alone.append(own_pair)
+        weight += 1 if own_pair else 2
+    if weight != 2 * size:
+        return None
+    columns, single = np.array(accepted), np.array(alone)
+    real = columns[single]
+    real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
+    columns = np.concatenate([columns[~single], real])
+    return columns[np.lexsort((values[columns].real, values[columns].imag))]
+
+
+def _unmixed(vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
+    """Part the copies of different families that share an eigenvalue by their mean harmonic."""
+    flat = vectors.reshape(-1, vectors.shape[2])
+    span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
+    if lengths[-1] < 1e-3 * lengths[0]:  # copies of a defective eigenvalue: one vector only
+        return vectors
+    shaped = span.reshape(vectors.shape)
+    _, turn = np.linalg.eigh(np.einsum("h,hci,hcj->ij", orders, shaped.conj(), shaped))
+    return (span @ turn).reshape(vectors.shape)
+
+
+Mode = tuple[complex, np.ndarray]
+
+
+def _conjugate(mode: Mode) -> Mode:
+    """Return the conjugate motion: λ̄ with the harmonics conj(X_−m)."""
+    return np.conj(mode[0]), mode[1][::-1].conj()
+
+
+def _is_known(mode: Mode, known: list[Mode], base: float) -> bool:
+    """Return whether a motion is in the span of known ones with shifted harmonics.
+
+    At the same eigenvalue, without a shift, it is another motion: a repeated eigenvalue.
+    """
+    value, vector = mode
+    basis = []
+    for other_value, other in known:
+        shift = round((value - other_value).imag / base)
+        if shift and abs(value - other_value - 1j * shift * base) <= _SAME_FAMILY * base:
+            moved = _shifted(other, shift).ravel()
+            if np.linalg.norm(moved) > 0.5:
+                basis.append(moved)
+    if not basis:
+        return False
+    span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)
+    span = span[:, lengths > 0.1]
+    return np.linalg.norm(span.conj().T @ vector.ravel()) ** 2 > 0.5
+
+
+def _shifted(vector: np.ndarray, shift: int) -> np.ndarray:
+    """Return harmonics for the member of the family that is `shift` steps higher in λ.
+
+    ``exp((λ + ipsΩ)t) Σ Y_m exp(imΩt)`` is the same motion for ``Y_m = X_{m + ps}``.
+    """
+    moved = np.zeros_like(vector)
+    count = len(vector)
+    for row in range(count):
+        if 0 <= row + shift < count:
+            moved[row] = vector[row + shift]
+    return moved

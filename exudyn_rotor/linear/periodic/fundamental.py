@@ -1,0 +1,97 @@
+"""Floquet's method: exponents from the fundamental matrix over one period.
+
+The multipliers ``exp(λT)`` are the eigenvalues of the fundamental matrix, which is found by a
+sixth-order Magnus series and matrix exponentials, the number of steps doubled until it no longer
+changes. Source: Blanes, Casas, Oteo, Ros, Phys. Rep. 470 (2009), Eq. (253). Strongly damped
+exponents lose digits: their multipliers are tiny.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+
+MOST_STEPS = 2**14
+_CHUNK = 128
+
+
+def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
+    """Return the fundamental matrix of (x, ẋ) over one period of the coefficients, from θ = 0.
+
+    Shape (2k, 2k), real. For a constant system the period is one revolution.
+
+    Raises
+    ------
+    ValueError
+        At zero speed, which has no period.
+    UnconvergedError
+        If 2¹⁴ steps do not reach `tolerance`, relative to the largest entry in the state
+        ``(x · max|λ|, ẋ)``.
+    """
+    if system.speed == 0.0:
+        raise ValueError("floquet: at 0 rad/s the coefficients have no period")
+    period = 2.0 * np.pi / abs(system.base or system.speed)
+    fastest = np.abs(np.linalg.eigvals(_state_matrix(*system.matrices(0.0)))).max()
+    scale = np.repeat([fastest or 1.0, 1.0], system.size)
+    steps = max(8, 2 ** int(np.ceil(np.log2(0.5 * fastest * period + 1.0))))
+    error, last = np.inf, None
+    while steps <= MOST_STEPS:
+        fundamental = _magnus(system, period, steps)
+        if last is not None:
+            scaled = scale[:, None] * np.array([fundamental, fundamental - last]) / scale
+            error = np.abs(scaled[1]).max() / np.abs(scaled[0]).max() / 63.0
+            if error <= tolerance:
+                return fundamental
+        steps, last = 2 * steps, fundamental
+    raise UnconvergedError(
+        f"floquet at {system.speed:g} rad/s: error {error:.1e} with {MOST_STEPS} steps a period, "
+        f"more than the tolerance {tolerance:.1e}; use method='hill', or fewer high modes"
+    )
+
+
+def _magnus(system: PeriodicSystem, period: float, steps: int) -> np.ndarray:
+    """Return the fundamental matrix by `steps` sixth-order Magnus steps."""
+    h = period / steps
+    fundamental = np.eye(2 * system.size)
+    nodes = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])  # Gauss points
+    for first in range(0, steps, _CHUNK):
+        starts = np.arange(first, min(first + _CHUNK, steps))
+        angles = system.speed * h * (starts[None, :] + nodes[:, None])
+        A1, A2, A3 = h * _state_matrix(*_sampled(system, angles))
+        a1, a2, a3 = A2, np.sqrt(15.0) / 3.0 * (A3 - A1), 10.0 / 3.0 * (A3 - 2.0 * A2 + A1)
+        c1 = _commutator(a1, a2)
+        c2 = -_commutator(a1, 2.0 * a3 + c1) / 60.0
+        exponent = a1 + a3 / 12.0 + _commutator(-20.0 * a1 - a3 + c1, a2 + c2) / 240.0
+        for factor in scipy.linalg.expm(exponent):
+            fundamental = factor @ fundamental
+    return fundamental
+
+
+def _sampled(system: PeriodicSystem, angles: np.ndarray) -> list[np.ndarray]:
+    """Return M, D, K at many angles, each (*angles.shape, k, k)."""
+    return [
+        sum(np.exp(1j * n * angles)[..., None, None] * X for n, X in terms.items()).real
+        for terms in (system.M, system.D, system.K)
+    ]
+
+
+def _commutator(A: np.ndarray, B: np.ndarray) -> np.ndarray:
+    return A @ B - B @ A
+
+
+def floquet_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
+    """Return the 2k exponents from the fundamental matrix [1/s], see :func:`monodromy`."""
+    multipliers = np.linalg.eigvals(monodromy(system, tolerance)).astype(complex)
+    base = system.base or system.speed
+    return fold(np.log(multipliers) * abs(base) / (2.0 * np.pi), abs(base))
+
+
+def _state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return A of ``ż = A z`` with ``z = (x, ẋ)``; any leading dimensions."""
+    size = M.shape[-1]
+    A = np.zeros((*np.broadcast_shapes(M.shape, D.shape, K.shape)[:-2], 2 * size, 2 * size))
+    A[..., :size, size:] = np.eye(size)
+    A[..., size:, :] = -np.linalg.solve(M, np.concatenate([K, D], axis=-1))
+    return A

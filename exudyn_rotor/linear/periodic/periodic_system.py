@@ -1,0 +1,96 @@
+"""Linear equations whose coefficients repeat every revolution.
+
+    M(θ) ẍ + D(θ) ẋ + K(θ) x = f(t),    θ = Ω t
+
+with the matrices given by their Fourier terms in θ; constant where only the term 0 exists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import gcd
+
+import numpy as np
+
+Terms = Mapping[int, np.ndarray]
+
+
+class UnconvergedError(ValueError):
+    """A truncation does not reach the tolerance asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSystem:
+    """Linear equations with coefficients that repeat every revolution.
+
+    Attributes
+    ----------
+    speed : float
+        Spin speed Ω [rad/s].
+    M, D, K : mapping of int to ndarray, shape (k, k)
+        Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
+    """
+
+    speed: float
+    M: Terms
+    D: Terms
+    K: Terms
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return len(self.M[0])
+
+    @property
+    def order(self) -> int:
+        """Highest harmonic of any coefficient; 0 for a constant system."""
+        return max(abs(n) for terms in (self.M, self.D, self.K) for n in terms)
+
+    @property
+    def is_constant(self) -> bool:
+        """True when no coefficient depends on θ."""
+        return self.order == 0
+
+    @cached_property
+    def step(self) -> int:
+        """Common step p of the coefficients' harmonics: 2 for anisotropic supports, 0: constant.
+
+        The coefficients repeat p times a revolution.
+        """
+        return gcd(*(n for terms in (self.M, self.D, self.K) for n in terms))
+
+    @property
+    def base(self) -> float:
+        """Frequency pΩ of the coefficients [rad/s]; 0 where they are constant."""
+        return self.step * self.speed
+
+    def harmonics(self, order: int) -> np.ndarray:
+        """Return the harmonics −N … N that are coupled with 0, N ≤ `order`, shape (2N/p + 1,)."""
+        if self.step == 0:
+            return np.array([0])
+        highest = self.step * (order // self.step)
+        return np.arange(-highest, highest + 1, self.step)
+
+    def matrices(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return M, D, K at a spin angle [rad]."""
+        return tuple(_sum(terms, theta) for terms in (self.M, self.D, self.K))
+
+    def projected(self, basis: np.ndarray) -> PeriodicSystem:
+        """Return the equations of motions in a real basis (k, r)."""
+        parts = (
+            {n: basis.T @ X @ basis for n, X in terms.items()} for terms in (self.M, self.D, self.K)
+        )
+        return PeriodicSystem(self.speed, *parts)
+
+
+def fold(exponents: np.ndarray, base: float) -> np.ndarray:
+    """Bring imaginary parts into (−base/2, base/2]; no change for ``base = 0``."""
+    if base == 0.0:
+        return exponents
+    return exponents - 1j * base * np.ceil(exponents.imag / base - 0.5)
+
+
+def _sum(terms: Terms, theta: float) -> np.ndarray:
+    return sum(term * np.exp(1j * n * theta) for n, term in terms.items()).real

@@ -1,0 +1,62 @@
+"""Vectors and matrices seen from axes that turn with the rotor, as harmonics of its angle.
+
+Axes are (n1, n2, e) of :attr:`SpinAxis.plane` and the spin axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from exudyn_rotor.theory.axis import SpinAxis
+
+FRAMES = ("inertial", "rotor")
+
+
+def axes_of(axis: SpinAxis) -> np.ndarray:
+    """Return (n1, n2, e) as columns, shape (3, 3)."""
+    return np.column_stack([axis.plane, axis.direction])
+
+
+def turning_harmonics(size: int) -> dict[int, np.ndarray]:
+    """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, (3, 3) or twice that, axes (n1, n2, e).
+
+    R turns rotor axes into inertial axes; ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
+    """
+    forward = 0.5 * np.array([[1.0, 1j, 0.0], [-1j, 1.0, 0.0], [0.0, 0.0, 0.0]])
+    terms = {-1: forward.conj(), 0: np.diag([0.0, 0.0, 1.0]).astype(complex), 1: forward}
+    return {n: np.kron(np.eye(size // 3), term) for n, term in terms.items()}
+
+
+def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the harmonics of ``Rᵀ(θ) v`` for v (3,) or (6,) fixed in space; none that is zero."""
+    turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
+    return {n: part for n, part in turned.items() if np.any(part)}
+
+
+def into_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
+    """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
+    turned: dict[int, np.ndarray] = {}
+    for m, part in motion.items():
+        for n, R in turning_harmonics(part.shape[-1]).items():
+            turned[m + n] = turned.get(m + n, 0.0) + part @ R.T
+    return turned
+
+
+def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
+
+    R turns both triples of a (6, 6) matrix X about e by θ; the result holds the harmonics
+    −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
+    """
+    angles = 2.0 * np.pi * np.arange(5) / 5.0
+    turn = SpinAxis((0.0, 0.0, 1.0)).rotation
+    samples = []
+    for angle in angles:
+        R = np.kron(np.eye(2), turn(angle))
+        samples.append(R.T @ matrix @ R)
+    spectrum = np.fft.fft(np.array(samples), axis=0) / 5.0
+    largest = np.abs(matrix).max(initial=0.0)
+    terms = {n: spectrum[n % 5] for n in range(-2, 3)}
+    return {n: X for n, X in terms.items() if np.abs(X).max() > 1e-14 * largest}

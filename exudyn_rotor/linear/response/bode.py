@@ -1,0 +1,73 @@
+"""Drawing of forced responses: Bode, polar and orbit diagrams."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MultipleLocator
+
+from exudyn_rotor.plotting import COLORS, LINES
+
+
+def draw_bode(
+    size: Axes, phase: Axes, hertz: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
+) -> None:
+    """Draw amplitudes [m], complex, as sizes [µm] and phases over a frequency [Hz]."""
+    for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
+        size.plot(hertz, 1e6 * np.abs(values), ls=line, color=color, lw=1.4, label=name)
+        phase.plot(hertz, _phase(values), ls=line, color=color, lw=1.4)
+    size.set_yscale("log" if log else "linear")
+    size.set_ylabel("amplitude [µm]")
+    phase.set_ylabel("phase [deg]")
+    phase.yaxis.set_major_locator(MultipleLocator(90.0))
+    for one in (size, phase):
+        one.grid(alpha=0.3, which="both")
+    size.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
+
+
+def draw_polar(ax: Axes, hertz: np.ndarray, amplitudes: np.ndarray, marks: int) -> None:
+    """Draw complex amplitudes [m] in their plane [µm]; some points carry their frequency."""
+    values = 1e6 * amplitudes
+    ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
+    for index in _spread(values, marks):
+        ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
+        ax.annotate(f"{hertz[index]:.3g} Hz", (values.real[index], values.imag[index]),
+                    textcoords="offset points", xytext=(5, 4), fontsize=8)  # fmt: skip
+    ax.axhline(0.0, color="0.6", lw=0.7)
+    ax.axvline(0.0, color="0.6", lw=0.7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_ylabel("a quarter turn ahead [µm]")
+    ax.grid(alpha=0.3)
+
+
+def draw_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> None:
+    """Draw orbits, each (points, 2) [m], in µm: a dot at the first point, an arrow ahead."""
+    for (name, points), color, line in zip(orbits.items(), COLORS, LINES, strict=False):
+        x, y = 1e6 * points.T
+        ax.plot(x, y, ls=line, color=color, lw=1.4, label=name)
+        ax.plot(x[0], y[0], "o", color=color, ms=5)
+        ax.annotate("", (x[24], y[24]), (x[20], y[20]),
+                    arrowprops={"arrowstyle": "->", "color": color, "lw": 1.4})  # fmt: skip
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("n1 [µm]")
+    ax.set_ylabel("n2 [µm]")
+    ax.grid(alpha=0.3)
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
+
+
+def _phase(values: np.ndarray) -> np.ndarray:
+    """Return phases [deg] without jumps; none where there is no motion."""
+    phase = np.full(len(values), np.nan)
+    moving = np.abs(values) > 1e-12 * np.abs(values).max(initial=0.0)
+    phase[moving] = np.degrees(np.unwrap(np.angle(values[moving])))
+    return phase
+
+
+def _spread(values: np.ndarray, count: int) -> np.ndarray:
+    """Return indices of points evenly spread along a curve."""
+    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
+    return np.unique(
+        np.searchsorted(path, np.linspace(0.0, path[-1], count)).clip(0, len(path) - 1)
+    )
