@@ -145,14 +145,23 @@ class StressField(Result):
                 f"modal_coordinates: needs {count} modal coordinates, shape ({count},), got the "
                 f"shape {values.shape}; rows over time go to stress_history"
             )
-        if not isinstance(nodes, slice):
-            nodes = checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
+        nodes = self._nodes(nodes)
         return self.constant[nodes] + speed**2 * self.rest[nodes] + self.modes[nodes] @ values
 
     def history(self, modal_coordinates: np.ndarray, speed: np.ndarray, nodes: Nodes) -> np.ndarray:
-        """Return the stress of (s, m) coordinates at s speeds, shape (s, n, 6) [Pa]."""
-        dynamic = np.einsum("nck,sk->snc", self.modes[nodes], modal_coordinates, optimize=True)
+        """Return the stress of (s, m) coordinates at s speeds (s, n, 6) [Pa]; see :meth:`at`."""
+        shape = (None, self.modes.shape[2])
+        values = checks.array(modal_coordinates, "modal_coordinates", shape=shape)
+        speed = checks.array(speed, "speed", "rad/s", shape=(len(values),))
+        nodes = self._nodes(nodes)
+        dynamic = np.einsum("nck,sk->snc", self.modes[nodes], values, optimize=True)
         return dynamic + self.constant[nodes] + (speed**2)[:, None, None] * self.rest[nodes]
+
+    def _nodes(self, nodes: Nodes) -> Nodes:
+        """Return a slice, or node numbers that are there."""
+        if isinstance(nodes, slice):
+            return nodes
+        return checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
 
     def table(self) -> str:
         """Return what a unit of every modal coordinate does, and where, as text."""

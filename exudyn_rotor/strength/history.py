@@ -195,10 +195,12 @@ def _checked(
     count = checks.instance(field, "field", StressField, how).modes.shape[2]
     time = checks.vector(time, "time", "s", size=None)
     coordinates = checks.array(coordinates, "modal_coordinates")
-    if time.size == 0 or coordinates.shape != (time.size, count):
+    if time.size == 0:
+        raise ValueError("time: needs at least one instant, got none")
+    if coordinates.shape != (time.size, count):
         raise ValueError(
-            f"modal_coordinates: needs one row of {count} for each of the {time.size} times, got "
-            f"the shape {coordinates.shape}"
+            f"modal_coordinates: needs one row of {count} for each of the {time.size} instants of "
+            f"time, got the shape {coordinates.shape}"
         )
     speed = checks.array(speed, "speed", "rad/s")
     if speed.shape not in ((), time.shape):

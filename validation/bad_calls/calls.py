@@ -18,6 +18,7 @@ Call = tuple[Callable, dict[str, Any]]
 LEFT_OUT = {
     "AssumptionWarning": "a warning takes any text, as every exception of Python",
     "LinearModel": "a protocol; linear_model makes what follows it",
+    "Result": "the base of classes that are called",
 }
 
 # instances of public classes, on which methods are called and from which constructors are given
