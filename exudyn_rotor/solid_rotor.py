@@ -16,6 +16,7 @@ from exudyn_rotor.reduction.reduce import ModeSource, reduce_rotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import fem_interface, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.damping import with_damping
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
@@ -56,6 +57,9 @@ class SolidRotor(FiniteElementRotor):
         What :meth:`prestress` assembles on; only of :meth:`from_ngsolve`.
     carried_prestress : Prestress or None
         Set by :meth:`with_prestress`.
+    mass_damping : scipy.sparse.csr_array or None
+        Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
+        by :meth:`with_damping`.
     """
 
     @classmethod
@@ -274,6 +278,49 @@ class SolidRotor(FiniteElementRotor):
             makes the rotor buckle.
         """
         return with_prestress(self, prestress)
+
+    def with_damping(
+        self,
+        *,
+        mass: float = 0.0,
+        stiffness: float = 0.0,
+        materials: Mapping[str, Mapping[str, float]] | None = None,
+    ) -> SolidRotor:
+        """Return the rotor with Rayleigh damping of its own material added to what it has.
+
+        ``mass·M + stiffness·K`` acts in the rotor frame, where it makes a rotor unstable above a
+        critical speed: with an external damping c_e, an internal one c_i and the eigenfrequency
+        ω₀ of a Jeffcott rotor above ``ω₀ (1 + c_e/c_i)``. Scenes and all linear analyses take it.
+
+        Parameters
+        ----------
+        mass : float, optional
+            Damping per mass [1/s]. The rigid motions that the stiffness leaves free are not
+            damped: a material resists strains only.
+        stiffness : float, optional
+            Damping per stiffness [s] (Kelvin and Voigt's material); that of springs to the ground
+            inside the stiffness matrix as well.
+        materials : mapping, optional
+            Region name of the mesh → ``{'mass': 1/s, 'stiffness': s}``, one of them or both: added
+            to the above in this region. Only of a rotor from :meth:`from_ngsolve`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If a factor is no number, or negative, or a region is unknown.
+
+        Examples
+        --------
+        Loss factor 2 ζ = stiffness · ω of a mode at rest:
+
+        >>> import numpy as np
+        >>> from exudyn_rotor import SolidRotor
+        >>> rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0, 0, 0]], "z")
+        >>> damped = rotor.with_damping(stiffness=1e-5)
+        >>> float(damped.damping[0, 0])
+        10.0
+        """
+        return with_damping(self, mass, stiffness, materials)
 
     def reduce(
         self,

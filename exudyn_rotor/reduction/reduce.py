@@ -68,6 +68,9 @@ def _reduced(
     rigid_count = len(basis.rigid_kinds)
     _check_stable(invariants, rigid_count)
     own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
+    if rotor.mass_damping is not None:
+        damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
+        invariants = replace(invariants, D=damping)
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,

@@ -33,14 +33,31 @@ def node_by_node(matrix: sp.csr_array) -> sp.csr_array:
     return sp.csr_array((entries.data, (rows, columns)), shape=matrix.shape)
 
 
+def assemble_mass(space: ngs.FESpace, densities: np.ndarray) -> sp.csr_array:
+    """Return the consistent mass matrix; one direction is assembled, all three have the same."""
+    u, v = space.TnT()
+    form = ngs.BilinearForm(space)
+    form += ngs.CoefficientFunction(list(densities)) * u * v * ngs.dx
+    return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
+
+
+def assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
+    """Return the stiffness matrix of linear isotropic elasticity."""
+    displacement = space**3
+    u, v = displacement.TnT()
+    form = ngs.BilinearForm(displacement)
+    form += ngs.InnerProduct(_hooke(ngs.Sym(ngs.Grad(u)), lame), ngs.Sym(ngs.Grad(v))) * ngs.dx
+    return node_by_node(assembled(form))
+
+
 @dataclass(frozen=True, eq=False)
 class NgsolveElements:
-    """Elements of a model, for matrices that depend on a static field.
+    """Elements of a model, for matrices of a static field and of single materials.
 
-    All integrals use the integration points of the stiffness matrix. A stress field in discrete
-    equilibrium then stays so: for a rotation ``a × x`` its geometric stiffness is
-    ``vᵀ K_G (a × x) = v · (a × f)`` with the nodal load f, to rounding. More points change K_G of
-    the lowest flexible modes by 3e-4 or less, but lose this balance by 4e-3 at curved elements.
+    All integrals of a static field use the integration points of the stiffness matrix. A stress
+    field in discrete equilibrium then stays so: for a rotation ``a × x`` its geometric stiffness
+    is ``vᵀ K_G (a × x) = v · (a × f)`` with the nodal load f, to rounding. More points change K_G
+    of the lowest flexible modes by 3e-4 or less, but lose this balance by 4e-3 at curved elements.
 
     Parameters
     ----------
@@ -51,6 +68,8 @@ class NgsolveElements:
         Positions at the time of assembly, mesh coordinates [m].
     lame : ndarray, shape (regions, 2)
         Lamé parameters λ, μ of every region [Pa].
+    densities : ndarray, shape (regions,)
+        [kg/m³].
     held : ndarray of int, optional
         Nodes that are clamped: their rows and columns are zero in every matrix.
     """
@@ -59,6 +78,7 @@ class NgsolveElements:
     order: int
     nodes: np.ndarray
     lame: np.ndarray
+    densities: np.ndarray
     held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
@@ -67,6 +87,18 @@ class NgsolveElements:
         touched = np.isin(elements["nodes"].astype(np.int64) - 1, nodes).any(axis=1)
         regions = self.mesh.GetMaterials()
         return tuple(sorted({regions[i - 1] for i in np.unique(elements["index"][touched])}))
+
+    def mass_matrix(self, factors: np.ndarray) -> sp.csr_array:
+        """Return the mass matrix (3n, 3n) with a factor for every region, shape (regions,)."""
+        self._check_mesh()
+        space = nodal_space(self.mesh, self.order)
+        return self._without_held(assemble_mass(space, factors * self.densities))
+
+    def stiffness_matrix(self, factors: np.ndarray) -> sp.csr_array:
+        """Return the stiffness matrix (3n, 3n) with a factor for every region."""
+        self._check_mesh()
+        space = nodal_space(self.mesh, self.order)
+        return self._without_held(assemble_stiffness(space, factors[:, None] * self.lame))
 
     def holding(self, nodes: np.ndarray) -> NgsolveElements:
         """Return the elements with more nodes clamped."""
@@ -130,8 +162,7 @@ class NgsolveElements:
         return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
 
     def _hooke(self, strain: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
-        first, second = (ngs.CoefficientFunction(values.tolist()) for values in self.lame.T)
-        return 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
+        return _hooke(strain, self.lame)
 
     def _displacement(self, displacement: np.ndarray) -> ngs.GridFunction:
         values = self._nodal("displacement", displacement, (self.nodes.size,)).reshape(-1, 3)
@@ -153,6 +184,11 @@ class NgsolveElements:
             )
         if not np.all(np.isfinite(values)):
             raise ValueError(f"{label}: has entries that are not finite")
+        self._check_mesh()
+        return values
+
+    def _check_mesh(self) -> None:
+        """Raise ValueError if the mesh was changed since the model was made."""
         present = np.array(self.mesh.ngmesh.Coordinates(), dtype=float)
         if self.order == 1:
             present = present[: self.mesh.nv]
@@ -161,7 +197,6 @@ class NgsolveElements:
                 "the NGSolve mesh was changed after SolidRotor.from_ngsolve read it; make the "
                 "rotor anew from the changed mesh"
             )
-        return values
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
         if self.held.size == 0:
@@ -170,6 +205,12 @@ class NgsolveElements:
         kept[self.held] = 0.0
         mask = sp.diags_array(kept.ravel())
         return sp.csr_array(mask @ matrix @ mask)
+
+
+def _hooke(strain: ngs.CoefficientFunction, lame: np.ndarray) -> ngs.CoefficientFunction:
+    """Return Hooke's stress of a strain, with the Lamé parameters of every region."""
+    first, second = (ngs.CoefficientFunction(values.tolist()) for values in lame.T)
+    return 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
 
 
 def _function(space: ngs.FESpace, values: np.ndarray) -> ngs.GridFunction:

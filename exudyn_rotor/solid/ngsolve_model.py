@@ -8,11 +8,15 @@ from typing import Any
 
 import ngsolve as ngs
 import numpy as np
-import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.solid import units
-from exudyn_rotor.solid.elements import NgsolveElements, assembled, nodal_space, node_by_node
+from exudyn_rotor.solid.elements import (
+    NgsolveElements,
+    assemble_mass,
+    assemble_stiffness,
+    nodal_space,
+)
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
 from exudyn_rotor.solid.stress_recovery import TetrahedronStress
 from exudyn_rotor.solid.surface import area_weights
@@ -48,17 +52,17 @@ def assemble_model(
     nodes = nodes if order == 2 else nodes[: mesh.nv]
     _check_used(tetrahedra, len(nodes))
     lame = np.array([_lame_parameters(by_region[name]) for name in regions])
-    densities = [by_region[name]["density"] for name in regions]
+    densities = np.array([by_region[name]["density"] for name in regions])
     space = nodal_space(mesh, order)
     triangles, faces = _triangles(mesh, order)
     return FiniteElementModel(
         nodes=nodes,
-        mass=_assemble_mass(space, densities),
-        stiffness=_assemble_stiffness(space, lame),
+        mass=assemble_mass(space, densities),
+        stiffness=assemble_stiffness(space, lame),
         node_sets=_node_sets(nodes, triangles, faces, interfaces),
         triangles=triangles,
         stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),
-        elements=NgsolveElements(mesh, order, nodes, lame),
+        elements=NgsolveElements(mesh, order, nodes, lame, densities),
     )
 
 
@@ -131,23 +135,3 @@ def _lame_parameters(material: units.Material) -> tuple[float, float]:
     modulus, ratio = material["youngsModulus"], material["poissonsRatio"]
     shear = modulus / (2 * (1 + ratio))
     return 2 * shear * ratio / (1 - 2 * ratio), shear
-
-
-def _assemble_mass(space: ngs.FESpace, densities: list[float]) -> sp.csr_array:
-    """Return the consistent mass matrix; one direction is assembled, all three have the same."""
-    u, v = space.TnT()
-    form = ngs.BilinearForm(space)
-    form += ngs.CoefficientFunction(densities) * u * v * ngs.dx
-    return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
-
-
-def _assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
-    """Return the stiffness matrix of linear isotropic elasticity."""
-    displacement = space**3
-    u, v = displacement.TnT()
-    first, second = (ngs.CoefficientFunction(values.tolist()) for values in lame.T)
-    strain = ngs.Sym(ngs.Grad(u))
-    stress = 2 * second * strain + first * ngs.Trace(strain) * ngs.Id(3)
-    form = ngs.BilinearForm(displacement)
-    form += ngs.InnerProduct(stress, ngs.Sym(ngs.Grad(v))) * ngs.dx
-    return node_by_node(assembled(form))

@@ -45,6 +45,7 @@ class FiniteElementRotor:
     rigid_motions: int = 6
     elements: NgsolveElements | None = None
     carried_prestress: Prestress | None = None
+    mass_damping: sp.csr_array | None = None
 
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
@@ -58,8 +59,9 @@ class FiniteElementRotor:
             "point_masses": checks.instances(self.point_masses, "point_masses", PointMass),
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
         }
-        if self.damping is not None:
-            checked["damping"] = matrices.as_matrix("damping matrix", self.damping, len(nodes))
+        for name, label in (("damping", "damping matrix"), ("mass_damping", "mass_damping")):
+            if getattr(self, name) is not None:
+                checked[name] = matrices.as_matrix(label, getattr(self, name), len(nodes))
         if self.stress_recovery is not None:
             checks.function(self.stress_recovery, "stress_recovery")
         if self.elements is not None:

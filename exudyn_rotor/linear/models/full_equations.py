@@ -15,6 +15,7 @@ from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supports import Support, check_interfaces
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -25,7 +26,7 @@ Kind = TypeVar("Kind", bound="FullEquations")
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
     basis = sp.eye_array(3 * rotor.node_count, format="csr")
-    matrices = (rotor.mass, rotor.stiffness, rotor.damping)
+    matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
     return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
 
 

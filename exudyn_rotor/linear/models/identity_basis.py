@@ -7,6 +7,7 @@ import numpy as np
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.fields import ModeShapes, ReducedInterface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.damping import dense_damping
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.stiffening import with_prestress
@@ -37,9 +38,7 @@ def as_reduced(rotor: SolidRotor) -> ReducedRotor:
 
 def _invariants(rotor: SolidRotor) -> Invariants:
     """Return the dense invariants about the centre of mass, with a carried prestress."""
-    matrices = [
-        None if X is None else X.toarray() for X in (rotor.mass, rotor.stiffness, rotor.damping)
-    ]
+    matrices = rotor.mass.toarray(), rotor.stiffness.toarray(), dense_damping(rotor)
     arms, identity = rotor.nodes - rotor.center_of_mass, np.eye(3 * rotor.node_count)
     invariants = Invariants.of(arms, *matrices, identity, rotor.axis.direction)
     carried = rotor.carried_prestress
