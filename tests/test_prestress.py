@@ -224,12 +224,14 @@ def test_stress_in_equilibrium_gives_no_warning(beam):
 @pytest.mark.parametrize("shape", [(5, 6), (6,), None])
 def test_stress_of_another_mesh_is_refused(beam, shape):
     shape = shape or (beam.node_count, 3)
-    with pytest.raises(ValueError, match="stress: the shape must be"):
+    with pytest.raises(
+        ValueError, match=r"stress: needs finite numbers \[Pa\] of shape \(132, 6\), got"
+    ):
         beam.prestress(stress=np.zeros(shape))
 
 
 def test_stress_must_be_finite(beam):
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="stress: needs finite numbers"):
         beam.prestress(stress=np.full((beam.node_count, 6), np.nan))
 
 
@@ -250,10 +252,13 @@ def test_yielding_is_reported_with_its_place(disc):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"yield_stress": -1.0}, "yield_stress: must be a positive number"),
-        ({"yield_stress": 1e8, "speed": np.inf}, "speed: must be a positive number"),
+        ({"yield_stress": -1.0}, r"yield_stress: needs a finite number \[Pa\] > 0, got -1.0"),
+        (
+            {"yield_stress": 1e8, "speed": np.inf},
+            r"speed: needs a finite number \[rad/s\] > 0, got inf",
+        ),
         ({"speed": 100.0}, "give yield_stress="),
-        ({"clamped": ["nose"]}, "interfaces .'nose'. are unknown"),
+        ({"clamped": ["nose"]}, "clamped: 'nose' is unknown; there are: 'left', 'right'"),
     ],
 )
 def test_impossible_arguments_are_refused(beam, given, message):
@@ -331,7 +336,7 @@ def test_matrix_in_another_unit_is_refused(disc):
 def test_prestress_of_another_mesh_or_kind_is_refused(disc, beam):
     with pytest.raises(ValueError, match="another mesh"):
         beam.with_prestress(disc.prestress())
-    with pytest.raises(TypeError, match="expected a Prestress, got int"):
+    with pytest.raises(TypeError, match=r"prestress: needs Prestress, got 1; rotor\.prestress\(\)"):
         beam.with_prestress(1)
     carrying = disc.with_prestress(disc.prestress())
     for change in (
