@@ -9,7 +9,14 @@ from exudyn.itemInterface import SensorUserFunction
 from models import disc_rotor, two_masses
 from scipy.integrate import simpson
 
-from exudyn_rotor import Motion, PrescribedMotion, SolidRotor, SpinAxis, add_rotor
+from exudyn_rotor import (
+    ConstantSpeed,
+    Motion,
+    PrescribedMotion,
+    SolidRotor,
+    SpinAxis,
+    add_rotor,
+)
 from exudyn_rotor.theory.stiffening import stiffening
 
 SOLVERS = exu.DynamicSolverType
@@ -134,11 +141,12 @@ def test_constant_speed_is_exact_over_many_turns(reduced, locking):
 
 
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
-@pytest.mark.parametrize("speed", [0.0, 200.0])
-def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, locking, speed):
+@pytest.mark.parametrize(("speed", "start"), [(0.0, 0.3), (200.0, 0.0), (200.0, -0.2)])
+def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, locking, speed, start):
     """Without translations, on springs equal in all directions, a run from there stays there."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, spin=speed, translation="none", locking=locking)
+    spin = ConstantSpeed(speed, start)
+    body = add_rotor(mbs, reduced, spin=spin, translation="none", locking=locking)
     ground = mbs.CreateGround()
     for name, interface in reduced.interfaces.items():
         mbs.CreateCartesianSpringDamper(
@@ -155,7 +163,7 @@ def test_static_solution_is_the_steady_state_in_the_rotating_frame(reduced, lock
     mbs.SolveStatic(run, updateInitialValues=True)
     # θ is that of the load time, 1 s, but for the compliance of the hold
     angle = mbs.GetNodeOutput(body.nodes["rigid"], kinds.Coordinates)[5]
-    assert angle == pytest.approx(speed, abs=1e-4)
+    assert angle == pytest.approx(start + speed, abs=1e-4)
     assert mbs.GetSensorValues(drive) == pytest.approx(-TORQUE, rel=1e-6)
     modes = mbs.GetNodeOutput(body.nodes["modes"], kinds.Coordinates)
     sag = mbs.GetMarkerOutput(body.marker("left"), kinds.Displacement)

@@ -14,7 +14,7 @@ from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceRe
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.results import Result, load_result, numbers, storable, words
-from exudyn_rotor.storage import write_arrays
+from exudyn_rotor.storage import read_arrays, write_arrays
 
 
 @storable
@@ -78,6 +78,16 @@ def test_every_kind_of_field_comes_back(tmp_path):
     assert back.absent is None
     everything().save(tmp_path / "empty.npz")
     assert Everything.load(tmp_path / "empty.npz").names == ()
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_arrays_come_back_from_either_memory_order(tmp_path, order):
+    """Columns of modes are stored one after the other by some solvers, rows by others."""
+    table = np.array(np.arange(24.0).reshape(2, 3, 4), order=order)
+    write_arrays(tmp_path / "table.npz", "test", {"table": table, "slice": table[:, ::2]})
+    found = read_arrays(tmp_path / "table.npz", "test")
+    assert np.array_equal(found["table"], table)
+    assert np.array_equal(found["slice"], table[:, ::2])
 
 
 @pytest.mark.parametrize("name", ["ellipses", "shaken"])

@@ -1,0 +1,125 @@
+"""Advice before a run and checks after it."""
+
+from mutations.mutation import mutations
+
+ADVICE = [
+    *mutations(
+        "advice/measures.py",
+        "test_measures.py",
+        (
+            "gyroscopic term of the kinetic energy reversed",
+            "kinetic += omega * np",
+            "kinetic -= omega * np",
+        ),
+        (
+            "centrifugal term of the kinetic energy doubled",
+            "kinetic += 0.5 * omega**2",
+            "kinetic += omega**2",
+        ),
+        (
+            "turned into space the wrong way",
+            "+ np.sin(angle)[:, None] * np.cross(e, values)",
+            "- np.sin(angle)[:, None] * np.cross(e, values)",
+        ),
+        ("Coriolis forces halved in the divergence", "2.0 * speed * G, 1e-6", "speed * G, 1e-6"),
+        (
+            "left-out stiffness as a whole change, not a half",
+            "float(0.25 * np.abs(work)",
+            "float(0.5 * np.abs(work)",
+        ),
+        (
+            "velocity in space without the spin",
+            "turned = rate + speed[:, None] * np.hstack",
+            "turned = rate + 0.0 * speed[:, None] * np.hstack",
+        ),
+    ),
+    *mutations(
+        "advice/measures.py",
+        "test_run_check.py::test_strain_is_that_of_the_static_stretch",
+        (
+            "strain grows with the speed",
+            "return float(self.fastest**2 * growth / inv.Theta)",
+            "return float(self.fastest * growth / inv.Theta)",
+        ),
+    ),
+    *mutations(
+        "advice/measures.py",
+        "test_run_check.py::test_unstable_step_of_an_explicit_solver_is_found",
+        (
+            "frequencies of an explicit step without the spin",
+            ".max()) + self.fastest",
+            ".max()) + 0.0 * self.fastest",
+        ),
+    ),
+    *mutations(
+        "advice/lost.py",
+        "test_measures.py::test_axial_force_on_a_rotor_off_its_frame_is_felt "
+        "test_run_check.py::test_loads_that_the_frame_does_not_take_are_found",
+        (
+            "lever with the wrong sign",
+            "lost - (lever - e * (e @ lever))",
+            "lost + (lever - e * (e @ lever))",
+        ),
+        (
+            "moments that tilt not compared with the modes'",
+            "missing = moment - felt",
+            "missing = 0.0 * (moment - felt)",
+        ),
+    ),
+    *mutations(
+        "advice/levels.py",
+        "test_advice_linear.py::test_change_by_the_full_level_without_supports",
+        (
+            "whole change for half of it",
+            "float(np.max(0.5 * speed**2 * np.abs",
+            "float(np.max(2.0 * speed**2 * np.abs",
+        ),
+    ),
+    *mutations(
+        "advice/candidate.py",
+        "test_advice_linear.py::test_resonances_are_those_without_damping_and_cross_coupling",
+        ("circulatory stiffness kept", "0.5 * (K + K.conj().T)", "K"),
+        ("gyroscopic forces halved", "G = 1j * D", "G = 0.5j * D"),
+    ),
+    *mutations(
+        "advice/modes.py",
+        "test_advice_linear.py::test_critical_speeds_of_a_rigid_rotor",
+        (
+            "slope over the square of the speed",
+            "(0.75 * request.high**2)",
+            "(1.0 * request.high**2)",
+        ),
+    ),
+    *mutations(
+        "advice/modes.py",
+        "test_advice.py::test_share_of_flexibility_is_that_of_the_modes",
+        (
+            "modes left out are doubled",
+            "change = rows @ (H[:, places] @ inner)",
+            "change = 2.0 * rows @ (H[:, places] @ inner)",
+        ),
+    ),
+    *mutations(
+        "advice/steps.py",
+        "test_advice.py::test_steady_orbit_at_the_proposed_step_meets_the_accuracy",
+        (
+            "frame that follows: forward and backward exchanged",
+            "0.5j * (forward - backward)",
+            "0.5j * (backward - forward)",
+        ),
+    ),
+    *mutations(
+        "advice/residual.py",
+        "test_attachment.py::test_estimate_after_a_run_is_what_the_springs_would_bend",
+        (
+            "flexibility with the frequency, not its square",
+            "scaled = motion[:, flexible] / rotor.frequencies[flexible]",
+            "scaled = motion[:, flexible] / np.sqrt(rotor.frequencies[flexible])",
+        ),
+        (
+            "force on the frame left out",
+            "np.concatenate([felt, push / np.sqrt(mass)])",
+            "np.concatenate([felt, 0.0 * push])",
+        ),
+    ),
+]

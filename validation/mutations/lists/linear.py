@@ -1,0 +1,152 @@
+"""Linear analyses: models, periodic systems, modes, responses, stability."""
+
+from mutations.mutation import mutations
+
+LINEAR = [
+    *mutations(
+        "linear/models/rotor_on_supports.py",
+        "test_campbell_frames.py",
+        (
+            "Coriolis forces left out",
+            "inv.D + self.terms.damping(speed)",
+            "inv.D + self.terms.damping(0.0)",
+        ),
+        (
+            "centrifugal stiffness grows with the speed",
+            "K = {0: inv.K + speed**2 * self._centrifugal}",
+            "K = {0: inv.K + speed * self._centrifugal}",
+        ),
+    ),
+    *mutations(
+        "linear/models/rotor_on_supports.py",
+        "test_eccentric.py",
+        (
+            "steady forces of the supports forgotten",
+            "return float(sum(f @ bend for",
+            "return 0.0 * float(sum(f @ bend for",
+        ),
+        (
+            "spin displaces the supports",
+            "motion + np.outer(self.spin.shifts[index]",
+            "motion + 0.0 * np.outer(self.spin.shifts[index]",
+        ),
+    ),
+    *mutations(
+        "linear/models/supports.py",
+        "test_stability.py::test_internal_damping_sets_in_at_the_closed_form_speed "
+        "test_stability.py::test_a_symmetric_rotor_does_not_depend_on_the_frame",
+        (
+            "circulatory part of a damper reversed",
+            "carried = stiffness + speed * damping",
+            "carried = stiffness - speed * damping",
+        ),
+    ),
+    *mutations(
+        "linear/models/full_equations.py",
+        "test_full_stiffening.py::test_full_equations_hold_the_same_terms test_campbell.py "
+        "test_full_response.py",
+        (
+            "Coriolis forces halved in the full model",
+            "inv.D @ X + 2.0 * speed * (inv.G @ X)",
+            "inv.D @ X + speed * (inv.G @ X)",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/hill.py",
+        "test_stability.py",
+        ("rate of a harmonic once", "D + 2.0 * M * rate, K", "D + M * rate, K"),
+        ("blocks transposed", "terms.get(int(n - m))", "terms.get(int(m - n))"),
+        (
+            "harmonics left out answer in phase",
+            "answer = -np.linalg.solve(own",
+            "answer = np.linalg.solve(own",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/fundamental.py",
+        "test_stability.py::test_magnus_steps_are_of_sixth_order",
+        ("commutator with the wrong sign", "- a3 + c1, a2 + c2", "- a3 - c1, a2 + c2"),
+        ("second commutator with the wrong sign", "c2 = -_commutator(", "c2 = _commutator("),
+    ),
+    *mutations(
+        "linear/periodic/rotating_axes.py",
+        "test_response.py test_stability.py",
+        (
+            "support seen from the rotor the wrong way",
+            "samples.append(R.T @ matrix @ R)",
+            "samples.append(R @ matrix @ R.T)",
+        ),
+        ("loads turn against the rotor", "turned = {-n: R @ vector", "turned = {n: R @ vector"),
+    ),
+    *mutations(
+        "linear/periodic/harmonic_balance.py",
+        "test_response.py",
+        ("damping with the wrong sign", "A = K + 1j * self.rate * D", "A = K - 1j * self.rate * D"),
+    ),
+    *mutations(
+        "linear/modal/whirl.py",
+        "test_campbell_frames.py",
+        (
+            "forward and backward exchanged",
+            "seen = nu + (orders[:, None, None] + n) * speed",
+            "seen = nu + (orders[:, None, None] - n) * speed",
+        ),
+        (
+            "waves of the other sense",
+            "np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)",
+            "np.sqrt(0.5) * (u1 - 1j * u2), np.sqrt(0.5) * (u1 + 1j * u2)",
+        ),
+    ),
+    *mutations(
+        "linear/modal/resonance.py",
+        "test_critical.py",
+        (
+            "synchronous frequency of the other sense",
+            "np.array([order - n])",
+            "np.array([order + n])",
+        ),
+        (
+            "damping for half the rate",
+            "rate * system.D.get(n, 0.0)",
+            "0.5 * rate * system.D.get(n, 0.0)",
+        ),
+        ("free motions do not follow by inertia", "basis = W - R @", "basis = W - 0.0 * R @"),
+    ),
+    *mutations(
+        "linear/response/harmonic_loads.py",
+        "test_response.py",
+        (
+            "force pulls at the rotation",
+            "wrench = np.concatenate([self.force, self.moment])",
+            "wrench = np.concatenate([self.moment, self.force])",
+        ),
+    ),
+    *mutations(
+        "linear/response/unbalance.py",
+        "test_response.py",
+        (
+            "angle of an unbalance against the spin",
+            "np.sin(self.angle), 0.0]",
+            "-np.sin(self.angle), 0.0]",
+        ),
+        (
+            "grade in metres per second",
+            "return 1e-3 * grade * mass / speed",
+            "return grade * mass / speed",
+        ),
+    ),
+    *mutations(
+        "linear/stability/stability.py",
+        "test_stability.py",
+        (
+            "least growth for the largest",
+            "return float(np.max(values.real - margin))",
+            "return float(np.min(values.real - margin))",
+        ),
+        (
+            "ranges in the wrong order of their ends",
+            "edges = [values[0]] if unstable[0] else []",
+            "edges = [values[0]] if not unstable[0] else []",
+        ),
+    ),
+]

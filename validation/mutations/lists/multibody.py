@@ -1,0 +1,107 @@
+"""The rotor in a scene: frame, locks, equations, markers, sensors, records."""
+
+from mutations.mutation import mutations
+
+_SCENES = "test_body_scenes.py::test_directions_of_mesh_and_scene_change_nothing_else"
+_MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_loads"
+
+MULTIBODY = [
+    *mutations(
+        "multibody/frame.py",
+        _SCENES,
+        (
+            "origin of the mesh not turned",
+            "position=mesh_position + orientation @ origin",
+            "position=mesh_position + origin",
+        ),
+        (
+            "mesh turned the wrong way into the frame",
+            "(np.asarray(mesh_points) - self.origin) @ self.B.T",
+            "(np.asarray(mesh_points) - self.origin) @ self.B",
+        ),
+        (
+            "modes turned the wrong way into the frame",
+            'np.einsum("ab,nbk->nak", self.B',
+            'np.einsum("ba,nbk->nak", self.B',
+        ),
+    ),
+    *mutations(
+        "multibody/equations.py",
+        f"test_body_solvers.py::test_solvers_agree {_MARKERS} {_SCENES}",
+        (
+            "damping left out of the Jacobian's native part",
+            "by_v += constant.damping",
+            "by_v -= constant.damping",
+        ),
+        (
+            "Exudyn's part counted twice",
+            "motion.forces(t, own, rate) - native",
+            "motion.forces(t, own, rate)",
+        ),
+        (
+            "constant matrices without locks",
+            "motion.mass_matrix(0.0, rest), layout.lock_mass),\n        **_native_part",
+            "motion.mass_matrix(0.0, rest), 0.0 * layout.lock_mass + 1.0),\n        **_native_part",
+        ),
+    ),
+    *mutations(
+        "multibody/locking.py",
+        "test_body_solvers.py::test_constraints_and_servo_give_the_same_prescribed_motion",
+        (
+            "servo without damping's lead",
+            "+ place.lock_damping[index] * motion.rate(t)",
+            "+ 0.0 * place.lock_damping[index] * motion.rate(t)",
+        ),
+    ),
+    *mutations(
+        "multibody/locking.py",
+        "test_body_solvers.py::test_static_solution_is_the_steady_state_in_the_rotating_frame",
+        (
+            "spin guide without its start",
+            "start, slope = stiffness * motion.angle,",
+            "start, slope = 0.0,",
+        ),
+    ),
+    *mutations(
+        "multibody/locking.py",
+        _SCENES,
+        ("plane constraint along an axis of the scene", "row[0, :3] = normal", "row[0, 2] = 1.0"),
+    ),
+    *mutations(
+        "multibody/marker_body.py",
+        _MARKERS,
+        (
+            "nodes of a marker turn the wrong way",
+            "motion[:3] + np.cross(motion[3:], arm, axisa=0, axisc=0)",
+            "motion[:3] - np.cross(motion[3:], arm, axisa=0, axisc=0)",
+        ),
+    ),
+    *mutations(
+        "multibody/marker_body.py",
+        f"test_body_native.py::test_gravity_lets_the_rotor_fall {_SCENES}",
+        (
+            "momentum of the modes in mesh axes",
+            "mPhitTPsi=frame.B @ invariants.S",
+            "mPhitTPsi=frame.B.T @ invariants.S",
+        ),
+    ),
+    *mutations(
+        "multibody/record.py",
+        "test_measures.py",
+        ("spin of the first translation's rate", "return q_t[:, SPIN if", "return q_t[:, 0 if"),
+    ),
+    *mutations(
+        "multibody/sensors.py",
+        "test_body_solvers.py::test_work_of_the_drive_is_change_of_energy_plus_losses",
+        (
+            "external moment added to the drive",
+            "own - external(t, configuration)",
+            "own + external(t, configuration)",
+        ),
+        (
+            "weight on the deflection forgotten",
+            "- _deflected_weight(body, t, q[modes])",
+            "- 0.0 * _deflected_weight(body, t, q[modes])",
+        ),
+    ),
+]

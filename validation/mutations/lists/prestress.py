@@ -1,0 +1,66 @@
+"""Static solution at speed, hubs, stress at rest."""
+
+from mutations.mutation import mutations
+
+_TESTS = "test_prestress.py test_prestress_checks.py test_prestress_import.py"
+
+PRESTRESS = [
+    *mutations(
+        "prestress/static_solution.py",
+        "test_prestress.py",
+        (
+            "centrifugal load along the axis, too",
+            "rotor.axis.radial(rotor.nodes).ravel()",
+            "(rotor.nodes - rotor.axis.point).ravel()",
+        ),
+        (
+            "initial displacement always in the matrix",
+            "if initial_displacement:",
+            "if not initial_displacement:",
+        ),
+        ("springback added to the stress at rest", "return stress - part", "return stress + part"),
+    ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_rotating_blade.py::test_euler_stress_of_a_blade_is_that_of_its_load",
+        ("Euler load forwards", "return -rotor.mass @ np.cross(", "return rotor.mass @ np.cross("),
+    ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_prestress_checks.py",
+        ("hub: trace term dropped", "own = np.trace(moments) * np.eye(3) - 0.5", "own = -0.5"),
+        (
+            "hub: mixed term with the other sign",
+            "@ turn - mixed - mixed.T",
+            "@ turn + mixed + mixed.T",
+        ),
+        (
+            "hub: reactions of the wrong sign",
+            "forces = self.stiffness @ displacement - load",
+            "forces = load - self.stiffness @ displacement",
+        ),
+        (
+            "hub: net force works on translations",
+            "couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift",
+            "couple = couple + sp.csr_array(skew(forces.sum(axis=0))) @ shift",
+        ),
+    ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_prestress_import.py",
+        (
+            "stress at rest plays no part in the load by rotation",
+            "self.supported.stiffness + mask @ constant @ mask",
+            "self.supported.stiffness + 0.0 * mask @ constant @ mask",
+        ),
+    ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_full_stiffening.py test_stiffening.py",
+        (
+            "moments of the relief dropped",
+            "inertia = turns.T @ (rotor.mass @ turns)",
+            "inertia = 2.0 * turns.T @ (rotor.mass @ turns)",
+        ),
+    ),
+]

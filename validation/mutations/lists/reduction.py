@@ -1,0 +1,86 @@
+"""Component modes, orthonormal bases, selection for a formulation, truncation."""
+
+from mutations.mutation import mutations
+
+REDUCTION = [
+    *mutations(
+        "reduction/spinning.py",
+        "test_rotating_blade.py::test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs",
+        (
+            "modes at rest for modes at speed",
+            "rotor.stiffness + terms.stiffness(speed)",
+            "rotor.stiffness + terms.stiffness(0.0)",
+        ),
+        (
+            "Coriolis force of the other sense",
+            "forces = terms.G @ modes",
+            "forces = terms.G.T @ modes",
+        ),
+    ),
+    *mutations(
+        "reduction/basis.py",
+        "test_reduction.py",
+        ("one pass of Gram and Schmidt", "for _ in range(2):", "for _ in range(1):"),
+        (
+            "rotations about the mesh origin",
+            "turns = rotations(nodes, center) @",
+            "turns = rotations(nodes, 0.0 * center) @",
+        ),
+        (
+            "modes not orthogonal to the rigid motions",
+            "_gram_schmidt(columns, modes.matrix",
+            "_gram_schmidt(columns[:, :0], modes.matrix",
+        ),
+    ),
+    *mutations(
+        "reduction/selection.py",
+        "test_reduction.py",
+        (
+            "origin in the centre of mass where the axis is fixed",
+            "origin = reduced.axis.project(reduced.center_of_mass)",
+            "origin = reduced.center_of_mass",
+        ),
+        (
+            "modes not orthogonal to the spin that is held",
+            "np.outer(held, overlap[touched])",
+            "0.0 * np.outer(held, overlap[touched])",
+        ),
+        (
+            "spin about the centre of mass",
+            "reduced.invariants.moved(-arm).g",
+            "reduced.invariants.g",
+        ),
+    ),
+    *mutations(
+        "reduction/attachment.py",
+        "test_attachment.py",
+        (
+            "moments alone load the interfaces",
+            "one.mean_motion(rotor.node_count).T.toarray()",
+            "one.mean_motion(rotor.node_count)[3:].T.toarray()",
+        ),
+    ),
+    *mutations(
+        "reduction/craig_bampton.py",
+        "test_component_modes.py",
+        (
+            "static modes pushed the wrong way",
+            "static[inner] = -factor.solve",
+            "static[inner] = factor.solve",
+        ),
+        (
+            "interfaces turn about their centre",
+            "rotations(interface.positions, interface.reference)",
+            "rotations(interface.positions, 0.0 * interface.reference)",
+        ),
+    ),
+    *mutations(
+        "reduction/fields.py",
+        "test_full_stiffening.py::test_static_fields_grow_with_the_square_of_the_speed",
+        (
+            "static stress grows with the speed",
+            "by_spin = speed**2 * self.stress",
+            "by_spin = speed * self.stress",
+        ),
+    ),
+]

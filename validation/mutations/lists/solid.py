@@ -1,0 +1,78 @@
+"""Finite-element model: stress, geometric stiffness, interfaces, masses, rigid motions."""
+
+from mutations.mutation import mutations
+
+SOLID = [
+    *mutations(
+        "solid/tensor.py",
+        "test_strength.py::test_scalars_of_a_stress_with_all_six_components",
+        (
+            "yz and xz swapped in the tensor",
+            "((0, 5, 4), (5, 1, 3), (4, 3, 2))",
+            "((0, 5, 3), (5, 1, 4), (3, 4, 2))",
+        ),
+        ("shear once in von Mises", "3.0 * (yz**2", "1.5 * (yz**2"),
+    ),
+    *mutations(
+        "solid/stress_recovery.py",
+        "test_solid.py::test_stress_of_linear_displacements_is_hookes_law",
+        ("shear strain halved", "shear = [second * (", "shear = [0.5 * second * ("),
+        (
+            "yz and xz swapped",
+            "pairs = ((1, 2), (0, 2), (0, 1))",
+            "pairs = ((0, 2), (1, 2), (0, 1))",
+        ),
+        (
+            "nodes get the sum of their elements",
+            "entries = (1.0 / counts[where]",
+            "entries = (1.0 + 0.0 * counts[where]",
+        ),
+    ),
+    *mutations(
+        "solid/elements.py",
+        "test_prestress.py",
+        (
+            "normal stress without 2μ",
+            "return 2 * second * strain + first",
+            "return second * strain + first",
+        ),
+        (
+            "gradient of the static displacement transposed",
+            "ngs.Sym(static.trans * v)",
+            "ngs.Sym(static * v)",
+        ),
+    ),
+    *mutations(
+        "solid/interface.py",
+        "test_solid.py",
+        (
+            "mean motion not referred to the reference point",
+            "shift = shift - skew(self.reference - self.center) @ turn",
+            "shift = shift + skew(self.reference - self.center) @ turn",
+        ),
+        (
+            "unequal areas taken as equal",
+            "center = checks.read_only(weights @ positions)",
+            "center = checks.read_only(np.mean(positions, axis=0))",
+        ),
+    ),
+    *mutations(
+        "solid/point_mass.py",
+        "test_solid.py",
+        ("point mass in one direction only", "np.full(3, mass)", "mass * np.eye(3)[0]"),
+        (
+            "more mass taken away than there is",
+            "available = 1.0 / spsolve(scalar, unit)[node]",
+            "available = 2.0 / spsolve(scalar, unit)[node]",
+        ),
+    ),
+    *mutations(
+        "solid/rigid.py",
+        "test_solid.py",
+        (
+            "rotations about the mesh origin, unscaled",
+            "rotations(nodes, center) / radius",
+            "rotations(nodes, 0.0 * center)[:, :2] / radius",
+        ),
+    ),
+]

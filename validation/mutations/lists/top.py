@@ -1,0 +1,45 @@
+"""Modules beside the folders: storage, checks, pictures, parameter studies."""
+
+from mutations.mutation import mutations
+
+TOP = [
+    *mutations(
+        "storage.py",
+        "test_results.py::test_arrays_come_back_from_either_memory_order "
+        "test_files.py::test_no_replaced_entry_loads",
+        ("arrays in Fortran's order read as C's", 'order="F" if fortran else "C"', 'order="C"'),
+        (
+            "checksum without the values",
+            "result.update(np.ascontiguousarray(value)",
+            "result.copy().update(np.ascontiguousarray(value)",
+        ),
+    ),
+    *mutations(
+        "plotting.py",
+        "test_strength.py",
+        (
+            "body drawn from right to left",
+            "(20.0, -75.0, 0.0), (20.0, 15.0, 0.0)",
+            "(20.0, 105.0, 0.0), (20.0, 195.0, 0.0)",
+        ),
+    ),
+    *mutations(
+        "sweep.py",
+        "test_executors.py",
+        (
+            "last value of a study left out",
+            "range(0, len(values), length)",
+            "range(0, len(values) - 1, length)",
+        ),
+    ),
+    *mutations(
+        "checks.py",
+        "test_checks.py",
+        ("mirror taken for a rotation", " or np.linalg.det(result) < 0.0", ""),
+        (
+            "skew-symmetric taken for symmetric",
+            "np.abs(result - sign * result.T)",
+            "np.abs(result + sign * result.T)",
+        ),
+    ),
+]
