@@ -8,7 +8,8 @@ import numpy as np
 
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
-from exudyn_rotor.reduction.basis import RIGID, rigid_columns
+from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind, rigid_names
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 
@@ -26,10 +27,10 @@ def free_motions_of_reduced(
     displaces no support, see :class:`Spin`.
     """
     # the rigid columns of the basis have unit mass
-    count = len(rotor.rigid)
+    kinds = rotor.rigid_kinds
     turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
-    motions = [turn @ rotor.interfaces[s.interface].motion[:, :count] for s in supports]
-    return _named(rotor.rigid, _stiffness(supports, motions, rotor.rigid, decoupled))
+    motions = [turn @ rotor.interfaces[s.interface].motion[:, : len(kinds)] for s in supports]
+    return _named(kinds, _stiffness(supports, motions, kinds, decoupled))
 
 
 def free_motions_of_solid(
@@ -46,15 +47,16 @@ def free_motions_of_solid(
         turn @ (rotor.interfaces[s.interface].mean_motion(rotor.node_count) @ columns)
         for s in supports
     ]
-    names = tuple(name for name, moves in zip(RIGID, moving, strict=True) if moves)
-    K = _stiffness(supports, motions, names, decoupled)
+    kinds = tuple(kind for kind, moves in zip(RIGID_KINDS, moving, strict=True) if moves)
+    K = _stiffness(supports, motions, kinds, decoupled)
     if rotor.grounded:
         K = K + columns.T @ (rotor.stiffness @ columns)
-    return _named(names, K)
+    return _named(kinds, K)
 
 
-def _named(names: tuple[str, ...], K: np.ndarray) -> tuple[str, ...]:
+def _named(kinds: tuple[ModeKind, ...], K: np.ndarray) -> tuple[str, ...]:
     """Name the motions that the stiffness K per unit mass leaves free."""
+    names = rigid_names(kinds)
     values, vectors = np.linalg.eigh(0.5 * (K + K.T))
     free = vectors[:, values <= _HELD * max(values.max(initial=0.0), 0.0)]
     share = np.sum(free**2, axis=1)
@@ -67,13 +69,13 @@ def _named(names: tuple[str, ...], K: np.ndarray) -> tuple[str, ...]:
 def _stiffness(
     supports: Sequence[Support],
     motions: Sequence[np.ndarray],
-    names: tuple[str, ...],
+    kinds: tuple[ModeKind, ...],
     decoupled: bool,
 ) -> np.ndarray:
-    if decoupled and "spin" in names:  # else it moves nothing but rounding
+    if decoupled and ModeKind.SPIN in kinds:  # else it moves nothing but rounding
         for U in motions:
-            U[:3, names.index("spin")] = 0.0
+            U[:3, kinds.index(ModeKind.SPIN)] = 0.0
     parts = (
         U.T @ support.matrices(0.0)[0] @ U for support, U in zip(supports, motions, strict=True)
     )
-    return sum(parts, np.zeros((len(names), len(names))))
+    return sum(parts, np.zeros((len(kinds), len(kinds))))

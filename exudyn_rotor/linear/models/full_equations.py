@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -19,7 +20,14 @@ from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
-from exudyn_rotor.theory.stiffening import LEVELS, NO_PRESTRESS, relief_factors, tilt_factors
+from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import (
+    LEVELS,
+    NO_PRESTRESS,
+    Stiffening,
+    relief_factors,
+    tilt_factors,
+)
 
 Kind = TypeVar("Kind", bound="FullEquations")
 
@@ -123,6 +131,14 @@ class FullEquations:
         warn_of_eccentricity(self.invariants, spin)
         return replace(self, spin=spin)
 
+    @cached_property
+    def _per_speed(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Coriolis matrix per Ω, and stiffness per Ω² without that of :attr:`tilt`."""
+        none = sp.csr_array(self.invariants.C.shape)
+        K2 = none if self.invariants.K2 is None else self.invariants.K2
+        terms = SpinTerms.of(self.invariants, Stiffening(K2, none))
+        return terms.damping(1.0), terms.stiffness(1.0)
+
     def residual(
         self,
         speed: float,
@@ -137,13 +153,13 @@ class FullEquations:
         is applied to `strained`, the stack itself by default; without free rigid motions in it,
         rounding does not make forces of them. `torsion` is of :meth:`LinearRotor.steady_torsion`.
         """
-        inv, left = self.invariants, {}
+        inv, coriolis, left = self.invariants, self._per_speed[0], {}
         strained = stack if strained is None else strained
         for n, X in stack.items():
             rate = values + 1j * n * speed
             left[n] = (
                 inv.M @ (X * rate**2)
-                + (inv.D @ X + 2.0 * speed * (inv.G @ X)) * rate
+                + (inv.D @ X + speed * (coriolis @ X)) * rate
                 + inv.K @ strained[n]
                 + speed**2 * self._centrifugal(X)
             )
@@ -170,11 +186,10 @@ class FullEquations:
 
     def _centrifugal(self, X: np.ndarray) -> np.ndarray:
         """Return ``(K2 − C) X``, shape (3n, k)."""
-        V, W = self.tilt
+        (V, W), matrix = self.tilt, self._per_speed[1]
 
         def apply(Y: np.ndarray) -> np.ndarray:
-            rigid = V.T @ (W @ (V @ Y)) - self.invariants.C @ Y
-            return rigid if self.invariants.K2 is None else rigid + self.invariants.K2 @ Y
+            return matrix @ Y + V.T @ (W @ (V @ Y))
 
         return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
 

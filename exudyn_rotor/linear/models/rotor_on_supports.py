@@ -23,6 +23,7 @@ from exudyn_rotor.linear.models.supports import Support, check_interfaces
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
@@ -79,8 +80,8 @@ class LinearRotor:
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
         terms = SpinTerms.of(invariants, second_order(invariants, stiffening))
         linear = cls(rotor, tuple(supports), invariants, terms)
-        if "spin" in rotor.rigid:
-            spin = (np.eye(rotor.size)[rotor.rigid.index("spin")],) * 2
+        if ModeKind.SPIN in rotor.kinds:
+            spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
         if spin is not None:
             linear = replace(linear, spin=linear._on_supports(*spin))
         free = free_motions_of_reduced(rotor, supports, linear.free_spin is not None)

@@ -27,7 +27,8 @@ import scipy.sparse as sp
 
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
-from exudyn_rotor.reduction.basis import RIGID, rigid_columns
+from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
@@ -51,9 +52,9 @@ def seeds(rotor: SolidRotor) -> tuple[np.ndarray, np.ndarray]:
     rigid = rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
     lengths = np.sqrt(np.einsum("ck,ck->k", rigid, rotor.mass @ rigid))
     rigid = rigid / np.maximum(lengths, 1e-300)
-    turning = np.array([name == "spin" or name.startswith("tilt") for name in RIGID])
+    spin = np.array([kind is ModeKind.SPIN for kind in RIGID_KINDS])
+    turning = spin | np.array([kind.is_tilt for kind in RIGID_KINDS])
     moves = lengths > _NO_MOTION * np.where(turning, lengths[turning].max(), lengths.max())
-    spin = np.array([name == "spin" for name in RIGID])
     return rigid[:, spin & moves], rigid[:, ~spin & moves]
 
 
