@@ -60,6 +60,26 @@ class SolidRotor(FiniteElementRotor):
     mass_damping : scipy.sparse.csr_array or None
         Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
         by :meth:`with_damping`.
+
+    Examples
+    --------
+    Three masses on a line along z, held by springs to the ground across it:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor
+    >>> springs = np.kron([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]], np.eye(3))
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(9), 1e6 * springs, [[0, 0, 0], [0, 0, 0.5], [0, 0, 1]], axis="z",
+    ...     interfaces={"disc": [1]},
+    ... )
+    >>> print(rotor.add_point_mass([0, 0, 0.9], 0.5).summary())
+    nodes            3
+    mass             3.5 kg (lumped mass matrix)
+    centre of mass   [0, 0, 0.57143] m
+    spin axis        direction [0, 0, 1], point [0, 0, 0] m
+    rigid motions    1 of 6 free (grounded)
+    interface        disc: 1 nodes, centre [0, 0, 0.5] m, on the axis
+    point mass       0.5 kg at [0, 0, 0.9] m, on node 2, 0.1 m away
     """
 
     @classmethod
@@ -105,6 +125,19 @@ class SolidRotor(FiniteElementRotor):
         ValueError
             If the mesh is no tetrahedral solid or falls into unconnected parts, a material or
             face is missing or impossible, or the units cannot be SI.
+
+        Examples
+        --------
+        >>> import ngsolve
+        >>> from netgen.occ import Box, OCCGeometry, Z
+        >>> from exudyn_rotor import SolidRotor
+        >>> bar = Box((-0.02, -0.02, 0), (0.02, 0.02, 0.2))
+        >>> bar.faces.Min(Z).name = "left"
+        >>> mesh = ngsolve.Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.1))
+        >>> steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
+        >>> rotor = SolidRotor.from_ngsolve(mesh, steel, "z")
+        >>> round(rotor.total_mass, 6), list(rotor.interfaces)
+        (2.512, ['left'])
         """
         axis = SpinAxis.of(axis)
         checks.flag(allow_parts, "allow_parts")

@@ -45,6 +45,22 @@ class Prestress:
         Centrifugal load per ω² that it was computed for [N s²]; None for an imported matrix.
     hub : ndarray of int or None
         Nodes that a rigid hub held in the static solution.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an entry is of another kind, its shape does not fit, or a matrix is not symmetric.
+
+    Examples
+    --------
+    A bar along x between two masses of 1 kg carries ``ω² · 1 kg · 0.5 m``, which stiffens it
+    across by that over its length of 1 m:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Prestress
+    >>> across = np.kron([[0.5, -0.5], [-0.5, 0.5]], np.eye(3))
+    >>> Prestress.from_matrix(across, [[-0.5, 0, 0], [0.5, 0, 0]])
+    Prestress(2 nodes)
     """
 
     matrix: sp.csr_array

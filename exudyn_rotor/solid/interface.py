@@ -12,7 +12,7 @@ from exudyn_rotor.solid import matrices
 from exudyn_rotor.theory.nodal import skew
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Interface:
     """A named node set with weights.
 
@@ -29,6 +29,21 @@ class Interface:
     reference : ndarray, shape (3,), optional
         The point whose motion is reported. By default the weighted centre; move it onto the spin
         axis with :meth:`centered_on` so that an uneven mesh does not make a false eccentricity.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of another kind, shapes do not fit, a node is listed twice, or a weight
+        is negative.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Interface
+    >>> seat = Interface("seat", [4, 7], [1.0, 3.0], [[0.02, 0, 0], [-0.02, 0, 0]])
+    >>> seat
+    Interface('seat', 2 nodes, centre [-0.01, 0, 0] m)
+    >>> seat.centered_on([0, 0, 0]).mean_motion(node_count=10).shape
+    (6, 30)
     """
 
     name: str
@@ -57,6 +72,10 @@ class Interface:
             "reference": reference,
         }.items():
             object.__setattr__(self, key, value)
+
+    def __repr__(self) -> str:
+        center = ", ".join(f"{value:.5g}" for value in self.center)
+        return f"Interface({self.name!r}, {self.nodes.size} nodes, centre [{center}] m)"
 
     @property
     def radius(self) -> float:

@@ -25,6 +25,15 @@ class PointMass:
         Added mass, negative where material was taken away [kg].
     distance : float
         How far the node lies from `position` [m].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor
+    >>> rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0.1, 0, 0]], "z")
+    >>> placed = rotor.add_point_mass([0.1, 0.02, 0], 0.005).point_masses[0]
+    >>> placed.node, placed.mass, placed.distance
+    (0, 0.005, 0.02)
     """
 
     position: np.ndarray
