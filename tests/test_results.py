@@ -1,13 +1,15 @@
 """Results are small, readable, stored without pickle, and drawn without a display."""
 
+import inspect
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from matplotlib import pyplot
 from point_rotors import ring_rotor
+from small_results import STORED
 
-from exudyn_rotor import plotting
+from exudyn_rotor import plotting, results
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
@@ -111,6 +113,31 @@ def test_repr_names_fields_and_shapes_in_one_line(ellipses):
     assert text.startswith("UnbalanceResponse(places=('mid', 'node 2'), orders=array(1,), motion=")
     assert "motion=array(101, 2, 1, 6)" in text
     assert len(text) < 200
+
+
+RESULTS = {name: kept for name, kept in STORED.items() if isinstance(kept, Result)}
+
+
+def test_every_result_of_the_package_is_stored():
+    package = {n for n, c in results._REGISTERED.items() if c.__module__.startswith("exudyn_rotor")}
+    assert set(RESULTS) == package
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_has_a_table_a_short_repr_and_a_picture(name):
+    result = RESULTS[name]
+    lines = result.table().splitlines()
+    assert len(lines) >= 2
+    assert max(map(len, lines)) <= 120
+    assert repr(result).startswith(f"{name}(")
+    assert len(repr(result)) < 400
+    if name == "CriticalSpeeds":  # their places in a Campbell diagram are its picture
+        return
+    assert inspect.signature(result.plot).parameters["ax"].default is None
+    drawn = result.plot(*((np.ones(2), 1.0) if name == "StressField" else ()))
+    for ax in np.ravel(drawn):  # a Bode diagram has two: size and phase
+        assert isinstance(ax, pyplot.Axes)
+        assert ax.figure is pyplot.gcf()
 
 
 def test_wrong_class_is_refused(ellipses, tmp_path):

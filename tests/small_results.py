@@ -1,0 +1,68 @@
+"""One small object of every class that can be saved, with everything that a file can hold."""
+
+from dataclasses import replace
+
+import numpy as np
+from point_rotors import SKEW_AXIS, random_rotor
+
+from exudyn_rotor import (
+    Campbell,
+    CriticalSpeedMap,
+    CriticalSpeeds,
+    HarmonicResponse,
+    ReducedRotor,
+    SpinAxis,
+    Stability,
+    StabilityMap,
+    StressField,
+    StressHistory,
+    UnbalanceResponse,
+)
+from exudyn_rotor.reduction.fields import Centrifugal
+
+RNG = np.random.default_rng(3)
+TRIANGLES = [[0, 1, 2], [1, 2, 3]]
+
+
+def rotor() -> ReducedRotor:
+    """Return a rotor with everything that a file can hold."""
+    made = random_rotor(
+        11, SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5]), interfaces={"left": [0, 1], "right": [4, 5]},
+        triangles=TRIANGLES,
+    ).reduce(3)  # fmt: skip
+    count, size = len(made.shapes.nodes), made.size
+    square = RNG.normal(size=(size, size))
+    return replace(
+        made,
+        invariants=replace(made.invariants, K2=square + square.T, B=square @ square.T),
+        shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
+        centrifugal=Centrifugal(
+            RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
+        ),
+        dropped=("column 7",),
+    )
+
+
+def results() -> list:
+    """Return one small result of every class."""
+    speeds, table = np.array([10.0, 20.0, 30.0]), RNG.uniform(1.0, 2.0, size=(3, 2))
+    codes = np.array([[0, 1], [1, 0], [2, 3]])
+    motion = RNG.normal(size=(3, 2, 1, 6)) + 1j
+    return [
+        Campbell(speeds, *[table] * 5, codes, codes, RNG.normal(size=(3, 4, 2)) + 0j,
+                 np.array([[0, 1], [1, 0], [0, 1]]), ("spin",)),
+        CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
+                       RNG.normal(size=(4, 3)) + 0j),
+        CriticalSpeedMap(speeds, table, codes, 1.0),
+        UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
+        HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
+        Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, 1e-9),
+        StabilityMap(speeds, speeds[:2], table, table > 1.5, ("k [N/m]", "speed [rad/s]")),
+        StressField(RNG.normal(size=(4, 3)), np.array(TRIANGLES), RNG.normal(size=(4, 6, 2)),
+                    RNG.normal(size=(4, 6)), True, np.zeros((4, 6))),
+        StressHistory(speeds, speeds, np.array([2, 0]), RNG.normal(size=(3, 2, 6)), np.ones(4),
+                      np.ones(4), RNG.normal(size=(4, 3)), np.array(TRIANGLES)),
+    ]  # fmt: skip
+
+
+STORED = {"ReducedRotor": rotor(), **{type(item).__name__: item for item in results()}}
