@@ -17,6 +17,7 @@ from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.stability.stability import unstable_ranges
 from exudyn_rotor.linear.stability.stability_map import stability_map
+from exudyn_rotor.reduction.mode_kind import ModeKind
 
 UPRIGHT, SIDEWAYS, ALONG = 6e6, 3e6, 1e7  # stiffness of a bearing [N/m]
 
@@ -44,7 +45,7 @@ def damped(speed: float, damping: float) -> tuple[LinearRotor, float]:
 speeds = np.linspace(440.0, 580.0, 57)
 isotropic = bearings(UPRIGHT, UPRIGHT, 0.0)
 found = unstable_ranges(reduced, speeds, supports=isotropic)
-keep = [i for i, name in enumerate(reduced.labels) if name != "spin"]
+keep = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
 at_rest, turning = (
     LinearRotor.of(reduced, isotropic).at(speed).K[0][np.ix_(keep, keep)] for speed in (0.0, 1.0)
 )

@@ -78,7 +78,7 @@ def test_kept_modes_leave_static_fields_whole(reduced):
 
 @pytest.mark.parametrize("indices", [[20], [-1], [1, 1], [0.5], [[1]], [True], "ab"])
 def test_bad_indices_are_refused(reduced, indices):
-    with pytest.raises(ValueError, match="keep_modes: "):
+    with pytest.raises((TypeError, ValueError), match="indices: "):
         keep_modes(reduced, indices)
 
 

@@ -18,9 +18,10 @@ from exudyn_rotor import (
     free_modes,
     select_modes,
 )
-from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, rigid_names
 from exudyn_rotor.theory.nodal import block_diagonal, rotations, translations
 
+RIGID = rigid_names(RIGID_KINDS)
 EXACT = 1e-12  # sums over six nodes with entries of order 1
 OFF_ORIGIN = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
 

@@ -18,7 +18,7 @@ from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.reduction.basis import RIGID
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -43,7 +43,6 @@ class Candidate:
         Of the flexible modes [rad/s].
     stiffening : str
         Level that `source` has.
-    rigid : tuple of str
     grounded : bool
     supported : bool
         Whether it is known what holds the rotor.
@@ -62,7 +61,6 @@ class Candidate:
     flexible: np.ndarray
     frequencies: np.ndarray
     stiffening: str
-    rigid: tuple[str, ...]
     grounded: bool
     supported: bool
     axial: bool
@@ -163,7 +161,6 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
         flexible=np.arange(first, reduced.size),
         frequencies=reduced.frequencies[first:],
         stiffening="tilt",
-        rigid=reduced.rigid,
         grounded=reduced.grounded,
         supported=known or reduced.grounded,
         axial=bool(axial),
@@ -184,13 +181,12 @@ def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")
     source = LinearScene.of(mbs, body, about="given")
-    inv, labels = body.motion.invariants, body.selection.labels
+    inv, kinds = body.motion.invariants, body.selection.kinds
     first = body.motion.formulation.translation_count
     # constraints may mix coordinates; those of the rotor's modes stay apart
     own = np.argmax(np.abs(source.N[first : first + inv.size]), axis=1)
-    rigid = tuple(name for name in labels if name in RIGID)
-    named = [name not in RIGID for name in labels]
-    flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & named)
+    elastic = [kind is ModeKind.ELASTIC for kind in kinds]
+    flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & elastic)
     return Candidate(
         source=source,
         invariants=inv,
@@ -198,8 +194,7 @@ def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
         flexible=flexible,
         frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
         stiffening=body.stiffening,
-        rigid=(*rigid, "spin") if body.formulation.has_spin else rigid,
-        grounded=not rigid,
+        grounded=body.selection.source.grounded,
         supported=True,
         axial=_scene_acts_along(source, body) if axial is None else bool(axial),
         interfaces=_named(interfaces, tuple(body.markers)),
@@ -225,11 +220,11 @@ def _scene_acts_along(source, body: RotorBody) -> bool:
     if abs(axis @ gravity) > 1e-9 * np.linalg.norm(gravity):
         return True
     count = body.motion.formulation.translation_count
-    names = body.selection.labels
+    kinds = body.selection.kinds
     if count == 3:
         row = 2
-    elif "translation along axis" in names:
-        row = count + names.index("translation along axis")
+    elif ModeKind.AXIAL in kinds:
+        row = count + kinds.index(ModeKind.AXIAL)
     else:
         return True
     row = int(np.argmax(np.abs(source.N[row])))

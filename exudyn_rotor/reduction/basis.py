@@ -13,11 +13,9 @@ import scipy.linalg
 import scipy.sparse as sp
 
 from exudyn_rotor.reduction.component import ModeBasis
-from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind, rigid_names
+from exudyn_rotor.reduction.mode_kind import ModeKind, rigid_names
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
-
-RIGID = rigid_names(RIGID_KINDS)
 
 
 @dataclass(frozen=True, eq=False)

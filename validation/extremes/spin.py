@@ -9,6 +9,7 @@ from extremes.rows import EPS, Row, breaking_point, message
 from extremes.runs import bare_rotor, run
 from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening
 
 BEARING = 2e5  # N/m at each end of the shaft
@@ -55,7 +56,7 @@ def speeds_of_campbell(quick: bool = False) -> Row:
 def smallest_stiffness(level: str, speed: float) -> float:
     """Return the smallest eigenvalue of ``K − Ω²Ĉ`` of a rigid rotor, its spin held [1/s²]."""
     rotor = rigid_on_support(level)
-    moving = [i for i, name in enumerate(rotor.rotor.labels) if name != "spin"]
+    moving = [i for i, kind in enumerate(rotor.rotor.kinds) if kind is not ModeKind.SPIN]
     return float(np.linalg.eigvalsh(rotor.at(speed).K[0][np.ix_(moving, moving)])[0])
 
 

@@ -47,8 +47,8 @@ LINEAR = [
         "test_full_response.py",
         (
             "Coriolis forces halved in the full model",
-            "inv.D @ X + 2.0 * speed * (inv.G @ X)",
-            "inv.D @ X + speed * (inv.G @ X)",
+            "(inv.D @ X + speed * (coriolis @ X))",
+            "(inv.D @ X + 0.5 * speed * (coriolis @ X))",
         ),
     ),
     *mutations(
