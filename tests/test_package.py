@@ -34,3 +34,10 @@ def test_licence_is_the_one_of_the_file():
 def test_public_names_are_there_and_sorted():
     assert exudyn_rotor.__all__ == sorted(exudyn_rotor.__all__)
     assert all(getattr(exudyn_rotor, name).__doc__ for name in exudyn_rotor.__all__)
+
+
+def test_contributing_names_files_that_exist():
+    files = re.findall(r"`([\w/]+\.(?:py|md))`", read("CONTRIBUTING.md"))
+    assert len(files) > 20
+    for name in files:
+        assert (ROOT / name).exists() or (ROOT / "exudyn_rotor" / name).exists(), name
