@@ -18,6 +18,7 @@ from matplotlib import pyplot
 
 import exudyn_rotor as er
 from bad_calls import calls, parameters
+from bad_calls.unusual import unusual
 from bad_calls.world import World
 
 PACKAGE = str(Path(er.__file__).parent)
@@ -65,6 +66,16 @@ def cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
             kind = parameters.kind_of(name, argument)
             default = None if parameter.default is parameter.empty else parameter.default
             for label, make in kind.bad(good.get(argument, default), optional):
+                yield Case(name, argument, label), make
+
+
+def good_cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
+    """Yield calls with good values of an unusual kind, and what makes each value."""
+    for name in calls.public_calls():
+        _, good = calls.valid(name, world)
+        for argument, parameter in calls.parameters(name).items():
+            value = good.get(argument, parameter.default)
+            for label, make in unusual(value):
                 yield Case(name, argument, label), make
 
 
