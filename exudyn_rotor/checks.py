@@ -69,6 +69,8 @@ def number(
     most: float | None = None,
 ) -> float:
     """Return a finite real number; `above` and `below` are excluded, `least` and `most` not."""
+    if type(value) is float and above is least is below is most is None and abs(value) < _LARGEST:
+        return value  # functions of time call this in every step
     given = zip(_SIGNS.items(), (above, least, below, most), strict=True)
     limits = [(sign, holds, n) for (sign, holds), n in given if n is not None]
     words = " and ".join(f"{sign} {n:g}" for sign, _, n in limits)
@@ -286,10 +288,7 @@ def _kind_of(dtype: type, finite: bool) -> str:
 
 
 def _of_shape(shape: Shape | None) -> str:
-    if shape is None:
-        return ""
-    sizes = ["any" if size is None else str(size) for size in shape]
-    return f" of shape ({', '.join(sizes)}{',' if len(sizes) == 1 else ''})"
+    return "" if shape is None else f" of shape {shape}".replace("None", "any")
 
 
 def _has_shape(found: tuple[int, ...], wanted: Shape) -> bool:

@@ -180,7 +180,7 @@ BY_NAME: dict[str, Kind] = {
     "referenceRotationMatrix": _SQUARE,
     "residual": _TOLERANCE,
     "rest": _FIELD,
-    "rigid": v.NAMES,
+    "rigid_kinds": v.OBJECTS,
     "rigid_motions": v.COUNT.but(seven=7),
     "rotation": _SQUARE,
     "rotor": v.OBJECT,
