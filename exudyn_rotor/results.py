@@ -206,11 +206,11 @@ def _check_shape(shape: tuple[int, ...], item: Field, sizes: dict[str, int]) -> 
 
 
 def _words(value: object, name: str) -> tuple[str, ...]:
-    return checks.labels(checks.instance(value, name, tuple), name)
+    return checks.labels(value, name)
 
 
 def _whole(value: object, name: str) -> int:
-    return int(checks.number(checks.instance(value, name, (int, np.integer)), name))
+    return checks.whole_number(value, name)
 
 
 _DTYPES = {"b": bool, "i": int, "u": int, "c": complex}

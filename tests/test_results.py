@@ -167,7 +167,7 @@ def test_what_cannot_be_stored_leaves_the_old_file(tmp_path):
         ({"name": {"a": 1}}, "name: needs a name"),
         ({"name": ""}, "name: needs a name that is not empty"),
         ({"names": (1.0,)}, "names: needs a name"),
-        ({"names": ["a"]}, "names: needs tuple"),
+        ({"names": [3]}, "names: needs a name"),
         ({"reals": np.array([object()])}, "reals: needs numbers"),
         ({"reals": np.ma.masked_array([1.0, 2.0], [0, 1])}, "reals: .* masked"),
         ({"counts": None}, "counts: needs"),

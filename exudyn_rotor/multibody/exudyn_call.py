@@ -121,6 +121,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         "stiffness_damping": checks.number(
             stiffnessProportionalDamping, "stiffnessProportionalDamping", "s", least=0.0
         ),
+        "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
         "show_markers": checks.flag(showMarkers, "showMarkers"),
     }
     checks.flag(verbose, "verbose")
@@ -147,7 +148,6 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         gravity=gravity,
         marker_offsets=offsets,
         locking=locking,
-        markers=markers,
         color=color,
         **arguments,
     )

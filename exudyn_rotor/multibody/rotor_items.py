@@ -25,6 +25,9 @@ _CONFIGURATIONS = tuple(
 )
 
 
+_NUMBERS = (exudyn.NodeIndex, exudyn.ObjectIndex, exudyn.MarkerIndex)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class RotorItems:
     """A rotor's items in an ``mbs``.
@@ -69,7 +72,11 @@ class RotorItems:
         checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
         for name in ("nodes", "objects", "markers", "constraints"):
             numbers = checks.mapping(getattr(self, name), name, "item number")
+            for number in numbers.values():
+                checks.instance(number, name, _NUMBERS, "add_rotor makes them")
             object.__setattr__(self, name, checks.read_only_mapping(numbers))
+        if self.gravity_load is not None:
+            checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
         checks.count(self.mesh_node_count, "mesh_node_count")
         checks.flag(self.mesh_stress, "mesh_stress")
 

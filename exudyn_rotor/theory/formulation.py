@@ -113,14 +113,16 @@ class ConstantSpeed:
 
     def value(self, t: float) -> float:
         """Spin angle [rad]."""
-        return self.angle + self.speed * t
+        return self.angle + self.speed * checks.number(t, "t", "s")
 
     def rate(self, t: float) -> float:
         """Spin speed [rad/s]."""
+        checks.number(t, "t", "s")
         return self.speed
 
     def acceleration(self, t: float) -> float:
         """Zero [rad/s²]."""
+        checks.number(t, "t", "s")
         return 0.0
 
 

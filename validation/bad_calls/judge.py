@@ -14,6 +14,7 @@ from types import FrameType, TracebackType
 from typing import Any
 
 import exudyn
+import numpy as np
 from matplotlib import pyplot
 
 import exudyn_rotor as er
@@ -83,7 +84,8 @@ def answer(case: Case, make: Callable[[], Any], world: World) -> Answer:
     """Make a bad call, and say how it was answered."""
     function, good = calls.valid(case.call, world)
     # a good value that does not fit the others: any of them may be named
-    fits = isinstance(function, type) and case.label in GOOD_ALONE
+    several = isinstance(function, type) or isinstance(good.get(case.argument), np.ndarray | list)
+    fits = several and case.label in GOOD_ALONE
     names = tuple(calls.parameters(case.call)) if fits else (case.argument,)
     good[case.argument] = make()
     scenes = [world.mbs, world.assembled]
