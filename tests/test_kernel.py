@@ -18,6 +18,7 @@ from exudyn_rotor import (
     add_rotor,
     select_modes,
 )
+from exudyn_rotor.multibody.equations import Layout, user_function_object
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.kernel import Kernel, constant_part
@@ -109,6 +110,34 @@ def test_unknowns_may_stand_among_others(translation):
     total = forces[unknowns] + constant.force - constant.stiffness @ own - constant.damping @ rate
     assert total == pytest.approx(motion.forces(0.0, own, rate), rel=1e-12, abs=1e-12)
     assert constant.force[:count] == pytest.approx(motion.weight)
+
+
+@pytest.mark.parametrize(
+    "formulation", [ANGLE, FORMULATIONS["prescribed spin, shaken"], Formulation("free", "free")]
+)
+def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
+    """Of the forces that Exudyn gets from Python; what is native it knows itself.
+
+    Central differences of cubic polynomials with the step h err by h², 1e-10, and eps/h, 2e-11,
+    of entries of order 1 to 100.
+    """
+    motion, step, time = motion_of(formulation, 4, 1.0), 1e-5, 0.4
+    assert motion.invariants.D.any()
+    size, none = motion.size, np.zeros(motion.size)
+    layout = Layout(size, np.arange(size), none, none, none)
+    scene = user_function_object(motion, layout, [0], None)
+    state = np.random.default_rng(7).normal(size=2 * size)
+
+    def force(shift: np.ndarray) -> np.ndarray:
+        q, q_t = np.split(state + shift, 2)
+        return np.array(scene.forceUserFunction(None, time, 0, q.tolist(), q_t.tolist()))
+
+    shifts = step * np.eye(2 * size)
+    slopes = np.array([force(shift) - force(-shift) for shift in shifts]).T / (2.0 * step)
+    q, q_t = (part.tolist() for part in np.split(state, 2))
+    found = scene.jacobianUserFunction(None, time, 0, q, q_t, 2.0, 3.0)
+    expected = -2.0 * slopes[:, :size] - 3.0 * slopes[:, size:]
+    assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
 
 
 def test_recommended_settings_follow_the_accuracy():

@@ -1,4 +1,4 @@
-"""Whether the tests notice wrong physics: signs, factors, dropped terms, swapped indices and frames.
+"""Whether the tests notice wrong physics: signs, factors, dropped terms, swapped indices, frames.
 
 Run ``python validation/mutations.py``; ``--quick`` does ten, ``--list`` shows all, ``--only TEXT``
 those with the text in their line.

@@ -27,17 +27,30 @@ MULTIBODY = [
     ),
     *mutations(
         "multibody/equations.py",
-        f"test_body_solvers.py::test_solvers_agree {_MARKERS} {_SCENES}",
+        "test_kernel.py::test_jacobian_for_the_solver_is_the_derivative_of_its_forces",
         (
-            "damping left out of the Jacobian's native part",
+            "native damping with the wrong sign in the Jacobian",
             "by_v += constant.damping",
             "by_v -= constant.damping",
         ),
+        (
+            "Jacobian by velocities without its factor",
+            "-factor_q * by_q - factor_v * by_v",
+            "-factor_q * by_q - by_v",
+        ),
+    ),
+    *mutations(
+        "multibody/equations.py",
+        _SCENES,
         (
             "Exudyn's part counted twice",
             "motion.forces(t, own, rate) - native",
             "motion.forces(t, own, rate)",
         ),
+    ),
+    *mutations(
+        "multibody/equations.py",
+        "test_body_solvers.py::test_solvers_agree",
         (
             "constant matrices without locks",
             "motion.mass_matrix(0.0, rest), layout.lock_mass),\n        **_native_part",
