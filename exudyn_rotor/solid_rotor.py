@@ -229,8 +229,8 @@ class SolidRotor(FiniteElementRotor):
             If a check fails: shape, finite entries, symmetry, I₃ blocks and positive mass,
             rigid motions, node numbers, units.
         """
-        given = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: _node_set(name, entry) for name, entry in given.items()}
+        entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
+        node_sets = {name: _node_set(name, entry) for name, entry in entries.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
 

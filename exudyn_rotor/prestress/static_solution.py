@@ -24,6 +24,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
@@ -54,7 +55,7 @@ def static_prestress(
     checks.flag(euler, "euler")
     _check_yield(yield_stress, speed)
     shape = (rotor.node_count, 6)
-    own = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
+    rest_stress = None if stress is None else checks.array(stress, "stress", "Pa", shape=shape)
     if rotor.elements is None:
         raise ValueError(
             "prestress: this rotor has no elements to assemble a geometric stiffness on; make it "
@@ -62,16 +63,16 @@ def static_prestress(
             "Prestress.from_matrix, or use stiffening='tilt'"
         )
     elements = rotor.elements
-    residual = None if own is None else elements.load_of_stress(own)
+    residual = None if rest_stress is None else elements.load_of_stress(rest_stress)
     state = _support(rotor, clamped)
     constant = None
-    if own is not None:
+    if rest_stress is not None:
         springback = state.solve(residual)
-        constant = elements.geometric_stiffness_of_stress(own)
+        constant = elements.geometric_stiffness_of_stress(rest_stress)
         constant = constant - elements.geometric_stiffness(springback)
         reactions = residual - rotor.stiffness @ springback
         constant = constant + _hub_stiffness(rotor, state.hub, reactions)
-        own = _in_equilibrium(rotor, own, springback)
+        rest_stress = _in_equilibrium(rotor, rest_stress, springback)
         state = state.stressed(constant)
 
     load = centrifugal_load(rotor)
@@ -80,7 +81,7 @@ def static_prestress(
         matrix = matrix + elements.initial_displacement_stiffness(displacement)
     by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
     if speed is not None:
-        total = speed**2 * by_spin + (0.0 if own is None else own)
+        total = speed**2 * by_spin + (0.0 if rest_stress is None else rest_stress)
         _warn_of_yield(rotor.nodes, total, yield_stress, speed)
     return Prestress(
         matrix=matrix,
@@ -92,7 +93,7 @@ def static_prestress(
         initial_displacement=initial_displacement,
         balanced=not clamped,
         yield_stress=yield_stress,
-        constant_stress=own,
+        constant_stress=rest_stress,
         load=load,
         hub=state.hub,
     )
@@ -163,10 +164,8 @@ class _StaticState:
 
     def stressed(self, constant: sp.csr_array) -> _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
-        kept = np.ones((self.rotor.node_count, 3))
-        kept[self.supported.elements.held] = 0.0
-        mask = sp.diags_array(kept.ravel())
-        held = sp.csr_array(self.supported.stiffness + mask @ constant @ mask)
+        free = matrices.without_nodes(constant, self.supported.elements.held)
+        held = sp.csr_array(self.supported.stiffness + free)
         relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid)
         return replace(self, stiffness=self.stiffness + constant, relief=relief)
 
@@ -196,19 +195,19 @@ def _hub_stiffness(rotor: FiniteElementRotor, hub: np.ndarray, forces: np.ndarra
         return sp.csr_array((rotor.nodes.size, rotor.nodes.size))
     forces, arms = forces.reshape(-1, 3)[hub], rotor.nodes[hub] - rotor.center_of_mass
     moments = forces.T @ arms
-    own = np.trace(moments) * np.eye(3) - 0.5 * (moments + moments.T)
+    direct = np.trace(moments) * np.eye(3) - 0.5 * (moments + moments.T)
     # any of its nodes tell how a rigid hub moves, and the matrix is dense on those
     some = hub[:: -(-hub.size // _HUB_NODES)]
     mean = Interface("hub", some, np.ones(some.size), rotor.nodes[some], rotor.center_of_mass)
     motion = mean.mean_motion(rotor.node_count)
     shift, turn = motion[:3], motion[3:]
-    # N with ψ = u − t − φ×y put in; its part with φ×y is in `own`
+    # N with ψ = u − t − φ×y put in; its part with φ×y is in `direct`
     columns = (3 * hub[:, None] + np.arange(3)).ravel()
     couple = sp.csr_array(np.hstack([skew(force) for force in forces]))
     couple = couple @ sp.eye_array(rotor.nodes.size, format="csr")[columns]
     couple = couple - sp.csr_array(skew(forces.sum(axis=0))) @ shift
     mixed = turn.T @ couple
-    return sp.csr_array(turn.T @ sp.csr_array(own) @ turn - mixed - mixed.T)
+    return sp.csr_array(turn.T @ sp.csr_array(direct) @ turn - mixed - mixed.T)
 
 
 def _check_yield(yield_stress: float | None, speed: float | None) -> None:
@@ -224,8 +223,8 @@ def _in_equilibrium(
     rotor: FiniteElementRotor, stress: np.ndarray, springback: np.ndarray
 ) -> np.ndarray:
     """Return a stress (n, 6) less the part that no load balances; warn if that is much of it."""
-    part = rotor.stress_recovery(springback[:, None])[:, :, 0]
-    share = np.linalg.norm(part) / max(np.linalg.norm(stress), 1e-300)
+    unbalanced = rotor.stress_recovery(springback[:, None])[:, :, 0]
+    share = np.linalg.norm(unbalanced) / max(np.linalg.norm(stress), 1e-300)
     if share > _OUT_OF_BALANCE:
         warnings.warn(
             f"stress: {share:.0%} of it is not in equilibrium without external load and was left "
@@ -233,7 +232,7 @@ def _in_equilibrium(
             UserWarning,
             stacklevel=4,
         )
-    return stress - part
+    return stress - unbalanced
 
 
 def _warn_of_yield(

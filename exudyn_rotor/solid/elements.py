@@ -8,6 +8,8 @@ import ngsolve as ngs
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.solid import matrices
+
 # Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor, row by row.
 _TENSOR = (0, 5, 4, 5, 1, 3, 4, 3, 2)
 
@@ -199,12 +201,7 @@ class NgsolveElements:
             )
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
-        if self.held.size == 0:
-            return matrix
-        kept = np.ones((len(self.nodes), 3))
-        kept[self.held] = 0.0
-        mask = sp.diags_array(kept.ravel())
-        return sp.csr_array(mask @ matrix @ mask)
+        return matrix if self.held.size == 0 else matrices.without_nodes(matrix, self.held)
 
 
 def _hooke(strain: ngs.CoefficientFunction, lame: np.ndarray) -> ngs.CoefficientFunction:

@@ -129,6 +129,14 @@ def check_same_mesh(nodes: np.ndarray, others: np.ndarray, label: str = "modal b
         )
 
 
+def without_nodes(matrix: sp.csr_array, nodes: np.ndarray) -> sp.csr_array:
+    """Return a matrix (3n, 3n) with the rows and columns of `nodes` set to zero."""
+    factors = np.ones((matrix.shape[0] // 3, 3))
+    factors[nodes] = 0.0
+    mask = sp.diags_array(factors.ravel())
+    return sp.csr_array(mask @ matrix @ mask)
+
+
 def frozen(matrix: sp.csr_array) -> sp.csr_array:
     """Return `matrix` in canonical form with its arrays made read-only."""
     matrix.sum_duplicates()

@@ -56,8 +56,8 @@ def rigid_residuals(nodes: np.ndarray, stiffness: sp.csr_array) -> tuple[np.ndar
     motions = basis @ combinations.T
     forces = np.abs(stiffness @ motions)
     terms = abs(stiffness) @ np.abs(motions)
-    whole = _ratio(np.linalg.norm(forces, axis=0), np.linalg.norm(terms, axis=0))
-    return whole, np.median(_ratio(forces, terms), axis=0)
+    residuals = _ratio(np.linalg.norm(forces, axis=0), np.linalg.norm(terms, axis=0))
+    return residuals, np.median(_ratio(forces, terms), axis=0)
 
 
 def leaves_free(nodes: np.ndarray, stiffness: sp.csr_array) -> bool:
@@ -167,5 +167,5 @@ def _doubt(residuals: np.ndarray) -> str:
     )
 
 
-def _ratio(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
+def _ratio(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    return np.divide(values, sizes, out=np.zeros_like(values), where=sizes > 0.0)

@@ -224,11 +224,10 @@ class FiniteElementRotor:
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
             )
-        kept = np.ones((self.node_count, 3))
-        kept[held] = 0.0
-        mask = sp.diags_array(kept.ravel())
-        springs = sp.diags_array(_CLAMP * self.stiffness.diagonal().max() * (1 - kept.ravel()))
-        stiffness = matrices.frozen(sp.csr_array(mask @ self.stiffness @ mask + springs))
+        springs = np.zeros((self.node_count, 3))
+        springs[held] = _CLAMP * self.stiffness.diagonal().max()
+        free = matrices.without_nodes(self.stiffness, held)
+        stiffness = matrices.frozen(sp.csr_array(free + sp.diags_array(springs.ravel())))
         return replace(
             self,
             stiffness=stiffness,

@@ -121,8 +121,8 @@ def _ritz_values(operator: Solve, start: np.ndarray) -> np.ndarray:
         images.append(operator(vector))
         vector = images[-1].copy()
         # twice, because one Gram–Schmidt pass loses orthogonality
-        for known in 2 * basis:
-            vector -= known * (known @ vector)
+        for previous in 2 * basis:
+            vector -= previous * (previous @ vector)
         length = np.linalg.norm(vector)
         if length <= 1e-12 * np.linalg.norm(images[-1]):
             break

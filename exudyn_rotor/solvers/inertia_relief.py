@@ -155,12 +155,12 @@ def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
         If the stiffness resists a motion that should be free, or leaves others free.
     """
     stiffness, mass = rotor.stiffness, rotor.mass
-    known = _known.get(id(stiffness))
-    if known is not None and known[0]() is mass and known[1] == rotor.rigid_motions:
-        return known[2]
+    earlier = _known.get(id(stiffness))
+    if earlier is not None and earlier[0]() is mass and earlier[1] == rotor.rigid_motions:
+        return earlier[2]
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
-    made = InertiaRelief(stiffness, mass, rigid)
-    if known is None:
+    relief = InertiaRelief(stiffness, mass, rigid)
+    if earlier is None:
         weakref.finalize(stiffness, _known.pop, id(stiffness), None)
-    _known[id(stiffness)] = weakref.ref(mass), rotor.rigid_motions, made
-    return made
+    _known[id(stiffness)] = weakref.ref(mass), rotor.rigid_motions, relief
+    return relief

@@ -75,4 +75,18 @@ SOLID = [
             "rotations(nodes, 0.0 * center)[:, :2] / radius",
         ),
     ),
+    *mutations(
+        "solid/damping.py",
+        "test_solid_damping.py",
+        (
+            "rigid motions damped, too",
+            "flexible.T @ (rotor.mass_damping @ flexible)",
+            "rotor.mass_damping.toarray()",
+        ),
+        (
+            "factors of one material act on all",
+            "by_name.get(region, none)",
+            "by_name.get(region, [*by_name.values()][0])",
+        ),
+    ),
 ]
