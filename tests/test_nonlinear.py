@@ -44,7 +44,7 @@ def test_orders_in_the_square_of_the_speed(rows):
 
 def test_overhung_disc_needs_the_full_level():
     """The 3D body with its frame in the hub is level 'none'; the frequencies' own errors are h²."""
-    mesh = {"element_size": 0.1}
+    mesh = {"element_size": 0.1, "safety": 0.7}
     solid = nonlinear.ClampedSolid.of(overhung.overhung_mesh(**mesh), "root")
     row = overhung.compare(solid, overhung.imported(solid, overhung.overhung_mesh(**mesh)), 60.0)
     assert row["reduced, full"] < 1e-5

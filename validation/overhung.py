@@ -35,12 +35,16 @@ MODES = 12
 STEP, DURATION = 2e-5, 0.05  # s
 
 
-def overhung_mesh(element_size: float = 0.06) -> ngs.Mesh:
-    """Return a disc (radius 120 mm, 15 mm) at the end of a shaft (radius 10 mm, 0.4 m)."""
+def overhung_mesh(element_size: float = 0.06, safety: float = 2.0) -> ngs.Mesh:
+    """Return a disc (radius 120 mm, 15 mm) at the end of a shaft (radius 10 mm, 0.4 m).
+
+    `safety` is the radius of the curves over the length of the elements there.
+    """
     solid = Cylinder(Pnt(0, 0, 0), Z, 0.01, 0.4) + Cylinder(Pnt(0, 0, 0.4), Z, 0.12, 0.015)
     solid.mat("steel")
     solid.faces.Min(Z).name = "root"
-    return ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=element_size))
+    geometry = OCCGeometry(solid)
+    return ngs.Mesh(geometry.GenerateMesh(maxh=element_size, curvaturesafety=safety))
 
 
 def package_frequencies(reduced: ReducedRotor, speed: float, level: str) -> np.ndarray:

@@ -170,10 +170,10 @@ def damping(quick: bool = False) -> Row:
     return Row(
         "damping of the supports",
         "0 to 1000 × critical, at 0 and 500 rad/s",
-        "exponents against mλ² + cλ + k; limit: the double root at 1 × critical keeps half the "
-        "digits, twice",
+        "exponents against mλ² + cλ + k; limit: the double root at 1 × critical is the square "
+        "root of the matrix's error, 100 × round-off for its 12 rows",
         max(damping_error(ratio, speed) for ratio in ratios for speed in (0.0, 500.0)),
-        2.0 * np.sqrt(EPS),
+        np.sqrt(100.0 * EPS),
     )
 
 
