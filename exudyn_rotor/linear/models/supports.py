@@ -78,6 +78,7 @@ class Support:
 
         Rows: displacement along n1, n2, e, then rotation about them.
         """
+        checks.number(speed, "speed", "rad/s")
         stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
         stiffness[:3, :3] = self._matrix("stiffness", speed)
         stiffness[3:, 3:] = self._matrix("tilt_stiffness", speed)

@@ -46,7 +46,7 @@ def place(model: LinearModel, at: At) -> Place:
     mesh = model.mesh
     if mesh is None:
         raise ValueError(
-            f"place {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
+            f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
             "keep_shapes=True, or name an interface"
         )
     number = _node_number(at, mesh.nodes)
@@ -84,7 +84,7 @@ def _interface(model: LinearModel, name: str) -> Place:
     known = model.interfaces
     if name not in known:
         raise ValueError(
-            f"place {name!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
+            f"at: {name!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
         )
     return Place(name, np.asarray(model.interface_motion(name)), is_node=False)
 
@@ -93,6 +93,6 @@ def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
     """Return a node's number; the nearest one to a position."""
     if isinstance(at, int):
         if at >= len(nodes):
-            raise ValueError(f"place {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
+            raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
         return at
     return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))

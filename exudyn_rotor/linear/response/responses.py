@@ -187,7 +187,7 @@ class Response(Result, ABC):
         place, order = self._place(place), self._order(order)
         if ax is None:
             ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
-        pair = checks.instances(list(ax) if isinstance(ax, np.ndarray) else ax, "ax", Axes)
+        pair = checks.instances(ax, "ax", Axes)
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
         curves = {name: self._drawn(name, place, order) for name in names}
@@ -328,7 +328,7 @@ class UnbalanceResponse(Response):
 
     def rates(self, order: int) -> np.ndarray:
         """Return nΩ, shape (s,) [rad/s]."""
-        return order * self.speeds
+        return checks.whole_number(order, "order") * self.speeds
 
     @property
     def _what(self) -> str:
@@ -370,7 +370,7 @@ class HarmonicResponse(Response):
 
     def rates(self, order: int) -> np.ndarray:
         """Return ω + nΩ, shape (s,) [rad/s]."""
-        return self.frequencies + order * self.speed
+        return self.frequencies + checks.whole_number(order, "order") * self.speed
 
     @property
     def _what(self) -> str:

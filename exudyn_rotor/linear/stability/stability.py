@@ -75,6 +75,10 @@ class Stability(Result):
     base: np.ndarray = numbers("speeds")
     tolerance: float
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.number(self.tolerance, "tolerance", least=0.0)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth over the spin speed; unstable speeds are shaded."""
         ax = plotting.axes_or_new(ax)
