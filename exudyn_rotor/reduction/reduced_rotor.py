@@ -187,6 +187,8 @@ class ReducedRotor:
         """
         mass = checks.number(mass, "mass", "1/s", least=0.0)
         stiffness = checks.number(stiffness, "stiffness", "s", least=0.0)
+        if mass == 0.0 and stiffness == 0.0:
+            return self
         inv, added = self.invariants, self.with_attachments
         damping = inv.D + mass * self.mode_mass + stiffness * inv.K
         if added is not None:
