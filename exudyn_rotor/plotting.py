@@ -133,7 +133,9 @@ def draw_surface(
         _frame(ax, points)
         if _is_long(points):
             ax.set_title(_extents(points), fontsize="small")
-        ax.figure.colorbar(mapped, ax=ax, label=label)
+        for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+            axis.labelpad = 8.0  # given axes are small
+        ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
         return ax
     made = pyplot.figure()
     ax = made.add_subplot(projection="3d")

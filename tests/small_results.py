@@ -24,8 +24,8 @@ RNG = np.random.default_rng(3)
 TRIANGLES = [[0, 1, 2], [1, 2, 3]]
 
 
-def rotor() -> ReducedRotor:
-    """Return a rotor with everything that a file can hold."""
+def rotor(attached: bool) -> ReducedRotor:
+    """Return a rotor with everything that a file can hold; attachment modes only if `attached`."""
     made = random_rotor(
         11, SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5]), interfaces={"left": [0, 1], "right": [4, 5]},
         triangles=TRIANGLES,
@@ -40,6 +40,7 @@ def rotor() -> ReducedRotor:
             RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
         ),
         dropped=("column 7",),
+        with_attachments=made.with_attachments if attached else None,
     )
 
 
@@ -65,4 +66,7 @@ def results() -> list:
     ]  # fmt: skip
 
 
-STORED = {"ReducedRotor": rotor(), **{type(item).__name__: item for item in results()}}
+STORED = {
+    "ReducedRotor": rotor(attached=False),
+    **{type(item).__name__: item for item in results()},
+}
