@@ -71,6 +71,20 @@ def test_rigid_rotor_with_gyroscopic_moment(shape):
         np.testing.assert_allclose(found, np.sort(speeds), rtol=1e-9)
 
 
+def test_a_free_rotor_is_the_limit_of_soft_supports():
+    """Its rigid motions follow the bending by their inertia.
+
+    Springs of 1 N/m move frequencies of 3000 rad/s and more by k/(2 m ω²), 1e-8; mass 16 kg.
+    """
+    rotor = disc_rotor(1).center_interfaces().reduce(8)
+    free = critical_speeds(rotor, nodal_diameters=[1])
+    soft = [Support(name, 1.0) for name in ("left", "right")]
+    held = critical_speeds(rotor, supports=soft, nodal_diameters=[1])
+    bending = held.speeds > 100.0
+    np.testing.assert_allclose(free.speeds, held.speeds[bending], rtol=1e-6)
+    assert free.whirl == tuple(np.array(held.whirl)[bending])
+
+
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 3.0])
 def test_anisotropic_support(order):
     support = Support("at", np.diag([1e4, 4e4]), 3.0)  # damping does not count

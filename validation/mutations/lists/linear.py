@@ -98,17 +98,21 @@ LINEAR = [
     ),
     *mutations(
         "linear/modal/resonance.py",
-        "test_critical.py",
-        (
-            "synchronous frequency of the other sense",
-            "np.array([order - n])",
-            "np.array([order + n])",
-        ),
+        "test_critical.py::test_asymmetric_masses_order_1",
         (
             "damping for half the rate",
             "rate * system.D.get(n, 0.0)",
             "0.5 * rate * system.D.get(n, 0.0)",
         ),
+        (
+            "waves counted against the spin",
+            "seen = multiples[:, None] + content.orders[None, :]",
+            "seen = multiples[:, None] - content.orders[None, :]",
+        ),
+    ),
+    *mutations(
+        "linear/modal/resonance.py",
+        "test_critical.py::test_a_free_rotor_is_the_limit_of_soft_supports",
         ("free motions do not follow by inertia", "basis = W - R @", "basis = W - 0.0 * R @"),
     ),
     *mutations(
