@@ -152,7 +152,7 @@ def add_rotor(
     formulation = Formulation(translation, spin, drive)
     requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, native_shell)
     setup = inputs.Setup(
-        name=inputs.free_name(mbs, name, requests),
+        name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
         stiffening=checks.choice(stiffening, "stiffening", LEVELS),
         placement=inputs.placement(
@@ -176,6 +176,7 @@ def add_rotor(
         color=inputs.color_of(color),
     )
     plan = make_plan(reduced, setup)
+    inputs.check_free_names(mbs, setup)
     if not native_shell:
         return _add_bare(mbs, plan)
     offsets = {interface: request.offset for interface, request in requests.items()}

@@ -123,6 +123,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         ),
         "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
         "show_markers": checks.flag(showMarkers, "showMarkers"),
+        "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
     }
     checks.flag(verbose, "verbose")
     if axis is None:

@@ -205,13 +205,10 @@ def marker_name(name: str | None, interface: str) -> str:
     return interface if name is None else f"{name}:{interface}"
 
 
-def free_name(
-    mbs: exudyn.MainSystem, name: str | None, interfaces: Mapping[str, MarkerRequest]
-) -> str | None:
-    """Return the name of a rotor; one that would repeat the name of an item is refused."""
-    if name is not None:
-        checks.label(name, "name")
-    taken = [(mbs.GetMarkerNumber, marker_name(name, interface)) for interface in interfaces]
+def check_free_names(mbs: exudyn.MainSystem, setup: Setup) -> None:
+    """Refuse a name that an item of `mbs` already has."""
+    name = setup.name
+    taken = [(mbs.GetMarkerNumber, marker_name(name, interface)) for interface in setup.markers]
     if name is not None:
         taken += [
             (mbs.GetObjectNumber, name),
@@ -224,4 +221,3 @@ def free_name(
                 f"name {name!r}: this system already has an item {item!r}; "
                 "give the second rotor another name"
             )
-    return name

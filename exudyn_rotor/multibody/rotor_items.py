@@ -23,9 +23,12 @@ _CONFIGURATIONS = tuple(
     getattr(exudyn.ConfigurationType, name)
     for name in ("Initial", "Current", "StartOfStep", "Visualization")
 )
-
-
-_NUMBERS = (exudyn.NodeIndex, exudyn.ObjectIndex, exudyn.MarkerIndex)
+_INDICES = {
+    "nodes": exudyn.NodeIndex,
+    "objects": exudyn.ObjectIndex,
+    "markers": exudyn.MarkerIndex,
+    "constraints": exudyn.ObjectIndex,
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,10 +73,10 @@ class RotorItems:
     def __post_init__(self) -> None:
         main_system(self.mbs)
         checks.instance(self.plan, "plan", Plan, "add_rotor makes one")
-        for name in ("nodes", "objects", "markers", "constraints"):
-            numbers = checks.mapping(getattr(self, name), name, "item number")
-            for number in numbers.values():
-                checks.instance(number, name, _NUMBERS, "add_rotor makes them")
+        for name, kind in _INDICES.items():
+            numbers = checks.mapping(getattr(self, name), name, kind.__name__)
+            for item, number in numbers.items():
+                checks.instance(number, f"{name}: {item!r}", kind)
             object.__setattr__(self, name, checks.read_only_mapping(numbers))
         if self.gravity_load is not None:
             checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
