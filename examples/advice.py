@@ -40,7 +40,7 @@ def run(model, per_turn: int):
             damping=[DAMPING] * 3,
         )
     orbit = body.add_interface_sensor("right", exudyn.OutputVariableType.Displacement)
-    body.watch()
+    body.start_recording()
     mbs.Assemble()
     settings = exudyn.SimulationSettings()
     integration = settings.timeIntegration

@@ -3,8 +3,8 @@
 Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exudyn.
 """
 
-from exudyn_rotor.advice.checks import RunCheck, check_run
 from exudyn_rotor.advice.proposal import Proposal, propose
+from exudyn_rotor.advice.run_check import RunCheck, check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speeds import (

@@ -220,13 +220,13 @@ def test_proposed_step_has_the_allowed_period_error(plain):
     mbs = exu.SystemContainer().AddSystem()
     start = np.zeros(plain.size - 1)  # without the spin, which is prescribed
     start[5] = 1e-3
-    options = {"modal_coordinates": start, "native_shell": False, "stiffening": "none"}
+    options = {"modal_coordinates": start, "marker_body": False, "stiffening": "none"}
     body = add_rotor(mbs, plain, translation="none", spin=0.0, **options)
-    body.watch()
+    body.start_recording()
     mbs.Assemble()
     steps = round(20.25 * 2 * np.pi / omega / proposal.step)
     solve(mbs, steps, steps * proposal.step)
-    zeta, rate = (part[0][5] for part in (body.record().q[-1:], body.record().q_t[-1:]))
+    zeta, rate = (part[0][5] for part in (body.recorded().q[-1:], body.recorded().q_t[-1:]))
     turned = omega * steps * proposal.step
     phase = np.arctan2(-rate / omega, zeta)
     slip = (turned - phase + np.pi) % (2 * np.pi) - np.pi

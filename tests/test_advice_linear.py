@@ -6,9 +6,9 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, Support
 from exudyn_rotor.advice.candidate import candidate
-from exudyn_rotor.advice.levels import choose_level
-from exudyn_rotor.advice.modes import critical, resonances
+from exudyn_rotor.advice.mode_choice import critical, resonances
 from exudyn_rotor.advice.request import Request
+from exudyn_rotor.advice.stiffening_level import choose_level
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.nodal import rotations, translations
 

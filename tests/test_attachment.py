@@ -145,7 +145,7 @@ def spring_forces(reduced: ReducedRotor, **options):
     sensors = [
         [body.add_interface_sensor(name, kind) for name in ("left", "right")] for kind in kinds
     ]
-    body.watch()
+    body.start_recording()
     mbs.Assemble()
     solve(mbs, 400, 0.04)
     moved, rates = (

@@ -73,9 +73,9 @@ CASES = {
         "kind of 'left': 'ring' is .*; use one of 'rigid', 'position'",
     ),
     "offset shape": ({"marker_offsets": {"left": [0, 0]}}, "marker_offsets: 'left': needs"),
-    "markers without shell": (
-        {"native_shell": False, "markers": {"left": "rigid"}},
-        "need the native shell",
+    "markers without marker body": (
+        {"marker_body": False, "markers": {"left": "rigid"}},
+        "need the marker body",
     ),
     "translation": ({"translation": "axial"}, "'axial' is unknown.*'free', 'in-plane', 'none'"),
     "spin": ({"spin": "fast"}, "'fast' is unknown"),
@@ -185,7 +185,7 @@ def test_sensors_of_what_is_not_there(solid, reduced):
     mbs = exu.SystemContainer().AddSystem()
     free = add_rotor(mbs, reduced, name="free", markers={"left": "rigid"})
     plain = add_rotor(mbs, reduced.without_shapes(), name="plain", spin=1.0)
-    bare = add_rotor(mbs, reduced, name="bare", native_shell=False, spin=1.0)
+    bare = add_rotor(mbs, reduced, name="bare", marker_body=False, spin=1.0)
     before = counts(mbs)
     kind = exu.OutputVariableType.Position
     last = solid.node_count - 1
@@ -198,7 +198,7 @@ def test_sensors_of_what_is_not_there(solid, reduced):
         free.add_interface_sensor("right", kind)
     with pytest.raises(ValueError, match="spins freely"):
         free.add_drive_torque_sensor()
-    with pytest.raises(ValueError, match="needs the shell"):
+    with pytest.raises(ValueError, match="this sensor needs one"):
         bare.add_drive_torque_sensor()
     with pytest.raises(ValueError, match="prescribed spin has no node"):
         bare.add_spin_sensor()

@@ -1,4 +1,4 @@
-"""Exudyn's own features on the rotor's shell: sensors, loads, pictures, solution files."""
+"""Exudyn's own features on the rotor's marker body: sensors, loads, pictures, solution files."""
 
 import exudyn as exu
 import matplotlib
@@ -140,17 +140,19 @@ def test_gravity_lets_the_rotor_fall(reduced):
 def test_native_markers_and_sensors_without_helpers(solid, reduced):
     """What a script does on Exudyn's own flexible body works by mesh node number."""
     _, mbs, body = one_rotor(reduced, initial_speed=100.0)
-    shell, nodes = body.objects["shell"], solid.interfaces["right"].nodes.tolist()
+    marker_body, nodes = body.objects["marker_body"], solid.interfaces["right"].nodes.tolist()
     marker = mbs.AddMarker(
         MarkerSuperElementPosition(
-            bodyNumber=shell,
+            bodyNumber=marker_body,
             meshNodeNumbers=nodes,
             weightingFactors=solid.interfaces["right"].weights,
         )
     )
     sensor = mbs.AddSensor(
         SensorSuperElement(
-            bodyNumber=shell, meshNodeNumber=nodes[0], outputVariableType=KINDS.DisplacementLocal
+            bodyNumber=marker_body,
+            meshNodeNumber=nodes[0],
+            outputVariableType=KINDS.DisplacementLocal,
         )
     )
     mbs.Assemble()

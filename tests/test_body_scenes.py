@@ -1,4 +1,4 @@
-"""Rotors in scenes: other axis directions, without the native shell, several in one system."""
+"""Rotors in scenes: other axis directions, without the marker body, several in one system."""
 
 import exudyn as exu
 import numpy as np
@@ -169,7 +169,7 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
     )
 
 
-# ------------------------------------------------------------------ without the shell
+# ------------------------------------------------------------------ without the marker body
 
 BARE = {
     "free": ({"initial_speed": 300.0, "initial_angle": 0.3}, UNIT),
@@ -186,10 +186,10 @@ BARE = {
 
 
 @pytest.mark.parametrize("case", BARE)
-def test_without_the_shell_the_motion_is_the_same(reduced, case):
+def test_without_the_marker_body_the_motion_is_the_same(reduced, case):
     options, rotation = BARE[case]
     results = []
-    for shell in (True, False):
+    for marker_body in (True, False):
         mbs = exu.SystemContainer().AddSystem()
         form = Formulation(options.get("translation", "free"), options.get("spin", "free"))
         count = len(select_modes(reduced, form).labels)
@@ -198,7 +198,7 @@ def test_without_the_shell_the_motion_is_the_same(reduced, case):
             reduced,
             rotation=rotation,
             gravity=[1.0, -9.81, 2.0],
-            native_shell=shell,
+            marker_body=marker_body,
             modal_coordinates=1e-4 * np.arange(1, count + 1),
             modal_velocities=1e-2 * np.arange(count, 0, -1),
             **options,
@@ -253,7 +253,7 @@ def test_report_says_what_was_added(reduced):
     assert "7: translation along axis, tilt 1, tilt 2, mode 1" in report
     assert "locked         tilt a, tilt b" in report
     assert "Python user functions" in report
-    bare = add_rotor(mbs, reduced, name="bare", spin=3.0, native_shell=False)
+    bare = add_rotor(mbs, reduced, name="bare", spin=3.0, marker_body=False)
     assert bare.locked == ()
     assert "no Python call" in bare.report()
 

@@ -116,7 +116,7 @@ def test_constraints_and_servo_give_the_same_prescribed_motion(reduced, motion, 
 @pytest.mark.parametrize("motion", [{"spin": RUN_UP}, {"spin": 300.0, "translation": SHAKE}])
 @pytest.mark.parametrize("solver", EXPLICIT)
 def test_explicit_solvers_refuse_constrained_motion(reduced, motion, solver):
-    """They would leave the shell at rest without a word; an implicit solver may follow."""
+    """They would leave the marker body at rest without a word; an implicit solver may follow."""
     mbs, body = scene(reduced, **motion)
     mbs.Assemble()
     with pytest.raises(Exception, match="add the rotor with locking='mass'"):

@@ -70,7 +70,7 @@ ROTOR = {
     "marker_offsets": [*ANYTHING, "", 3, [], {"none": [0, 0, 0]}, *({"all": v} for v in VECTOR)],
     "show_markers": FLAG,
     "locking": WORD,
-    "native_shell": FLAG,
+    "marker_body": FLAG,
     "negligible": [*NUMBER, None, -1.0, 1.0],
     "color": COLOR,
 }
@@ -204,5 +204,5 @@ def test_recording_of_an_assembled_system(reduced):
     mbs.Assemble()
     before = counts(mbs)
     with pytest.raises(ValueError, match=r"before mbs\.Assemble"):
-        body.watch()
+        body.start_recording()
     assert counts(mbs) == before

@@ -210,7 +210,7 @@ def fixed_axis_orbits(
         markers=dict.fromkeys(ENDS, "position"),
     )
     _add_bearings(mbs, model, body.markers, bearings)
-    sensors = _add_sensors(mbs, model, body.objects["shell"], body.markers)
+    sensors = _add_sensors(mbs, model, body.objects["marker_body"], body.markers)
     return _simulate(mbs, sensors, duration, step, samples, spectral_radius)
 
 

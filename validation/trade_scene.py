@@ -198,7 +198,7 @@ def _fixed_axis(rotor: Rotor, body: Body) -> AddRotor:
             markers=body.markers,
             **FIXED_AXIS[body.family],
         )
-        items = {"oFFRFreducedOrder": made.objects["shell"], "rotorBody": made}
+        items = {"oFFRFreducedOrder": made.objects["marker_body"], "rotorBody": made}
         markers = {f"rotor:{name}": marker for name, marker in made.markers.items()}
         return markers | {"FFRFReducedOrderObjectDict": items}
 
@@ -212,11 +212,11 @@ def _start_velocity(rotor: Rotor, body: Body) -> np.ndarray:
     return np.cross([START_SPEED, 0.0, 0.0], rotor.solid.center_of_mass)
 
 
-def _damp(mbs: exudyn.MainSystem, shell: exudyn.ObjectIndex) -> None:
+def _damp(mbs: exudyn.MainSystem, flexible: exudyn.ObjectIndex) -> None:
     """Give Exudyn's own body the damping of the others."""
-    stiffness = mbs.GetObject(shell)["stiffnessMatrixReduced"]
+    stiffness = mbs.GetObject(flexible)["stiffnessMatrixReduced"]
     matrix = exudyn.MatrixContainer(DAMPING * stiffness.Convert2DenseMatrix())
-    mbs.SetObjectParameter(shell, "dampingMatrixReduced", matrix)
+    mbs.SetObjectParameter(flexible, "dampingMatrixReduced", matrix)
 
 
 class Scene:
@@ -241,11 +241,11 @@ class Scene:
 
     def _watch(self, rotor: Rotor, made: dict) -> dict[str, exudyn.SensorIndex]:
         """Record both journals, the disc's middle and a node at its rim."""
-        shell = made["FFRFReducedOrderObjectDict"]["oFFRFreducedOrder"]
+        flexible = made["FFRFReducedOrderObjectDict"]["oFFRFreducedOrder"]
         nodes, weights = rotor.disc
         middle = self.mbs.AddMarker(
             MarkerSuperElementPosition(
-                bodyNumber=shell, meshNodeNumbers=nodes, weightingFactors=weights
+                bodyNumber=flexible, meshNodeNumbers=nodes, weightingFactors=weights
             )
         )
         record = {
@@ -259,7 +259,7 @@ class Scene:
             for name, marker in markers.items()
         }
         rim = rotor.solid.nearest_node((DISC, RIM[2], 0.0))
-        sensor = SensorSuperElement(bodyNumber=shell, meshNodeNumber=rim, **record)
+        sensor = SensorSuperElement(bodyNumber=flexible, meshNodeNumber=rim, **record)
         return sensors | {"rim": self.mbs.AddSensor(sensor)}
 
     def run(

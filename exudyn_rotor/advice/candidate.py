@@ -35,7 +35,7 @@ class Candidate:
     source : LinearRotor or LinearScene
     invariants : Invariants
         In the basis of the rotor's modal coordinates.
-    own : ndarray of int
+    modal : ndarray of int
         Where the modal coordinates stand among those of `source`.
     flexible : ndarray of int
         Which modal coordinates are flexible modes.
@@ -57,7 +57,7 @@ class Candidate:
 
     source: LinearRotor | LinearScene
     invariants: Invariants
-    own: np.ndarray
+    modal: np.ndarray
     flexible: np.ndarray
     frequencies: np.ndarray
     stiffening: str
@@ -72,7 +72,7 @@ class Candidate:
     @property
     def places(self) -> np.ndarray:
         """Where the flexible modes stand among the coordinates of `source`."""
-        return self.own[self.flexible]
+        return self.modal[self.flexible]
 
     def conservative(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Return Hermitian M, G, K of ``(−ν²M + νG + K) X = 0`` and the number of harmonics.
@@ -101,8 +101,8 @@ class Candidate:
     def motion(self) -> np.ndarray:
         """Return the displacements that count, across the axis and along it if need be, (p, k)."""
         rows = 3 if self.axial else 2
-        parts = [self.source.interface_motion(name)[:rows] for name in self.interfaces]
-        return np.vstack(parts)
+        motions = (self.source.interface_motion(name)[:rows] for name in self.interfaces)
+        return np.vstack(list(motions))
 
     def inertia_loads(self) -> np.ndarray:
         """Return loads of acceleration, and of the rotor's own unbalance if it has one, (l, k)."""
@@ -157,7 +157,7 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
     return Candidate(
         source=source,
         invariants=source.invariants,
-        own=np.arange(reduced.size),
+        modal=np.arange(reduced.size),
         flexible=np.arange(first, reduced.size),
         frequencies=reduced.frequencies[first:],
         stiffening="tilt",
@@ -172,8 +172,8 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
 
 def _acts_along(support: Support) -> bool:
     """True if a support acts along the axis, at rest or spinning."""
-    parts = [matrix for speed in (0.0, 1.0, 1e3) for matrix in support.matrices(speed)]
-    return any(np.any(part[2]) or np.any(part[:, 2]) for part in parts)
+    matrices = [matrix for speed in (0.0, 1.0, 1e3) for matrix in support.matrices(speed)]
+    return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)
 
 
 def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
@@ -183,14 +183,14 @@ def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
     source = LinearScene.of(mbs, body, about="given")
     inv, kinds = body.motion.invariants, body.selection.kinds
     first = body.motion.formulation.translation_count
-    # constraints may mix coordinates; those of the rotor's modes stay apart
-    own = np.argmax(np.abs(source.N[first : first + inv.size]), axis=1)
+    # constraints may mix coordinates; those of the rotor's modes stay as they are
+    modal = np.argmax(np.abs(source.N[first : first + inv.size]), axis=1)
     elastic = [kind is ModeKind.ELASTIC for kind in kinds]
     flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & elastic)
     return Candidate(
         source=source,
         invariants=inv,
-        own=own,
+        modal=modal,
         flexible=flexible,
         frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
         stiffening=body.stiffening,

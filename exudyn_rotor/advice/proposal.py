@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
-from exudyn_rotor.advice.levels import Level, choose_level
-from exudyn_rotor.advice.modes import GROWTH, Truncation, choose_modes
+from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request
-from exudyn_rotor.advice.steps import Step, choose_step
+from exudyn_rotor.advice.step_size import Step, choose_step
+from exudyn_rotor.advice.stiffening_level import Level, choose_level
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -203,20 +203,20 @@ def propose(
     one, too, where something acts along the axis (2.2). The axial motion is never left out: what
     the frame does not carry is a rigid mode.
 
-    Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so
-    the band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
+    Modes: a load that is fixed in space at frequency f appears in the rotor frame at f ± Ω, so the
+    band ends at f + Ω. Modes in the band stay; of the others those whose absence changes the
     response of the interfaces by less than half the accuracy leave, see
-    :mod:`exudyn_rotor.advice.modes`. Without known supports the flexibility of the flexible modes
-    alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
-    relative to the modes given. What static responses to loads at the interfaces add to those is
-    in the reasons; above half the accuracy, or with all modes in the band, that warns.
+    :mod:`exudyn_rotor.advice.mode_choice`. Without known supports the flexibility of the flexible
+    modes alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
+    relative to the modes given. What static responses to loads at the interfaces add to those is in
+    the reasons; above half the accuracy, or with all modes in the band, that warns.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
     the end of the band, and for the change of the steady response: next to a resonance that is
     larger by the amplification, and where a slow motion in space is integrated in the rotor frame
-    by the ratio of frequencies; see :mod:`exudyn_rotor.advice.steps`. After N periods the phase is
-    behind by πN times the accuracy. Faster motions than the band, such as the ringing after a
+    by the ratio of frequencies; see :mod:`exudyn_rotor.advice.step_size`. After N periods the phase
+    is behind by πN times the accuracy. Faster motions than the band, such as the ringing after a
     sudden start, are not resolved.
     """
     request = Request.of(speeds, load_frequencies, accuracy)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.advice.loads import external_load, instants, turned, weight
+from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
 from exudyn_rotor.multibody.record import Record
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -25,7 +25,7 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     moments comparable. None where it is not known what the modes leave out.
     """
     rotor = body.selection.source
-    if rotor.with_attachments is None or not rotor.interfaces or "shell" not in body.objects:
+    if rotor.with_attachments is None or not rotor.interfaces or "marker_body" not in body.objects:
         return None
     count = len(rotor.interfaces)
     if len(record.time) < 2:
@@ -35,7 +35,7 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     rest = (_flexibility(rotor.with_attachments) - _flexibility(rotor)) * scale
     equations = _equations(body, motion) * scale
     solve = np.linalg.pinv(equations, rcond=_SEEN)
-    missing, whole = 0.0, 0.0
+    missing, largest = 0.0, 0.0
     shown = np.tile([True] * 3 + [False] * 3, count)
     for index in instants(record):
         loads, zeta, frame = _state(body, record, index)
@@ -43,8 +43,8 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
         bent = motion @ np.where(flexible, columns, 0.0)
         moved = motion @ columns + np.tile(np.append(frame, [0.0] * 3), count)
         missing = max(missing, np.linalg.norm((rest @ (solve @ loads))[shown]))
-        whole = max(whole, np.linalg.norm(moved[shown]), np.linalg.norm(bent[shown]))
-    return float(missing / whole) if whole else 0.0
+        largest = max(largest, np.linalg.norm(moved[shown]), np.linalg.norm(bent[shown]))
+    return float(missing / largest) if largest else 0.0
 
 
 def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
@@ -61,13 +61,13 @@ def _flexibility(rotor: ReducedRotor) -> np.ndarray:
 
 
 def _equations(body: RotorBody, motion: np.ndarray) -> np.ndarray:
-    """Return what loads at the interfaces (6n) do: on the modes, and pushing the frame."""
-    felt = (motion @ body.selection.T).T
-    push = np.tile(np.hstack([np.eye(3), np.zeros((3, 3))]), len(motion) // 6)
+    """Return what loads at the interfaces (6n) do: on the modes, and as forces on the frame."""
+    on_modes = (motion @ body.selection.T).T
+    forces = np.tile(np.hstack([np.eye(3), np.zeros((3, 3))]), len(motion) // 6)
     e = body.motion.invariants.direction
     free = {0: np.zeros((3, 3)), 2: np.eye(3) - np.outer(e, e), 3: np.eye(3)}
-    frame = free[body.formulation.translation_count] @ push
-    return np.vstack([felt, frame / np.sqrt(body.motion.invariants.mass)])
+    frame = free[body.formulation.translation_count] @ forces
+    return np.vstack([on_modes, frame / np.sqrt(body.motion.invariants.mass)])
 
 
 def _state(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, ...]:
@@ -78,16 +78,16 @@ def _state(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, ...
     external = external_load(body, record, index)[1]
     q = record.q[index]
     turn = turned(body, q)
-    own = q[body.layout.unknowns]
-    weighing = turn.T @ weight(body)
+    unknowns = q[body.layout.unknowns]
+    weight_in_rotor = turn.T @ weight(body)
     along = turn.T @ motion.free_directions
-    felt = external[motion.modes] - motion.invariants.S.T @ weighing / mass
-    push = along @ (external[motion.translations] - motion.free_directions.T @ weight(body))
+    on_modes = external[motion.modes] - motion.invariants.S.T @ weight_in_rotor / mass
+    on_frame = along @ (external[motion.translations] - motion.free_directions.T @ weight(body))
     # the frame may stand in a centre of mass off the axis, and that circles about it
     arm = body.selection.origin - body.axis.project(body.selection.origin)
     circled = turn.T @ motion.orientation @ arm - arm
     return (
-        np.concatenate([felt, push / np.sqrt(mass)]),
-        own[motion.modes],
-        along @ own[motion.translations] + circled,
+        np.concatenate([on_modes, on_frame / np.sqrt(mass)]),
+        unknowns[motion.modes],
+        along @ unknowns[motion.translations] + circled,
     )

@@ -27,7 +27,7 @@ class Run:
     ----------
     label : str
     unknowns, locked, constraints : int
-        Coordinates of the rotor: unknown, and locked ones of its native shell; constraints on it.
+        Coordinates of the rotor: unknown, and locked ones of its marker body; constraints on it.
     seconds : float
         Wall-clock time of the time integration.
     time : ndarray, shape (s,)

@@ -24,12 +24,12 @@ from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
     SPIN,
-    ConstraintWatch,
+    ConstraintMonitor,
     add_constraints,
     add_spin_guide,
     guiding_force,
 )
-from exudyn_rotor.multibody.marker_body import ShellMesh, shell_mesh, shell_object
+from exudyn_rotor.multibody.marker_body import MarkerBodyMesh, marker_body_mesh, marker_body_object
 from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -63,7 +63,7 @@ def add_rotor(
     marker_offsets: Mapping[str, ArrayLike] | None = None,
     show_markers: bool = True,
     locking: str = "auto",
-    native_shell: bool = True,
+    marker_body: bool = True,
     negligible: float = NEGLIGIBLE,
     color: Sequence[float] = DEFAULT_COLOR,
 ) -> RotorBody:
@@ -106,12 +106,14 @@ def add_rotor(
     show_markers : bool
         Whether markers are drawn.
     locking : {'auto', 'mass', 'constraints'}
-        How coordinates of the shell that the formulation does not have are held; see the notes
-        and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for time-varying
-        prescribed motions and for in-plane translation in a plane skew to the inertial axes,
-        masses else.
-    native_shell : bool
-        False leaves out markers, mesh sensors and drawing, and with them every locked coordinate.
+        How coordinates of the marker body that the formulation does not have are held; see the
+        notes and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for
+        time-varying prescribed motions and for in-plane translation in a plane skew to the
+        inertial axes, masses else.
+    marker_body : bool
+        Whether a massless flexible body of Exudyn shares the coordinates. It gives markers, mesh
+        sensors and drawing, and its node the coordinates that are locked; False leaves out all of
+        these.
     negligible : float
         Share of their upper bound below which couplings are left out of a time step; see
         :func:`exudyn_rotor.select_modes`.
@@ -138,7 +140,7 @@ def add_rotor(
                                                            of first order only
     θ(t) or τ(t)                  any; ``'constraints'``   ``'mass'``; a run with constraints
                                   is exact                 stops with an error
-    in-plane, plane skew to the   ``'constraints'``        none; use ``native_shell=False`` or
+    in-plane, plane skew to the   ``'constraints'``        none; use ``marker_body=False`` or
     inertial axes                                          translation ``'free'``
     ============================  =======================  =====================================
 
@@ -150,7 +152,7 @@ def add_rotor(
     inputs.main_system(mbs)
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
     formulation = Formulation(translation, spin, drive)
-    requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, native_shell)
+    requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, marker_body)
     setup = inputs.Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
@@ -171,17 +173,17 @@ def add_rotor(
         stiffness_damping=checks.number(stiffness_damping, "stiffness_damping", "s", least=0.0),
         markers=requests,
         locking=checks.choice(locking, "locking", LOCKINGS),
-        native_shell=native_shell,
+        marker_body=marker_body,
         negligible=negligible,
         color=inputs.color_of(color),
     )
     plan = make_plan(reduced, setup)
     inputs.check_free_names(mbs, setup)
-    if not native_shell:
+    if not marker_body:
         return _add_bare(mbs, plan)
     offsets = {interface: request.offset for interface, request in requests.items()}
-    mesh = shell_mesh(reduced, plan.selection, plan.frame, offsets)
-    return _add_with_shell(mbs, plan, mesh)
+    mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
+    return _add_with_marker_body(mbs, plan, mesh)
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
@@ -200,21 +202,21 @@ def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
     return RotorBody(mbs, plan, {"coordinates": node}, {"physics": physics})
 
 
-def _add_with_shell(mbs: exudyn.MainSystem, plan: Plan, mesh: ShellMesh) -> RotorBody:
-    """Add nodes, equations, native shell, markers, locks and gravity."""
+def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMesh) -> RotorBody:
+    """Add nodes, equations, locks, the marker body, its markers and gravity."""
     rigid = mbs.AddNode(_rigid_node(plan))
     modes = mbs.AddNode(_generic_node(plan.setup.name, plan.modal_start, plan.modal_start_rate))
     guide = guiding_force(plan.locks, plan.layout)
     constraints = {}
     if not plan.by_mass:
-        watch = ConstraintWatch(guide, plan.layout.size) if plan.locks.varying else None
-        constraints = add_constraints(mbs, plan.locks, rigid, watch)
-        guide = watch or guide
+        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
+        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
+        guide = monitor or guide
     physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
     if plan.motion.is_constant:
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
-    shell = mbs.AddObject(
-        shell_object(
+    marker_body = mbs.AddObject(
+        marker_body_object(
             plan.setup.name or "",
             [rigid, modes],
             mesh,
@@ -224,15 +226,17 @@ def _add_with_shell(mbs: exudyn.MainSystem, plan: Plan, mesh: ShellMesh) -> Roto
         )
     )
     load = None
-    if np.any(plan.shell_gravity):
-        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=shell))
-        load = mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=plan.shell_gravity))
+    if np.any(plan.marker_body_gravity):
+        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))
+        load = mbs.AddLoad(
+            LoadMassProportional(markerNumber=marker, loadVector=plan.marker_body_gravity)
+        )
     return RotorBody(
         mbs,
         plan,
         nodes={"rigid": rigid, "modes": modes},
-        objects={"physics": physics, "shell": shell},
-        markers=_add_markers(mbs, plan, shell, mesh),
+        objects={"physics": physics, "marker_body": marker_body},
+        markers=_add_markers(mbs, plan, marker_body, mesh),
         constraints=constraints,
         gravity_load=load,
         mesh_node_count=mesh.mesh_node_count,
@@ -273,14 +277,14 @@ def _generic_node(
 
 
 def _add_markers(
-    mbs: exudyn.MainSystem, plan: Plan, shell: exudyn.ObjectIndex, mesh: ShellMesh
+    mbs: exudyn.MainSystem, plan: Plan, marker_body: exudyn.ObjectIndex, mesh: MarkerBodyMesh
 ) -> dict[str, exudyn.MarkerIndex]:
     """Add one marker per interface; rigid markers have the mesh axes as their frame."""
     markers = {}
     for interface, request in plan.setup.markers.items():
         common = {
             "name": inputs.marker_name(plan.setup.name, interface),
-            "bodyNumber": shell,
+            "bodyNumber": marker_body,
             "visualization": {"show": request.show, "showMarkerNodes": False},
         }
         if request.kind == "rigid":

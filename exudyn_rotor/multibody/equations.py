@@ -1,6 +1,6 @@
 """The rotor's equations as one ``ObjectGenericODE2``: user functions, or constant matrices.
 
-The object shares its nodes with the native shell. Its coordinates are those of the nodes; the
+The object shares its nodes with the marker body. Its coordinates are those of the nodes; the
 unknowns of the formulation are placed among them, and what is left is locked. Whatever is linear
 with constant coefficients is evaluated by Exudyn itself.
 """
@@ -59,7 +59,7 @@ def constant_object(motion: Motion, layout: Layout, nodes: list) -> ObjectGeneri
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass),
-        **_native_part(motion, layout),
+        **_constant_items(motion, layout),
         visualization=VObjectGenericODE2(show=False),
     )
 
@@ -89,13 +89,13 @@ def user_function_object(
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=mass,
-        **_native_part(motion, layout),
+        **_constant_items(motion, layout),
         **functions,
         visualization=VObjectGenericODE2(show=False),
     )
 
 
-def _native_part(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
+def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
     """Return the matrices and the force that Exudyn itself evaluates."""
     constant = constant_part(motion)
     force = np.zeros(layout.size)
@@ -143,11 +143,11 @@ def _mass_of_free_spin(
     table[:, 1] = np.concatenate([columns, [spin], modes, np.full(count, spin)])
     table[: rows.size, 2] = fixed[rows, columns]
     across, down = table[-2 * count : -count, 2], table[-count:, 2]
-    own = rows.size
+    spin_entry = rows.size
     container = exudyn.MatrixContainer
 
     def entries() -> exudyn.MatrixContainer:
-        table[own, 2] = kernel.spin_inertia
+        table[spin_entry, 2] = kernel.spin_inertia
         across[:] = down[:] = kernel.spin_coupling
         matrix = container()
         matrix.SetWithSparseMatrixCSR(size, size, table, useDenseMatrix=False)
@@ -163,24 +163,24 @@ def _mass_of_free_spin(
 
 def _coupled_mass(motion: Motion, layout: Layout) -> Callable:
     places = np.ix_(layout.unknowns, layout.unknowns)
-    frame = np.diag(layout.lock_mass)
+    mass = np.diag(layout.lock_mass)
 
     def mass_matrix(mbs, t, item, q, q_t):
-        frame[places] = motion.mass_matrix(t, np.array(q)[layout.unknowns])
-        return frame
+        mass[places] = motion.mass_matrix(t, np.array(q)[layout.unknowns])
+        return mass
 
     return mass_matrix
 
 
 def _coupled_forces(motion: Motion, layout: Layout) -> StateForce:
-    """Return the forces of the general equations, less what is native."""
+    """Return the forces of the general equations, less those that Exudyn evaluates itself."""
     constant = constant_part(motion)
 
     def forces(t, q, q_t):
-        own, rate = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
+        values, rates = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
         force = np.zeros(layout.size)
-        native = constant.force - constant.stiffness @ own - constant.damping @ rate
-        force[layout.unknowns] = motion.forces(t, own, rate) - native
+        by_exudyn = constant.force - constant.stiffness @ values - constant.damping @ rates
+        force[layout.unknowns] = motion.forces(t, values, rates) - by_exudyn
         return force
 
     return forces
@@ -192,8 +192,8 @@ def _jacobian(motion: Motion, layout: Layout) -> Callable:
     matrix = np.zeros((layout.size, layout.size))
 
     def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
-        own, rate = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
-        by_q, by_v = motion.jacobian(t, own, rate)
+        values, rates = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
+        by_q, by_v = motion.jacobian(t, values, rates)
         by_q += constant.stiffness
         by_v += constant.damping
         matrix[places] = -factor_q * by_q - factor_v * by_v

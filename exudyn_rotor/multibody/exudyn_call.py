@@ -123,7 +123,6 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         ),
         "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
         "show_markers": checks.flag(showMarkers, "showMarkers"),
-        "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
     }
     checks.flag(verbose, "verbose")
     if axis is None:
@@ -257,7 +256,7 @@ def _dictionary(body: RotorBody) -> dict:
         "FFRFReducedOrderObjectDict": {
             "nRigidBody": body.nodes["rigid"],
             "nGenericODE2": body.nodes["modes"],
-            "oFFRFreducedOrder": body.objects["shell"],
+            "oFFRFreducedOrder": body.objects["marker_body"],
             "loadGravity": body.gravity_load,
             "rotorBody": body,
         }

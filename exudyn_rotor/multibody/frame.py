@@ -1,8 +1,8 @@
-"""Placing a rotor in Exudyn's native shell: its node spins about local z, whatever the mesh does.
+"""Placing a rotor in its marker body, whose node spins about local z, whatever the mesh does.
 
 ``NodeRigidBodyRxyz`` has the orientation ``Rx(a) Ry(b) Rz(c)``. With a and b locked, the third
-angle turns the body about the fixed axis ``Rx(a) Ry(b) e_z``, for every a and b. So the shell's
-axes are the mesh axes turned by B, with ``B e = e_z``.
+angle turns the body about the fixed axis ``Rx(a) Ry(b) e_z``, for every a and b. So the axes of the
+marker body are the mesh axes turned by B, with ``B e = e_z``.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False)
-class ShellFrame:
-    """Mesh and scene as the native shell sees them.
+class BodyFrame:
+    """Mesh and scene as the marker body sees them.
 
     Attributes
     ----------
     origin : ndarray, shape (3,)
         Frame origin, mesh coordinates [m].
     B : ndarray, shape (3, 3)
-        Mesh axes → shell axes.
+        Mesh axes → axes of the marker body.
     orientation : ndarray, shape (3, 3)
         Mesh axes → inertial axes at θ = 0.
     position : ndarray, shape (3,)
@@ -42,7 +42,7 @@ class ShellFrame:
         origin: np.ndarray,
         mesh_position: np.ndarray,
         orientation: np.ndarray,
-    ) -> ShellFrame:
+    ) -> BodyFrame:
         """Place a rotor whose mesh origin lies at `mesh_position` with `orientation`."""
         return cls(
             origin=origin,
@@ -53,18 +53,18 @@ class ShellFrame:
 
     @property
     def angles(self) -> np.ndarray:
-        """Reference Tait–Bryan angles (a, b, c) of the shell's node [rad]."""
+        """Reference Tait–Bryan angles (a, b, c) of the marker body's node [rad]."""
         with warnings.catch_warnings():
             # at b = ±90° the split of a and c is free, and any serves: a and b stay locked
             warnings.simplefilter("ignore", UserWarning)
             return Rotation.from_matrix(self.orientation @ self.B.T).as_euler("XYZ")
 
     def points(self, mesh_points: np.ndarray) -> np.ndarray:
-        """Return mesh points (…, 3) in shell coordinates."""
+        """Return mesh points (…, 3) in coordinates of the marker body."""
         return (np.asarray(mesh_points) - self.origin) @ self.B.T
 
     def columns(self, displacements: np.ndarray) -> np.ndarray:
-        """Return nodal displacement columns (3n, k) turned from mesh to shell axes."""
+        """Return nodal displacement columns (3n, k), given in mesh axes, in those of the body."""
         nodal = displacements.reshape(-1, 3, displacements.shape[1])
         return np.einsum("ab,nbk->nak", self.B, nodal).reshape(displacements.shape)
 

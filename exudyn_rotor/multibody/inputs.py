@@ -69,7 +69,7 @@ class Setup:
     stiffness_damping: float
     markers: Mapping[str, MarkerRequest]
     locking: str
-    native_shell: bool
+    marker_body: bool
     negligible: float
     color: tuple[float, ...]
 
@@ -151,16 +151,16 @@ def marker_requests(
     markers: Mapping[str, str] | str | None,
     offsets: Mapping[str, ArrayLike] | None,
     show: bool,
-    native_shell: bool,
+    marker_body: bool,
 ) -> dict[str, MarkerRequest]:
     """Return the markers to make; None asks for rigid markers at all interfaces.
 
-    Without the native shell none can be made, and None asks for none.
+    Without the marker body none can be made, and None asks for none.
     """
     checks.flag(show, "show_markers")
-    checks.flag(native_shell, "native_shell")
+    checks.flag(marker_body, "marker_body")
     if markers is None:
-        markers = "rigid" if native_shell else {}
+        markers = "rigid" if marker_body else {}
     if isinstance(markers, str):
         markers = dict.fromkeys(reduced.interfaces, checks.choice(markers, "markers", MARKER_KINDS))
     elif not isinstance(markers, Mapping):
@@ -176,8 +176,8 @@ def marker_requests(
             raise ValueError(
                 f"marker_offsets: interface {name!r} gets no marker; add it to markers"
             )
-    if markers and not native_shell:
-        raise ValueError("markers need the native shell: leave native_shell=True, or ask for none")
+    if markers and not marker_body:
+        raise ValueError("markers need the marker body: leave marker_body=True, or ask for none")
     return {
         name: MarkerRequest(
             checks.choice(kind, f"markers: kind of {name!r}", MARKER_KINDS),

@@ -1,4 +1,4 @@
-"""Holding the coordinates of the native shell that a formulation does not have.
+"""Holding the coordinates of the marker body that a formulation does not have.
 
 Two ways:
 
@@ -46,7 +46,7 @@ SPIN_HOLD_RATE = 1e3  # rad/s, per own inertia
 
 @dataclass(frozen=True, eq=False)
 class Locks:
-    """What happens to the six rigid coordinates of the shell.
+    """What happens to the six rigid coordinates of the marker body.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Locks:
 
     @property
     def locked_names(self) -> tuple[str, ...]:
-        """Names of the coordinates that exist only for the shell."""
+        """Names of the coordinates that exist only for the marker body."""
         return tuple(COORDINATE_NAMES[i] for i in (*self.fixed, *self.prescribed))
 
 
@@ -182,7 +182,7 @@ def add_spin_guide(
     mbs.SetLoadParameter(load, "loadUserFunction", guide)
 
 
-class ConstraintWatch:
+class ConstraintMonitor:
     """Stops explicit solvers, which set a constrained coordinate to zero without a word.
 
     They never evaluate the constraints' prescribed motion, implicit and static solvers do at every
@@ -214,18 +214,18 @@ class ConstraintWatch:
 
 
 def add_constraints(
-    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, watch: ConstraintWatch | None
+    mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, monitor: ConstraintMonitor | None
 ) -> dict[str, exudyn.ObjectIndex]:
-    """Hold the locked coordinates of the shell's node by constraints; return them by name.
+    """Hold the locked coordinates of the marker body's node by constraints; return them by name.
 
-    `watch` is told of evaluations; it is needed where some prescribed motion varies with time.
+    `monitor` is told of evaluations; it is needed where some prescribed motion varies with time.
     """
     ground = mbs.AddNode(NodePointGround())
     origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
     constraints = {}
     for index in (*locks.fixed, *locks.varying):
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
-        offset = _offset(locks.varying[index], watch) if index in locks.varying else {}
+        offset = _offset(locks.varying[index], monitor) if index in locks.varying else {}
         constraints[COORDINATE_NAMES[index]] = mbs.AddObject(
             CoordinateConstraint(markerNumbers=[origin, marker], **offset)
         )
@@ -234,15 +234,15 @@ def add_constraints(
     return constraints
 
 
-def _offset(motion: PrescribedMotion, watch: ConstraintWatch) -> dict:
+def _offset(motion: PrescribedMotion, monitor: ConstraintMonitor) -> dict:
     """Return the constraint's settings; index-2 solvers need the velocity beside the position."""
 
     def value(mbs, t, item, offset):
-        watch.seen()
+        monitor.seen()
         return motion.value(t)
 
     def rate(mbs, t, item, offset):
-        watch.seen()
+        monitor.seen()
         return motion.rate(t)
 
     return {"offsetUserFunction": value, "offsetUserFunction_t": rate}

@@ -1,4 +1,4 @@
-"""The native shell: a massless ``ObjectFFRFreducedOrder`` that gives markers, sensors, pictures."""
+"""The marker body: a massless ``ObjectFFRFreducedOrder`` that gives markers, sensors, pictures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import ObjectFFRFreducedOrder, VObjectFFRFreducedOrder
 
-from exudyn_rotor.multibody.frame import ShellFrame
+from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.theory.axis import SpinAxis
@@ -17,8 +17,8 @@ from exudyn_rotor.theory.invariants import Invariants
 
 
 @dataclass(frozen=True, eq=False)
-class ShellMesh:
-    """Nodes of the shell: mesh nodes first, then four virtual nodes per interface.
+class MarkerBodyMesh:
+    """Nodes of the marker body: mesh nodes first, then four virtual nodes per interface.
 
     The virtual nodes move as the interface's mean rigid motion says, so a marker on them is exact
     and its cost does not depend on the mesh: three around the reference point for rigid markers,
@@ -27,9 +27,9 @@ class ShellMesh:
     Attributes
     ----------
     positions : ndarray, shape (N, 3)
-        Shell axes, from the frame origin [m].
+        Axes of the marker body, from the frame origin [m].
     modes : ndarray, shape (3N, m)
-        Displacement columns, shell axes.
+        Displacement columns, axes of the marker body.
     triangles : ndarray of int
     stress : ndarray, shape (N, 6 m) or (0, 0)
         Stress columns in Exudyn's layout, mesh axes [Pa].
@@ -48,13 +48,13 @@ class ShellMesh:
     mesh_node_count: int
 
 
-def shell_mesh(
+def marker_body_mesh(
     reduced: ReducedRotor,
     selection: Selection,
-    frame: ShellFrame,
+    frame: BodyFrame,
     offsets: Mapping[str, np.ndarray],
-) -> ShellMesh:
-    """Return the nodes of the shell for one formulation.
+) -> MarkerBodyMesh:
+    """Return the nodes of the marker body for one formulation.
 
     `offsets` shift an interface's virtual nodes [m, mesh axes]. A marker's own offset is of no use
     here: in Exudyn a force at it exerts no moment on modal coordinates.
@@ -80,7 +80,7 @@ def shell_mesh(
         count += 4
     if reduced.shapes is not None and reduced.shapes.stress is not None:
         stress = _stress_columns(reduced.shapes.stress @ selection.T, count)
-    return ShellMesh(
+    return MarkerBodyMesh(
         positions=frame.points(np.vstack(positions)),
         modes=frame.columns(np.vstack(modes)),
         triangles=triangles,
@@ -117,15 +117,15 @@ def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
     return full
 
 
-def shell_object(
+def marker_body_object(
     name: str,
     nodes: list,
-    mesh: ShellMesh,
+    mesh: MarkerBodyMesh,
     invariants: Invariants,
-    frame: ShellFrame,
+    frame: BodyFrame,
     color: Sequence[float],
 ) -> ObjectFFRFreducedOrder:
-    """Return the shell without inertia or stiffness of its own.
+    """Return the marker body without inertia or stiffness of its own.
 
     Mass, centre of mass and ``ΦᵀMΨ`` are given for gravity by ``MarkerBodyMass`` alone.
     """

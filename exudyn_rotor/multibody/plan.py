@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.equations import Layout
-from exudyn_rotor.multibody.frame import ShellFrame
+from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.multibody.locking import Locks, layout
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
@@ -25,27 +25,27 @@ class Plan:
     setup : Setup
         What was asked for.
     selection : Selection
-    frame : ShellFrame
+    frame : BodyFrame
     locks : Locks
     layout : Layout
         Where the unknowns stand among the coordinates of the nodes.
     motion : Motion
     by_mass : bool
         Whether locked coordinates are held by mass, not by constraints.
-    shell_gravity : ndarray, shape (3,)
-        Gravity that Exudyn applies to the native shell, not the equations [m/s²].
+    marker_body_gravity : ndarray, shape (3,)
+        Gravity that Exudyn applies to the marker body, not the equations [m/s²].
     modal_start, modal_start_rate : ndarray, shape (m,)
         Initial modal coordinates [√kg m] and velocities [√kg m/s].
     """
 
     setup: inputs.Setup
     selection: Selection
-    frame: ShellFrame
+    frame: BodyFrame
     locks: Locks
     layout: Layout
     motion: Motion
     by_mass: bool
-    shell_gravity: np.ndarray
+    marker_body_gravity: np.ndarray
     modal_start: np.ndarray
     modal_start_rate: np.ndarray
 
@@ -57,16 +57,16 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     selection = select_modes(damped, formulation, setup.negligible)
     invariants = selection.invariants
     direction = reduced.axis.direction
-    frame = ShellFrame.of(direction, selection.origin, place.position, place.rotation)
+    frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
     locks = Locks.of(formulation, place.rotation @ direction)
-    skew = setup.native_shell and locks.normal is not None
+    skew = setup.marker_body and locks.normal is not None
     if setup.locking == "mass" and skew:
         raise ValueError(
             "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints', translation='free', or native_shell=False"
+            "use locking='constraints', translation='free', or marker_body=False"
         )
-    # gravity on the shell exerts no moment about e by the deflection Sζ, which a free spin needs
-    in_equations = not setup.native_shell or (
+    # gravity on the marker body exerts no moment about e by the deflection Sζ; a free spin needs it
+    in_equations = not setup.marker_body or (
         formulation.has_spin and formulation.translation_count == 0
     )
     by_mass = setup.locking == "mass" or (
@@ -91,12 +91,12 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
         locks=locks,
         layout=(
             layout(locks, invariants.size, inertia, by_mass)
-            if setup.native_shell
+            if setup.marker_body
             else Layout.unlocked(motion.size)
         ),
         motion=motion,
         by_mass=by_mass,
-        shell_gravity=np.zeros(3) if in_equations else setup.gravity,
+        marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
         modal_start=inputs.modal_values(
             setup.modal_coordinates, "modal_coordinates", selection.labels
         ),

@@ -63,13 +63,13 @@ class Record:
     complete: bool
 
 
-def add_watch(body: RotorItems) -> None:
+def add_recording(body: RotorItems) -> None:
     """Add native sensors of all coordinates and of the forces of locking constraints."""
     if body.record_sensors:
         return
     if body.mbs.systemIsConsistent:
         raise ValueError(
-            f"watch: the system of rotor {body.name!r} is assembled already; call body.watch() "
+            f"start_recording: the system of rotor {body.name!r} is assembled already; call this "
             "before mbs.Assemble()"
         )
     options = {"storeInternal": True, "writeToFile": False}

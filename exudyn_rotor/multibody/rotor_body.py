@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import exudyn
 
 from exudyn_rotor.multibody import sensors
-from exudyn_rotor.multibody.record import Record, add_watch, read_record
+from exudyn_rotor.multibody.record import Record, add_recording, read_record
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
 
@@ -33,8 +33,8 @@ class RotorBody(RotorItems):
 
     @property
     def locked(self) -> tuple[str, ...]:
-        """Coordinates that exist only because the native shell's node has them."""
-        return self.locks.locked_names if "shell" in self.objects else ()
+        """Coordinates that exist only because the marker body's node has them."""
+        return self.locks.locked_names if "marker_body" in self.objects else ()
 
     def report(self) -> str:
         """Return a short table of what was added and what it means at run time."""
@@ -74,14 +74,14 @@ class RotorBody(RotorItems):
         """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
         return sensors.add_drive_torque_sensor(self, **options)
 
-    def watch(self) -> None:
+    def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
 
         Adds native sensors, so call it before ``mbs.Assemble()``. They store as often as
         ``solution.sensors.writePeriod`` says, and a step calls no Python for them.
         """
-        add_watch(self)
+        add_recording(self)
 
-    def record(self) -> Record:
-        """Return what :meth:`watch` recorded; without it the current state alone."""
+    def recorded(self) -> Record:
+        """Return what :meth:`start_recording` recorded; without it the current state alone."""
         return read_record(self)

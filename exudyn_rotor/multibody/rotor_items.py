@@ -10,7 +10,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.equations import Layout
-from exudyn_rotor.multibody.frame import ShellFrame
+from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.multibody.inputs import main_system
 from exudyn_rotor.multibody.locking import Locks
 from exudyn_rotor.multibody.plan import Plan
@@ -41,10 +41,10 @@ class RotorItems:
     plan : Plan
         How the rotor was laid out; ``plan.setup`` is what was asked for.
     nodes : mapping of str
-        ``'rigid'`` (frame) and ``'modes'`` (modal coordinates); without the native shell only
+        ``'rigid'`` (frame) and ``'modes'`` (modal coordinates); without the marker body only
         ``'coordinates'``.
     objects : mapping of str
-        ``'physics'`` (the equations) and ``'shell'`` (markers, sensors, drawing).
+        ``'physics'`` (the equations) and ``'marker_body'`` (markers, sensors, drawing).
     markers : mapping of str
         Marker number of every interface. Apply loads here: the frame's node carries only the
         motions that the formulation has.
@@ -52,7 +52,7 @@ class RotorItems:
         Locking constraints by coordinate, where ``locking='constraints'``.
     gravity_load : LoadIndex or None
         None without gravity, and where it is part of the equations (``motion.gravity``): without
-        the native shell, and for a free spin without translation.
+        the marker body, and for a free spin without translation.
     mesh_node_count : int
         Mesh nodes that native sensors can be put at.
     mesh_stress : bool
@@ -118,8 +118,8 @@ class RotorItems:
         return self.plan.motion
 
     @property
-    def frame(self) -> ShellFrame:
-        """Where mesh, shell and scene stand to each other."""
+    def frame(self) -> BodyFrame:
+        """Where mesh, marker body and scene stand to each other."""
         return self.plan.frame
 
     @property
@@ -129,7 +129,7 @@ class RotorItems:
 
     @property
     def locks(self) -> Locks:
-        """What happens to the six rigid coordinates of the shell."""
+        """What happens to the six rigid coordinates of the marker body."""
         return self.plan.locks
 
     def coordinates(

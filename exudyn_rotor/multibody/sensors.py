@@ -55,7 +55,7 @@ def add_node_sensor(
     UserWarning
         For stress of a rotor that was reduced with a prestress and spins.
     """
-    shell = _shell(body)
+    marker_body = _marker_body(body)
     count = body.mesh_node_count
     if checks.count(node, "node", least=-1) not in range(count):
         raise ValueError(
@@ -72,7 +72,7 @@ def add_node_sensor(
     _warn_of_static_stress(body, output)
     return body.mbs.AddSensor(
         SensorSuperElement(
-            bodyNumber=shell, meshNodeNumber=int(node), outputVariableType=output, **settings
+            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
         )
     )
 
@@ -113,7 +113,9 @@ def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
     elif body.formulation.has_spin:
         node, index = body.nodes["coordinates"], body.formulation.translation_count
     else:
-        raise ValueError(f"rotor {body.name!r}: without the shell a prescribed spin has no node")
+        raise ValueError(
+            f"rotor {body.name!r}: without the marker body a prescribed spin has no node"
+        )
 
     def spin(mbs, t, sensors, factors, configuration):
         angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
@@ -127,12 +129,12 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
     """Add a sensor of the drive torque about e [N m].
 
     The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
-    forces, which the locked coordinate of the shell collects. In static solutions it is right for
-    a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver returns
+    forces, which the locked coordinate of the marker body collects. In static solutions it is right
+    for a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver returns
     multipliers with the opposite sign. Explicit solvers have no accelerations at the first
     instant, so the first value is wrong with them.
     """
-    _shell(body)
+    _marker_body(body)
     if body.formulation.has_spin:
         raise ValueError(
             f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
@@ -142,8 +144,8 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
     def torque(mbs, t, sensors, factors, configuration):
         q, q_t, q_tt = body.coordinates(configuration)
         modes = slice(body.motion.formulation.translation_count, None)
-        own = body.motion.drive_torque(t, q, q_t, q_tt[modes])
-        return [own - external(t, configuration) - _deflected_weight(body, t, q[modes])]
+        needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
+        return [needed - external(t, configuration) - _deflected_weight(body, t, q[modes])]
 
     return _add_function_sensor(body, torque, options)
 
@@ -160,7 +162,7 @@ def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
 
 
 def _external_moment(body: RotorItems):
-    """Return a function that reads the external moment about e on the shell's spin coordinate."""
+    """Return a function that reads the external moment about e from the locked spin."""
     place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
     guide = guiding_force(body.locks, place)
     constraint = body.constraints.get("spin")
@@ -170,26 +172,26 @@ def _external_moment(body: RotorItems):
         theta, omega, omega_t = (
             float(mbs.GetNodeOutput(node, kind, configuration)[SPIN]) for kind in kinds
         )
-        held = (
+        reaction = (
             place.lock_mass[SPIN] * omega_t
             + place.lock_damping[SPIN] * omega
             + place.lock_stiffness[SPIN] * theta
         )
         if guide is not None:
-            held -= guide(t)[SPIN]
+            reaction -= guide(t)[SPIN]
         if constraint is not None:
-            held += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
-        return held
+            reaction += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
+        return reaction
 
     return moment
 
 
-def _shell(body: RotorItems) -> exudyn.ObjectIndex:
-    if "shell" not in body.objects:
+def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:
+    if "marker_body" not in body.objects:
         raise ValueError(
-            f"rotor {body.name!r} was added with native_shell=False; this sensor needs the shell"
+            f"rotor {body.name!r} was added with marker_body=False; this sensor needs one"
         )
-    return body.objects["shell"]
+    return body.objects["marker_body"]
 
 
 def _add_function_sensor(

@@ -140,7 +140,7 @@ BY_NAME: dict[str, Kind] = {
     "multipliers": v.ANY_VALUES,
     "name": v.NAME,
     "names": _INTERFACES.but(),
-    "native_shell": v.FLAG,
+    "marker_body": v.FLAG,
     "negligible": _TOLERANCE.but("zero"),
     "nodal_diameters": Kind(frozenset({"range"}), spoiled=True).but(negative=[-1]),
     "node": v.COUNT.but(beyond=10**6),

@@ -1,4 +1,4 @@
-"""Short runs of a rotor without the native shell: its unknowns alone, on one generic node."""
+"""Short runs of a rotor without the marker body: its unknowns alone, on one generic node."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def bare_rotor(
     forces: Mapping[int, float] | None = None,
     **options,
 ) -> RotorBody:
-    """Return a rotor without shell, with springs to ground and forces on its coordinates."""
+    """Return a rotor without marker body, with springs to ground and forces on its coordinates."""
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, native_shell=False, **options)
+    body = add_rotor(mbs, reduced, marker_body=False, **options)
     node = body.nodes["coordinates"]
     if springs:
         fixed = mbs.AddNode(NodePointGround())

@@ -48,7 +48,7 @@ def phase(quick: bool = False) -> Row:
 
 
 def node_phase_error(steps: int, revolutions: float = 1e6) -> float:
-    """Return the error of the shell's θ after very many turns at a constant speed [rad]."""
+    """Return the error of the marker body's θ after very many turns at a constant speed [rad]."""
     speed = 314.15
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, two_rings().reduce(0), spin=speed)

@@ -289,18 +289,18 @@ def _without_spin(body: RotorBody) -> np.ndarray:
 
 
 def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return an interface's three virtual nodes (3, 3) and their motion (3, 3, m), shell axes."""
+    """Return an interface's three virtual nodes (3, 3) and their motion (3, 3, m), in its axes."""
     nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
-    shell = body.mbs.GetObject(body.objects["shell"])
-    columns = np.asarray(shell["modeBasis"])
+    marker_body = body.mbs.GetObject(body.objects["marker_body"])
+    columns = np.asarray(marker_body["modeBasis"])
     return (
-        np.reshape(shell["referencePositions"], (-1, 3))[nodes],
+        np.reshape(marker_body["referencePositions"], (-1, 3))[nodes],
         columns.reshape(len(columns) // 3, 3, -1)[nodes],
     )
 
 
 def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
-    """Return displacement and rotation (6, m) of an interface, shell axes."""
+    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
     points, columns = _marker_nodes(body, name)
     mean = columns.mean(axis=0)
     turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ

@@ -202,8 +202,8 @@ def _chosen_step(function: Callable, moves: np.ndarray) -> float:
 
 
 def _spin_coordinate(body: RotorBody) -> int | None:
-    """Return the scene's coordinate θ; None for a prescribed spin without the native shell."""
+    """Return the scene's coordinate θ; None for a prescribed spin without the marker body."""
     places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
-    if "shell" in body.objects:
+    if "marker_body" in body.objects:
         return places[SPIN]
     return places[body.formulation.translation_count] if body.formulation.has_spin else None

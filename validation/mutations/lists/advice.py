@@ -4,7 +4,7 @@ from mutations.mutation import mutations
 
 ADVICE = [
     *mutations(
-        "advice/measures.py",
+        "advice/run_measures.py",
         "test_measures.py",
         (
             "gyroscopic term of the kinetic energy reversed",
@@ -29,12 +29,12 @@ ADVICE = [
         ),
         (
             "velocity in space without the spin",
-            "turned = rate + speed[:, None] * np.hstack",
-            "turned = rate + 0.0 * speed[:, None] * np.hstack",
+            "inertial_rate = rate + speed[:, None] * np.hstack",
+            "inertial_rate = rate + 0.0 * speed[:, None] * np.hstack",
         ),
     ),
     *mutations(
-        "advice/measures.py",
+        "advice/run_measures.py",
         "test_run_check.py::test_strain_is_that_of_the_static_stretch",
         (
             "strain grows with the speed",
@@ -43,7 +43,7 @@ ADVICE = [
         ),
     ),
     *mutations(
-        "advice/measures.py",
+        "advice/run_measures.py",
         "test_run_check.py::test_unstable_step_of_an_explicit_solver_is_found",
         (
             "frequencies of an explicit step without the spin",
@@ -52,27 +52,27 @@ ADVICE = [
         ),
     ),
     *mutations(
-        "advice/lost.py",
+        "advice/unresisted.py",
         "test_measures.py::test_axial_force_on_a_rotor_off_its_frame_is_felt "
         "test_run_check.py::test_loads_that_the_frame_does_not_take_are_found",
         (
-            "lever with the wrong sign",
-            "lost - (lever - e * (e @ lever))",
-            "lost + (lever - e * (e @ lever))",
+            "second-order moment with the wrong sign",
+            "unresisted - (by_arm - e * (e @ by_arm))",
+            "unresisted + (by_arm - e * (e @ by_arm))",
         ),
         (
             "moments that tilt not compared with the modes'",
-            "missing = moment - felt",
-            "missing = 0.0 * (moment - felt)",
+            "missing = moment - modal_moment",
+            "missing = 0.0 * (moment - modal_moment)",
         ),
     ),
     *mutations(
-        "advice/levels.py",
+        "advice/stiffening_level.py",
         "test_advice_linear.py::test_change_by_the_full_level_without_supports",
         (
             "whole change for half of it",
-            "float(np.max(0.5 * speed**2 * np.abs",
-            "float(np.max(2.0 * speed**2 * np.abs",
+            "shift = 0.5 * speed**2 * np.abs",
+            "shift = 2.0 * speed**2 * np.abs",
         ),
     ),
     *mutations(
@@ -82,7 +82,7 @@ ADVICE = [
         ("gyroscopic forces halved", "G = 1j * D", "G = 0.5j * D"),
     ),
     *mutations(
-        "advice/modes.py",
+        "advice/mode_choice.py",
         "test_advice_linear.py::test_critical_speeds_of_a_rigid_rotor",
         (
             "slope over the square of the speed",
@@ -91,7 +91,7 @@ ADVICE = [
         ),
     ),
     *mutations(
-        "advice/modes.py",
+        "advice/mode_choice.py",
         "test_advice.py::test_share_of_flexibility_is_that_of_the_modes",
         (
             "modes left out are doubled",
@@ -100,7 +100,7 @@ ADVICE = [
         ),
     ),
     *mutations(
-        "advice/steps.py",
+        "advice/step_size.py",
         "test_advice.py::test_steady_orbit_at_the_proposed_step_meets_the_accuracy",
         (
             "frame that follows: forward and backward exchanged",
@@ -118,8 +118,8 @@ ADVICE = [
         ),
         (
             "force on the frame left out",
-            "np.concatenate([felt, push / np.sqrt(mass)])",
-            "np.concatenate([felt, 0.0 * push])",
+            "np.concatenate([on_modes, on_frame / np.sqrt(mass)])",
+            "np.concatenate([on_modes, 0.0 * on_frame])",
         ),
     ),
 ]

@@ -44,8 +44,8 @@ MULTIBODY = [
         _SCENES,
         (
             "Exudyn's part counted twice",
-            "motion.forces(t, own, rate) - native",
-            "motion.forces(t, own, rate)",
+            "motion.forces(t, values, rates) - by_exudyn",
+            "motion.forces(t, values, rates)",
         ),
     ),
     *mutations(
@@ -53,8 +53,8 @@ MULTIBODY = [
         "test_body_solvers.py::test_solvers_agree",
         (
             "constant matrices without locks",
-            "motion.mass_matrix(0.0, rest), layout.lock_mass),\n        **_native_part",
-            "motion.mass_matrix(0.0, rest), 0.0 * layout.lock_mass + 1.0),\n        **_native_part",
+            "rest), layout.lock_mass),\n        **_constant_items",
+            "rest), 0.0 * layout.lock_mass + 1.0),\n        **_constant_items",
         ),
     ),
     *mutations(
@@ -108,8 +108,8 @@ MULTIBODY = [
         "test_body_solvers.py::test_work_of_the_drive_is_change_of_energy_plus_losses",
         (
             "external moment added to the drive",
-            "own - external(t, configuration)",
-            "own + external(t, configuration)",
+            "needed - external(t, configuration)",
+            "needed + external(t, configuration)",
         ),
         (
             "weight on the deflection forgotten",

@@ -72,7 +72,7 @@ class Responses:
     places: np.ndarray
 
     @cached_property
-    def whole(self) -> list[np.ndarray]:
+    def complete(self) -> list[np.ndarray]:
         """Responses with all modes."""
         return [rows @ np.linalg.solve(Z, loads) for Z, rows, loads in self.points]
 
@@ -89,12 +89,12 @@ class Responses:
             return 0.0
         places = self.places[dropped].ravel()
         worst = 0.0
-        for (_, rows, loads), H, all_of_it in zip(
-            self.points, self._compliances, self.whole, strict=True
+        for (_, rows, loads), H, response in zip(
+            self.points, self._compliances, self.complete, strict=True
         ):
             inner = np.linalg.solve(H[np.ix_(places, places)], H[places] @ loads)
             change = rows @ (H[:, places] @ inner)
-            worst = max(worst, largest_share(change, np.linalg.norm(all_of_it, axis=0)))
+            worst = max(worst, largest_share(change, np.linalg.norm(response, axis=0)))
         return worst
 
 
@@ -118,9 +118,9 @@ def choose_modes(given: Candidate, request: Request) -> Truncation:
     low, high, error = 0, len(ranked), 0.0
     while low < high:  # the error grows with the number left out
         middle = (low + high + 1) // 2
-        found = responses.error_without(np.concatenate(ranked[:middle]))
-        if found <= request.allowed:
-            low, error = middle, found
+        change = responses.error_without(np.concatenate(ranked[:middle]))
+        if change <= request.allowed:
+            low, error = middle, change
         else:
             high = middle - 1
     dropped = np.concatenate(ranked[:low]) if low else np.zeros(0, dtype=int)
@@ -144,18 +144,18 @@ def largest_share(change: np.ndarray, sizes: np.ndarray, least: float = 0.0) -> 
     return float(shares.max(initial=0.0))
 
 
-def _missing(own: Responses, attached: Responses, supported: bool) -> float:
+def _missing(given: Responses, attached: Responses, supported: bool) -> float:
     """Return the largest relative change of the response to any load by attachment modes.
 
     Where it is not known what holds the rotor, relative to the response to the load that moves its
     interfaces most: the flexible modes need not move them under every load.
     """
     worst = 0.0
-    for part, complete in zip(own.whole, attached.whole, strict=True):
-        sizes = np.linalg.norm(complete, axis=0)
+    for response, with_attachments in zip(given.complete, attached.complete, strict=True):
+        sizes = np.linalg.norm(with_attachments, axis=0)
         if not supported:
             sizes[:] = sizes.max(initial=0.0)
-        worst = max(worst, largest_share(complete - part, sizes, _UNMOVED))
+        worst = max(worst, largest_share(with_attachments - response, sizes, _UNMOVED))
     return worst
 
 
@@ -221,16 +221,16 @@ def critical(given: Candidate, request: Request) -> np.ndarray:
     """
     if not given.supported or request.low == request.high:
         return np.zeros(0)
-    _, _, half, _ = given.conservative(0.5 * request.high)
-    _, _, whole, _ = given.conservative(request.high)
-    if len(half) != len(whole):
+    _, _, K_half, _ = given.conservative(0.5 * request.high)
+    _, _, K_full, _ = given.conservative(request.high)
+    if len(K_half) != len(K_full):
         return np.linspace(request.low, request.high, _CRITICAL + 2)[1:-1]
-    X = (whole - half) / (0.75 * request.high**2)
-    K = whole - request.high**2 * X
+    X = (K_full - K_half) / (0.75 * request.high**2)
+    K = K_full - request.high**2 * X
     squares = scipy.linalg.eigvals(K, -X)
     squares = squares[np.isfinite(squares) & (np.abs(squares.imag) < 1e-6 * np.abs(squares))].real
-    found = np.unique(np.round(np.sqrt(squares[squares > 0.0]), 6))
-    return found[(found > request.low) & (found < request.high)][:_CRITICAL]
+    speeds = np.unique(np.round(np.sqrt(squares[squares > 0.0]), 6))
+    return speeds[(speeds > request.low) & (speeds < request.high)][:_CRITICAL]
 
 
 def resonances(
@@ -253,6 +253,6 @@ def resonances(
     companion = np.block([[np.zeros_like(M), np.eye(size)], [K, G]])
     weight = np.block([[np.eye(size), np.zeros_like(M)], [np.zeros_like(M), M]])
     nu, vectors = scipy.linalg.eig(companion, weight)
-    found = (np.abs(nu.imag) < 1e-6 * (np.abs(nu) + highest)) & (np.abs(nu) <= highest)
-    found &= nu.real > 1e-6 * highest
-    return nu[found].real, vectors[:size, found] * scale[:, None], pencil[:2]
+    in_band = (np.abs(nu.imag) < 1e-6 * (np.abs(nu) + highest)) & (np.abs(nu) <= highest)
+    in_band &= nu.real > 1e-6 * highest
+    return nu[in_band].real, vectors[:size, in_band] * scale[:, None], pencil[:2]

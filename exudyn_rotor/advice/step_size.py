@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor.advice.candidate import Candidate
-from exudyn_rotor.advice.modes import GROWTH, band, critical, ends, largest_share
+from exudyn_rotor.advice.mode_choice import GROWTH, band, critical, ends, largest_share
 from exudyn_rotor.advice.request import PERIOD_ERROR, Request
 
 _TRIAL = 1e-2  # ωh of the trial step at the end of the band; the error grows with its square
@@ -66,11 +66,11 @@ def choose_step(given: Candidate, request: Request, follows: bool) -> Step:
 
 def _points(given: Candidate, request: Request) -> Iterator[tuple[float, float, float]]:
     """Yield speeds, frequencies in the rotor frame, and growth rates [rad/s] to look at."""
-    one = request.low == request.high
+    one_speed = request.low == request.high
     for speed in request.speeds:
         steady = [0.0, speed] if speed else []  # unbalance, and weight
         for nu in band(given, request, speed) if request.banded else steady:
-            damped = GROWTH if request.banded or not one else _STEADY
+            damped = GROWTH if request.banded or not one_speed else _STEADY
             yield speed, nu, damped * max(nu, speed, 0.1 * request.highest)
     for speed in critical(given, request):
         yield speed, 0.0, GROWTH * speed
@@ -85,12 +85,12 @@ def _change(
     rows, loads = ends(given, size, count)
     loads = loads[:, first:]
     exact = s**2 * M + s * D + K
-    seen = exact + _of_step(given, speed, s, step)
+    integrated = exact + _of_step(given, speed, s, step)
     if follows:
-        seen = seen + _of_frame(given, speed, s, step)
-    whole = rows @ np.linalg.solve(exact, loads)
-    changed = rows @ np.linalg.solve(seen, loads) - whole
-    return largest_share(changed, np.linalg.norm(whole, axis=0), _UNMOVED)
+        integrated = integrated + _of_frame(given, speed, s, step)
+    response = rows @ np.linalg.solve(exact, loads)
+    change = rows @ np.linalg.solve(integrated, loads) - response
+    return largest_share(change, np.linalg.norm(response, axis=0), _UNMOVED)
 
 
 def _of_step(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
@@ -98,9 +98,9 @@ def _of_step(given: Candidate, speed: float, s: complex, step: float) -> np.ndar
     M, D, _, count = given.hill(speed)
     size = len(M) // count
     rate = np.repeat(1j * speed * given.orders(speed), size)
-    own = D - 2.0 * M * rate  # D of the equations, which Hill's method has shifted
+    damping = D - 2.0 * M * rate  # D of the equations, which Hill's method has shifted
     first, second = _rates(s + rate, step)
-    return M * second + own * first
+    return M * second + damping * first
 
 
 def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.ndarray:
@@ -128,5 +128,5 @@ def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.nda
 
 def _rates(s: np.ndarray | complex, step: float):
     """Return ``ŝ − s`` and ``ŝ² − s²``."""
-    seen = s * (1.0 - PERIOD_ERROR * (s * step) ** 2)
-    return seen - s, seen**2 - s**2
+    integrated = s * (1.0 - PERIOD_ERROR * (s * step) ** 2)
+    return integrated - s, integrated**2 - s**2

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.advice.lost import lost_load
-from exudyn_rotor.advice.measures import Measures
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.residual import residual_deflection
+from exudyn_rotor.advice.run_measures import Measures
+from exudyn_rotor.advice.unresisted import unresisted_load
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -58,7 +58,7 @@ class CheckRow:
 
     def __str__(self) -> str:
         verdict = "ok" if self.ok else "FAILS"
-        return f"{self.name:12s} {self.value:9.2e}  {self.limit:9.2e}  {verdict:5s}  {self.meaning}"
+        return f"{self.name:15s} {self.value:9.2e}  {self.limit:9.2e}  {verdict:5s}  {self.meaning}"
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ class RunCheck:
     ----------
     rows : tuple of CheckRow
     instants : int
-        How many instants were looked at; 1 if ``body.watch()`` was not called before the run, so
-        that only the end state is known.
+        How many instants were looked at; 1 if ``body.start_recording()`` was not called before the
+        run, so that only the end state is known.
     """
 
     rows: tuple[CheckRow, ...]
@@ -106,14 +106,14 @@ class RunCheck:
     def gap(self) -> str:
         """Return what a record of few instants lacks."""
         if self.instants == 1:
-            return "only the end state is known: call body.watch() before mbs.Assemble()"
+            return "only the end state is known: call body.start_recording() before mbs.Assemble()"
         return (
             f"only {self.instants} instants are known: lower solution.sensors.writePeriod of the "
             "simulation settings"
         )
 
     def __str__(self) -> str:
-        lines = ["check            value      limit  verdict"]
+        lines = ["check               value      limit  verdict"]
         lines += [str(row) for row in self.rows]
         lines += [f"  {row.name}: {row.advice}" for row in self.failed]
         if not self.complete:
@@ -130,7 +130,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "deflection": root,
         "travel": 0.1,
         "locked": 1e-6,
-        "lost load": 0.01,
+        "unresisted load": 0.01,
         "top modes": 0.01,
         "residual": accuracy,
         "strain": accuracy,
@@ -158,8 +158,9 @@ def check_run(
     Parameters
     ----------
     body : RotorBody
-        After the solution; ``body.watch()`` before ``mbs.Assemble()`` records the whole run, at the
-        instants of ``solution.sensors.writePeriod``. Before a run this checks the initial state.
+        After the solution; ``body.start_recording()`` before ``mbs.Assemble()`` records the run at
+        the instants of ``solution.sensors.writePeriod``. Before a run this checks the initial
+        state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
     proposal : Proposal, optional
@@ -185,36 +186,36 @@ def check_run(
     -----
     Checks, with a for the accuracy; "size" is the rotor's radius of gyration.
 
-    ==============  =======  ====================================================================
-    name            limit    meaning
-    ==============  =======  ====================================================================
-    ``tilt``        √a       largest rigid tilt [rad]; terms of its second order are left out
-    ``deflection``  √a       root mean square flexible displacement over the size, likewise
-    ``travel``      0.1      the centre of mass off a frame that does not follow, over the size;
-                             exact, but with a free spin the mass matrix then changes much in
-                             every step
-    ``locked``      1e-6     locked coordinates off their place [rad], [size]
-    ``lost load``   0.01     load on the frame's node, or second-order lever, that no equation
-                             feels, over the largest load
-    ``top modes``   0.01     elastic energy in the highest fifth of the flexible modes over the
-                             energy of the motion: how much the modes beyond may hold
-    ``residual``    a        static deflection at interfaces that the modes leave out (residual
-                             flexibility) over their displacement; not for loads elsewhere
-    ``strain``      a        mean centrifugal strain as the modes show it; the relative error of
-                             linear elasticity
-    ``stiffening``  a        stiffening that the level leaves out, as relative change of frequency
-                             of the recorded motion; estimated without a prestress
-    ``divergence``  0.5      Ω²/Ω_d²; Ω_d is the speed at which flexible modes begin to grow
-    ``step``        a        relative period error 0.0844 (ωh)² of the recorded motion, larger for
-                             slow motion in space that is integrated in the rotor frame; next to a
-                             resonance amplitudes err by more, by the amplification
-    ``spin step``   √(a/…)   spin angle per step [rad]: the same error at the spin speed
-    ``explicit``    1        explicit solvers: step over that at which undamped motion grows (by e
-                             in the run, with Euler's method and the midpoint rule)
-    ``yield``       1        static von Mises stress, by rotation and at rest, over the yield
-                             stress; the larger of those at rest and at the highest speed
-    ``speed``       1 + a    highest speed over that of the proposal
-    ==============  =======  ====================================================================
+    ===================  =======  ==================================================================
+    name                 limit    meaning
+    ===================  =======  ==================================================================
+    ``tilt``             √a       largest rigid tilt [rad]; terms of its second order are left out
+    ``deflection``       √a       root mean square flexible displacement over the size, likewise
+    ``travel``           0.1      the centre of mass off a frame that does not follow, over the
+                                  size; exact, but with a free spin the mass matrix then changes
+                                  much in every step
+    ``locked``           1e-6     locked coordinates off their place [rad], [size]
+    ``unresisted load``  0.01     load on the frame's node, or moment by a second-order arm, that no
+                                  equation resists, over the largest load
+    ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
+                                  energy of the motion: how much the modes beyond may hold
+    ``residual``         a        static deflection at interfaces that the modes leave out (residual
+                                  flexibility) over their displacement; not for loads elsewhere
+    ``strain``           a        mean centrifugal strain as the modes show it; the relative error
+                                  of linear elasticity
+    ``stiffening``       a        stiffening that the level leaves out, as relative change of
+                                  frequency of the recorded motion; estimated without a prestress
+    ``divergence``       0.5      Ω²/Ω_d²; Ω_d is the speed at which flexible modes begin to grow
+    ``step``             a        relative period error 0.0844 (ωh)² of the recorded motion, larger
+                                  for slow motion in space that is integrated in the rotor frame;
+                                  next to a resonance amplitudes err by more, by the amplification
+    ``spin step``        √(a/…)   spin angle per step [rad]: the same error at the spin speed
+    ``explicit``         1        explicit solvers: step over that at which undamped motion grows
+                                  (by e in the run, with Euler's method and the midpoint rule)
+    ``yield``            1        static von Mises stress, by rotation and at rest, over the yield
+                                  stress; the larger of those at rest and at the highest speed
+    ``speed``            1 + a    highest speed over that of the proposal
+    ===================  =======  ==================================================================
     """
     checks.instance(body, "body", RotorBody, "add_rotor returns one")
     body.check_assembled()
@@ -226,7 +227,7 @@ def check_run(
         accuracy = proposal.accuracy if proposal is not None else 1e-3
     checks.flag(warn, "warn")
     known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
-    record = body.record()
+    record = body.recorded()
     measures = Measures(body, record)
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
         made = _rows(measures, reduced, proposal)
@@ -248,12 +249,12 @@ def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
 
 def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:
     """Refuse another rotor; one with other modes of the same is all right."""
-    own, given = body.selection.source.invariants, reduced.invariants
-    change = np.abs(own.J - given.J).max() / np.abs(own.J).max()
-    if abs(own.mass - given.mass) > _SAME * own.mass or change > _SAME:
+    added, given = body.selection.source.invariants, reduced.invariants
+    change = np.abs(added.J - given.J).max() / np.abs(added.J).max()
+    if abs(added.mass - given.mass) > _SAME * added.mass or change > _SAME:
         raise ValueError(
-            f"reduced: of {given.mass:.6g} kg is another rotor than the body's, {own.mass:.6g} kg "
-            "or other moments of inertia; give the one that was added"
+            f"reduced: of {given.mass:.6g} kg is another rotor than the body's, "
+            f"{added.mass:.6g} kg or other moments of inertia; give the one that was added"
         )
 
 
@@ -294,11 +295,11 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "use locking='constraints', a smaller step, or load an interface instead of the frame",
     ),
     (
-        "lost load",
-        lambda m: lost_load(m.body, m.record, m.size),
-        "load that no equation feels, over the largest",
+        "unresisted load",
+        lambda m: unresisted_load(m.body, m.record, m.size),
+        "load that no equation resists, over the largest",
         "put loads on interface markers; the frame's node carries spin and translation only, and "
-        "loads get no lever by deflection",
+        "loads get no moment arm by deflection",
     ),
     (
         "top modes",

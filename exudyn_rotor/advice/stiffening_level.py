@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor.advice.candidate import Candidate
-from exudyn_rotor.advice.modes import resonances
+from exudyn_rotor.advice.mode_choice import resonances
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -72,23 +72,26 @@ def _shift(
 ) -> float:
     """Return the largest relative change of a frequency by ``Ω² change``."""
     if not given.supported:
-        own = np.diag(given.invariants.K)[flexible]
-        return float(np.max(0.5 * speed**2 * np.abs(np.diag(change)[flexible]) / own, initial=0.0))
-    found, vectors, (M, G) = resonances(given, speed, request.loads + speed)
-    if found.size == 0:
+        stiffness = np.diag(given.invariants.K)[flexible]
+        shift = 0.5 * speed**2 * np.abs(np.diag(change)[flexible]) / stiffness
+        return float(np.max(shift, initial=0.0))
+    frequencies, vectors, (M, G) = resonances(given, speed, request.loads + speed)
+    if frequencies.size == 0:
         return _static_shift(given, speed, change)
     size = given.source.size
-    work = np.zeros(found.size)
+    work = np.zeros(frequencies.size)
     for start in range(0, len(M), size):  # every harmonic of the speed
-        part = vectors[start + given.own]
-        work = work + np.einsum("ir,ij,jr->r", part.conj(), change, part).real
-    norm = np.einsum("ir,ij,jr->r", vectors.conj(), M, vectors).real * 2.0 * found
+        modal = vectors[start + given.modal]
+        work = work + np.einsum("ir,ij,jr->r", modal.conj(), change, modal).real
+    norm = np.einsum("ir,ij,jr->r", vectors.conj(), M, vectors).real * 2.0 * frequencies
     norm -= np.einsum("ir,ij,jr->r", vectors.conj(), G, vectors).real
     mass = np.einsum("ir,ij,jr->r", vectors.conj(), M, vectors).real
     middle = slice(size * (len(M) // size // 2), size * (len(M) // size // 2 + 1))
-    own = np.einsum("ir,ij,jr->r", vectors[middle].conj(), M[middle, middle], vectors[middle]).real
-    held = (np.abs(norm) > _DEFECTIVE * (found + speed) * mass) & (own > 0.3 * mass)
-    shift = speed**2 * np.abs(work[held] / norm[held]) / np.maximum(found, speed)[held]
+    middle_mass = np.einsum(
+        "ir,ij,jr->r", vectors[middle].conj(), M[middle, middle], vectors[middle]
+    ).real
+    held = (np.abs(norm) > _DEFECTIVE * (frequencies + speed) * mass) & (middle_mass > 0.3 * mass)
+    shift = speed**2 * np.abs(work[held] / norm[held]) / np.maximum(frequencies, speed)[held]
     return float(np.max(shift, initial=0.0))
 
 
@@ -96,6 +99,6 @@ def _static_shift(given: Candidate, speed: float, change: np.ndarray) -> float:
     """Return the relative change of the lowest stiffnesses where no frequency is in the band."""
     *_, K, count = given.conservative(speed)
     size = given.source.size
-    places = size * (count // 2) + given.own
+    places = size * (count // 2) + given.modal
     H = np.linalg.pinv(K[np.ix_(places, places)], rcond=1e-10, hermitian=True)
     return float(0.5 * speed**2 * np.abs(np.linalg.eigvals(H @ change)).max())

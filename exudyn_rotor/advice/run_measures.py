@@ -100,7 +100,7 @@ class Measures:
 
     def locked(self) -> float:
         """Return how far locked coordinates are off: angles [rad], lengths over the size."""
-        if "shell" not in self.body.objects:
+        if "marker_body" not in self.body.objects:
             return 0.0
         unit = np.array([self.size] * 3 + [1.0] * 3)
         worst = 0.0
@@ -134,14 +134,14 @@ class Measures:
         without it makes ring: few modes breathe, wherever they stand, and more modes change
         nothing about it.
         """
-        modes, whole = self.flexible, self._energies[1]
-        if modes.size == 0 or whole == 0.0:
+        modes, energy = self.flexible, self._energies[1]
+        if modes.size == 0 or energy == 0.0:
             return 0.0
         half = 0.5 * np.diag(self.invariants.K)[modes]
         elastic = half * (self.zeta - self._stretch)[:, modes] ** 2
         ringing = _RINGING * half * (self._stretch[:, modes] ** 2).max(axis=0)
         top = slice(-max(1, round(_TOP * modes.size)), None)
-        return float(np.maximum(elastic - ringing, 0.0)[:, top].sum(axis=1).max() / whole)
+        return float(np.maximum(elastic - ringing, 0.0)[:, top].sum(axis=1).max() / energy)
 
     def strain(self) -> float:
         """Return the mean centrifugal strain ``ω² hᵀK⁻¹h / Θ`` that the modes show.
@@ -164,14 +164,14 @@ class Measures:
         inv, level = self.invariants, self.body.stiffening
         if level == "full":
             return 0.0
-        own = np.asarray(stiffening(inv, level).K2)
+        included = np.asarray(stiffening(inv, level).K2)
         if inv.K2 is not None:
-            whole = np.asarray(inv.K2)
+            complete = np.asarray(inv.K2)
         else:
-            whole = np.array(stiffening(inv, "tilt").K2)
-            whole[self.flexible, self.flexible] += 1.0
+            complete = np.array(stiffening(inv, "tilt").K2)
+            complete[self.flexible, self.flexible] += 1.0
         zeta = self.zeta - self._stretch
-        work = np.einsum("si,ij,sj->s", zeta, whole - own, zeta) * self.record.speed**2
+        work = np.einsum("si,ij,sj->s", zeta, complete - included, zeta) * self.record.speed**2
         energy = self._energies[1]
         return float(0.25 * np.abs(work).max() / energy) if energy else 0.0
 
@@ -215,12 +215,12 @@ class Measures:
     @cached_property
     def frequency(self) -> float:
         """Mean frequency of the coordinates, weighted with their amplitudes squared [rad/s]."""
-        kept = np.ones(self.body.motion.size, dtype=bool)
+        vibrating = np.ones(self.body.motion.size, dtype=bool)
         if self.body.formulation.has_spin:
-            kept[self.body.motion.formulation.translation_count] = False
-        weight = np.ones(kept.sum())
+            vibrating[self.body.motion.formulation.translation_count] = False
+        weight = np.ones(vibrating.sum())
         weight[: self.body.motion.formulation.translation_count] = np.sqrt(self.invariants.mass)
-        return _frequency(weight * self._q[:, kept], weight * self._q_t[:, kept])
+        return _frequency(weight * self._q[:, vibrating], weight * self._q_t[:, vibrating])
 
     def _slow(self) -> float:
         """Return ``ω³/ω_s`` of the rigid rotor's lateral motion [rad²/s²], by its share of it."""
@@ -229,19 +229,19 @@ class Measures:
         across = np.kron(np.eye(2), np.eye(3) - np.outer(e, e)) @ rows
         time, speed = self.record.time, self.record.speed
         angle = np.append(0.0, np.cumsum(0.5 * np.diff(time) * (speed[1:] + speed[:-1])))
-        own, rate = self.zeta @ across.T, self.zeta_t @ across.T
-        turned = rate + speed[:, None] * np.hstack(
-            [np.cross(e, own[:, :3]), np.cross(e, own[:, 3:])]
+        motion, rate = self.zeta @ across.T, self.zeta_t @ across.T
+        inertial_rate = rate + speed[:, None] * np.hstack(
+            [np.cross(e, motion[:, :3]), np.cross(e, motion[:, 3:])]
         )
-        spatial = np.hstack([_turned(own[:, part], e, angle) for part in _HALVES])
-        spatial_rate = np.hstack([_turned(turned[:, part], e, angle) for part in _HALVES])
-        whole = np.sqrt((spatial**2).sum(axis=1).mean())
+        spatial = np.hstack([_turned(motion[:, half], e, angle) for half in _HALVES])
+        spatial_rate = np.hstack([_turned(inertial_rate[:, half], e, angle) for half in _HALVES])
+        size = np.sqrt((spatial**2).sum(axis=1).mean())
         worst = 0.0
-        for part in _HALVES:
-            slow = _frequency(spatial[:, part], spatial_rate[:, part])
+        for half in _HALVES:
+            slow = _frequency(spatial[:, half], spatial_rate[:, half])
             if slow > 0.0:
-                share = np.sqrt(spatial[:, part].var(axis=0).sum()) / whole
-                worst = max(worst, share * _frequency(own[:, part], rate[:, part]) ** 3 / slow)
+                share = np.sqrt(spatial[:, half].var(axis=0).sum()) / size
+                worst = max(worst, share * _frequency(motion[:, half], rate[:, half]) ** 3 / slow)
         return worst
 
     def spin_step(self) -> float:

@@ -1,0 +1,97 @@
+"""Loads that nothing resists: on frame coordinates that the formulation does not have.
+
+A load at an interface acts on the modes, and on locked coordinates of the frame's node as a
+reaction; the two are in proportion: the rigid motion ``a`` is the combination ``Lᵀa`` or ``Sᵀa`` of
+the modes, with ``L = Σ M x × ψ`` and ``S = Σ M ψ``. What a locked coordinate holds beyond that
+moves nothing: a load on the frame's node, or the moment arm that a load gets by the deflection.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
+from exudyn_rotor.multibody.locking import SPIN, TILTS
+from exudyn_rotor.multibody.record import Record, newton_tolerance
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.theory.nodal import skew
+
+_SINGULAR = 1e-3  # of the node's axes, where its second angle is near a right one
+
+
+def unresisted_load(body: RotorBody, record: Record, size: float) -> float:
+    """Return the largest load that no equation resists, over the largest load of the run.
+
+    `size` [m] makes forces and moments comparable. Needs accelerations, so the first instant of a
+    run does not count.
+    """
+    if "marker_body" not in body.objects or len(record.time) < 2:
+        return 0.0
+    unresisted, largest = 0.0, 0.0
+    for index in instants(record):
+        force, moment, missing, uncertain = _balance(body, record, index)
+        largest = max(largest, size * np.linalg.norm(force), np.linalg.norm(moment))
+        excess = max(size * np.linalg.norm(missing[:3]), np.linalg.norm(missing[3:]))
+        unresisted = max(unresisted, excess - size * uncertain)
+    return float(unresisted / largest) if largest else 0.0
+
+
+def _balance(
+    body: RotorBody, record: Record, index: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Return force and moment on the rotor, what of both (6,) is unresisted, and a force [N].
+
+    The latter is what Newton's method may leave of the inertia forces, which are known to that.
+    """
+    motion, place = body.motion, body.layout
+    t = float(record.time[index])
+    q, q_t, q_tt = (rows[index] for rows in (record.q, record.q_t, record.q_tt))
+    inertia, external = external_load(body, record, index)
+    load = place.lock_mass * q_tt + place.lock_damping * q_t + place.lock_stiffness * q
+    load += record.held[index]
+    for number, guide in body.locks.prescribed.items():
+        load[number] -= (
+            place.lock_mass[number] * guide.acceleration(t)
+            + place.lock_damping[number] * guide.rate(t)
+            + place.lock_stiffness[number] * guide.value(t)
+        )
+    load[place.unknowns] = external
+    turn = turned(body, q)
+    on_modes = external[motion.modes]
+    missing = np.zeros(6)
+    modal_force = turn @ motion.invariants.S @ on_modes
+    for number in body.locks.fixed:
+        if number < 3:
+            missing[number] = load[number] - modal_force[number]
+    force = motion.free_directions @ external[motion.translations] + modal_force
+    moment, unresisted = _moments(body, load, turn @ _angular_momenta(body) @ on_modes)
+    # tilts are resisted about the centre of mass, also where that has left the frame's node
+    zeta = q[place.unknowns][motion.modes]
+    arm = turn @ motion.invariants.S @ zeta / motion.invariants.mass
+    e = motion.orientation @ motion.invariants.direction
+    by_arm = np.cross(arm, force - weight(body))  # Exudyn's gravity gets no arm
+    # position markers exert it on the node, rigid ones do not
+    missing[3:] = min(unresisted, unresisted - (by_arm - e * (e @ by_arm)), key=np.linalg.norm)
+    residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
+    return force, moment, missing, float(residual * np.sqrt(motion.invariants.mass))
+
+
+def _angular_momenta(body: RotorBody) -> np.ndarray:
+    """Return ``L = Σ M x × ψ`` of every mode, (3, m), mesh axes."""
+    epsilon = np.array([skew(unit) for unit in np.eye(3)])
+    return np.einsum("aib,abk->ik", epsilon, body.motion.invariants.P)
+
+
+def _moments(
+    body: RotorBody, load: np.ndarray, modal_moment: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the moment on the node in inertial axes, and what of it tilts and is unresisted."""
+    first = body.frame.angles[0]
+    e = body.motion.orientation @ body.motion.invariants.direction
+    second_axis = np.array([0.0, np.cos(first), np.sin(first)])
+    axes = np.array([[1.0, 0.0, 0.0], second_axis, e])
+    if abs(np.linalg.det(axes)) < _SINGULAR:
+        return modal_moment, np.zeros(3)
+    moment = np.linalg.solve(axes, load[[*TILTS, SPIN]])
+    missing = moment - modal_moment
+    return moment, missing - e * (e @ missing)
