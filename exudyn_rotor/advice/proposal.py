@@ -218,6 +218,25 @@ def propose(
     by the ratio of frequencies; see :mod:`exudyn_rotor.advice.step_size`. After N periods the phase
     is behind by πN times the accuracy. Faster motions than the band, such as the ringing after a
     sudden start, are not resolved.
+
+    Examples
+    --------
+    A row of masses of 1 kg, the k-th on springs of ``4ᵏ`` MN/m in the rotor frame:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, propose
+    >>> nodes = 0.1 * np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    >>> stiffness = np.diag(np.repeat([1e6, 4e6, 1.6e7], 3))
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(9), stiffness, nodes, "z", interfaces={"first": [0], "last": [2]}
+    ... )
+    >>> proposal = propose(rotor.reduce(9), speeds=20.0)
+    >>> proposal.translation, proposal.spin, proposal.total
+    ('none', 20.0, 9)
+    >>> proposal.modes
+    (0, 1, 2, 6, 7, 8)
+    >>> proposal.truncated(rotor.reduce(9)).size
+    6
     """
     request = Request.of(speeds, load_frequencies, accuracy)
     if tilt is not None:

@@ -216,6 +216,30 @@ def check_run(
                                   stress; the larger of those at rest and at the highest speed
     ``speed``            1 + a    highest speed over that of the proposal
     ===================  =======  ==================================================================
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor, check_run, recommended_settings
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(6), 1e6 * np.eye(6), [[0.1, 0, 0], [-0.1, 0, 0]], "z", interfaces={"top": [0]}
+    ... )
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(6), spin=10.0, translation="none")
+    >>> body.start_recording()
+    >>> mbs.Assemble()
+    >>> settings = recommended_settings(end_time=0.01, step=2e-5)
+    >>> settings.solution.sensors.writePeriod = 1e-4
+    >>> settings.solution.file.write = False
+    >>> settings.timeIntegration.verboseMode = 0
+    >>> mbs.SolveDynamic(settings)
+    True
+    >>> check = check_run(body)
+    >>> check.ok, check.instants
+    (True, 101)
+    >>> check["strain"].value < check["strain"].limit
+    True
     """
     checks.instance(body, "body", RotorBody, "add_rotor returns one")
     body.check_assembled()

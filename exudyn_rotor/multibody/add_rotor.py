@@ -148,6 +148,30 @@ def add_rotor(
     and translation ``'none'`` its solution is the steady state in the rotating frame; a translation
     that is an unknown stands still in the inertial frame instead. θ is that of the solver's load
     time (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
+
+    Examples
+    --------
+    Two masses of 1 kg at r = 0.1 m, each on springs k = 1 MN/m in the rotor frame. At Ω = 10 rad/s
+    they move outwards by ``Ω² m r / (k − Ω² m)``:
+
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(6), 1e6 * np.eye(6), [[0.1, 0, 0], [-0.1, 0, 0]], "z", interfaces={"top": [0]}
+    ... )
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(6), spin=10.0, translation="none")
+    >>> body
+    RotorBody('rotor', Sect. 2.5, stiffening 'tilt', 6 modes, markers: top)
+    >>> mbs.Assemble()
+    >>> settings = exudyn.SimulationSettings()
+    >>> settings.staticSolver.verboseMode = 0
+    >>> mbs.SolveStatic(settings)
+    True
+    >>> outwards = abs(body.coordinates()[0][0])
+    >>> bool(np.isclose(outwards, 10.0 / (1e6 - 100.0), rtol=1e-9))
+    True
     """
     inputs.main_system(mbs)
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")

@@ -101,10 +101,23 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         in local axes (DisplacementLocal) has z along the spin axis; stress is in mesh axes.
 
     Example:
-        import exudyn_rotor #adds the method to MainSystem
-        rotor = mbs.CreateFixedAxisFFRFReducedOrderObject(
-            name='rotor', femInterface=fem, axis='z', initialAngularVelocity=[0, 0, 100])
-        mLeft = rotor['rotor:left']
+        >>> import exudyn
+        >>> import exudyn_rotor  # adds the method to MainSystem
+        >>> import numpy as np
+        >>> import scipy.sparse as sp
+        >>> from exudyn.FEM import FEMinterface
+        >>> fem = FEMinterface()
+        >>> fem.nodes = {"Position": np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]])}
+        >>> fem.massMatrix, fem.stiffnessMatrix = sp.eye(6).tocsr(), 1e6 * sp.eye(6).tocsr()
+        >>> fem.nodeSets = [{"Name": "top", "NodeNumbers": [0], "NodeWeights": [1.0]}]
+        >>> fem.modeBasis = {"matrix": np.eye(6), "type": "NormalModes"}
+        >>> mbs = exudyn.SystemContainer().AddSystem()
+        >>> rotor = mbs.CreateFixedAxisFFRFReducedOrderObject(
+        ...     name="rotor", femInterface=fem, axis="z", translation="none", spin=100.0
+        ... )
+        >>> force = mbs.CreateForce(itemNumber=rotor["rotor:top"], loadVector=[0.0, 0.0, 5.0])
+        >>> rotor["FFRFReducedOrderObjectDict"]["rotorBody"]
+        RotorBody('rotor', Sect. 2.5, stiffening 'tilt', 6 modes, markers: top)
     """
     inputs.main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)

@@ -16,6 +16,23 @@ class RotorBody(RotorItems):
     """A fixed-axis rotor inside an ``mbs``; made by :func:`exudyn_rotor.add_rotor`.
 
     The attributes are those of :class:`~exudyn_rotor.multibody.rotor_items.RotorItems`.
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(6), 1e6 * np.eye(6), [[0.1, 0, 0], [-0.1, 0, 0]], "z", interfaces={"top": [0]}
+    ... )
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(2), name="fan", spin=10.0, translation="none")
+    >>> displacement = body.add_interface_sensor("top", exudyn.OutputVariableType.Displacement)
+    >>> force = mbs.CreateForce(itemNumber=body.marker("top"), loadVector=[0.0, 0.0, 5.0])
+    >>> body.locked
+    ('x', 'y', 'z', 'tilt a', 'tilt b', 'spin')
+    >>> body.uses_python
+    False
     """
 
     def __repr__(self) -> str:

@@ -53,6 +53,15 @@ def recommended_settings(
         The Jacobian is renewed when an iteration gains less than a digit. This costs nothing in a
         rotor with its frame in the centre of mass, and keeps iterations few where supports seen
         from the rotor turn.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import recommended_settings
+    >>> settings = recommended_settings(end_time=0.1, step=1e-4, accuracy=1e-5)
+    >>> int(settings.timeIntegration.numberOfSteps)
+    1000
+    >>> settings.timeIntegration.newton.relativeTolerance
+    1e-06
     """
     if settings is not None:
         checks.instance(settings, "settings", exudyn.SimulationSettings)
