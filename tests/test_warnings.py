@@ -94,7 +94,7 @@ PLACES = {
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
     ),
-    "advice/checks.py:check_run": (
+    "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",
     ),
 }  # fmt: skip

@@ -41,8 +41,6 @@ class Candidate:
         Which modal coordinates are flexible modes.
     frequencies : ndarray
         Of the flexible modes [rad/s].
-    stiffening : str
-        Level that `source` has.
     grounded : bool
     supported : bool
         Whether it is known what holds the rotor.
@@ -60,7 +58,6 @@ class Candidate:
     modal: np.ndarray
     flexible: np.ndarray
     frequencies: np.ndarray
-    stiffening: str
     grounded: bool
     supported: bool
     axial: bool
@@ -153,14 +150,13 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
             attached = _of_rotor(reduced.with_attachments, body, supports, interfaces, axial)
     if axial is None:
         axial = not known or any(_acts_along(support) for support in source.supports)
-    first = len(reduced.rigid)
+    first = len(reduced.rigid_kinds)
     return Candidate(
         source=source,
         invariants=source.invariants,
         modal=np.arange(reduced.size),
         flexible=np.arange(first, reduced.size),
         frequencies=reduced.frequencies[first:],
-        stiffening="tilt",
         grounded=reduced.grounded,
         supported=known or reduced.grounded,
         axial=bool(axial),
@@ -193,7 +189,6 @@ def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
         modal=modal,
         flexible=flexible,
         frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
-        stiffening=body.stiffening,
         grounded=body.selection.source.grounded,
         supported=True,
         axial=_scene_acts_along(source, body) if axial is None else bool(axial),

@@ -112,7 +112,7 @@ class Proposal:
             If `reduced` has another number of flexible modes than the rotor this was made for.
         """
         checks.instance(reduced, "reduced", ReducedRotor)
-        count = reduced.size - len(reduced.rigid)
+        count = reduced.size - len(reduced.rigid_kinds)
         if count != self.total:
             raise ValueError(
                 f"reduced: this proposal chose from {self.total} flexible modes, and the rotor has "
@@ -123,16 +123,16 @@ class Proposal:
     def __str__(self) -> str:
         spin = f"{self.spin:.6g} rad/s" if isinstance(self.spin, float) else self.spin
         spin = "prescribed θ(t)" if isinstance(spin, PrescribedMotion) else spin
-        shown = _ranges(self.modes)
+        modes = _ranges(self.modes)
         if self.labels:
-            shown += f" ({self.labels[0].split('(')[1][:-1]} … {self.labels[-1].split('(')[1]}"
+            modes += f": {self.labels[0]} … {self.labels[-1]}"
         lines = [
             f"proposal for {self.speeds[0]:.6g} … {self.speeds[1]:.6g} rad/s, "
             f"accuracy {self.accuracy:g}",
             f"  translation   {self.translation}",
             f"  spin          {spin}",
             f"  stiffening    {self.stiffening}",
-            f"  modes         {self.count} of {self.total}: {shown}",
+            f"  modes         {self.count} of {self.total}: {modes}",
             f"  step          {self.step:.3g} s",
             *(f"  - {reason}" for reason in self.reasons),
         ]

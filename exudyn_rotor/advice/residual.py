@@ -49,7 +49,7 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
 
 def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:
     """Return the motion of all interfaces (6n, k), and which columns are flexible."""
-    flexible = np.arange(rotor.size) >= len(rotor.rigid)
+    flexible = np.arange(rotor.size) >= len(rotor.rigid_kinds)
     return np.vstack([one.motion for one in rotor.interfaces.values()]), flexible
 
 

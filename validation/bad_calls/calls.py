@@ -42,7 +42,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "Proposal": lambda w: w.proposal,
     "ReducedRotor": lambda w: w.reduced,
     "RotorBody": lambda w: w.body,
-    "RotorBody.watch": lambda w: er.add_rotor(SystemContainer().AddSystem(), w.reduced),
+    "RotorBody.start_recording": lambda w: er.add_rotor(SystemContainer().AddSystem(), w.reduced),
     "RunCheck": lambda w: w.run_check,
     "SolidRotor": lambda w: w.solid,
     "SpinAxis": lambda w: er.SpinAxis([0.0, 0.0, 1.0]),
