@@ -5,12 +5,13 @@
 
 import warnings
 
+import numpy as np
 import pytest
 from bad_calls import calls, judge, parameters, report
 from bad_calls.world import World
 
-CALLS = 400  # of some ten thousands
-CLEAN = ("PrescribedMotion", "SolidRotor.with_prestress", "StressField.of")
+# of some ten thousands
+BAD, TWICE_BAD, GOOD = 500, 100, 100
 
 
 @pytest.fixture(scope="module")
@@ -40,10 +41,36 @@ def test_tables_hold_nothing_else():
     assert set(calls.ARGUMENTS) | set(calls.OPTIONS) | set(calls.INSTANCES) <= places
 
 
-def test_bad_calls_are_refused_clearly(world, monkeypatch):
+@pytest.fixture
+def answers(world, monkeypatch):
+    """Return the answers of some calls, drawn at random but always the same ones."""
     monkeypatch.chdir(world.folder)
-    made = [(case, make) for case, make in judge.cases(world) if case.call in CLEAN]
-    numbers = report.chosen(len(made), CALLS)
-    assert len(numbers) >= 300
-    found = [(made[n][0], judge.answer(*made[n], world)) for n in numbers]
-    assert report.listed(found) == ""
+
+    def made(cases, count):
+        assert len(cases) >= count
+        drawn = [cases[n] for n in report.chosen(len(cases), count)]
+        return [(case, judge.answer(case, world)) for case in drawn]
+
+    return made
+
+
+def test_bad_calls_are_refused_clearly(world, answers):
+    """All of these; of all that there are, 99 % must be."""
+    single = list(judge.bad_cases(world))
+    assert len(single) > 30_000
+    assert report.listed(answers(single, BAD)) == ""
+    assert report.listed(answers(list(judge.pairs(single, TWICE_BAD)), TWICE_BAD)) == ""
+
+
+def test_good_values_of_unusual_kinds_pass(world, answers):
+    assert report.listed(answers(list(judge.good_cases(world)), GOOD), judge.ACCEPTED) == ""
+
+
+def test_foreign_messages_would_be_seen(world):
+    """A message of numpy is none of ours, and one of ours without the name does not count."""
+    foreign = judge._outcome(np.zeros, {"shape": "speed"}, {"speed"})
+    assert foreign.outcome == judge.FOREIGN
+    support = world.supports[0].matrices
+    assert judge._outcome(support, {"speed": "x"}, {"speed"}).outcome == judge.CLEAR
+    assert judge._outcome(support, {"speed": "x"}, {"value"}).outcome == judge.UNNAMED
+    assert judge._outcome(support, {"speed": 1.0}, {"speed"}).outcome == judge.ACCEPTED

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dis
 import inspect
+import random
 import re
 import signal
 import warnings
@@ -37,60 +38,88 @@ OUTCOMES = (CLEAR, UNNAMED, FOREIGN, ACCEPTED, HUNG, HALF_BUILT)
 
 @dataclass(frozen=True)
 class Case:
-    """One bad call: the arguments of the valid one, with a bad value for one of them."""
+    """A call with a bad value for one of its arguments, or for two.
+
+    Attributes
+    ----------
+    call : str
+    labels : mapping of str to str
+        What was put in, by argument.
+    make : callable
+        Returns these arguments, made anew.
+    """
 
     call: str
-    argument: str
-    label: str
+    labels: dict[str, str]
+    make: Callable[[], dict[str, Any]]
 
     def __str__(self) -> str:
-        return f"{self.call}({self.argument}={self.label})"
+        given = ", ".join(f"{argument}={label}" for argument, label in self.labels.items())
+        return f"{self.call}({given})"
 
 
 @dataclass(frozen=True)
 class Answer:
-    """How a bad call was answered: one of `OUTCOMES`, and what was said."""
+    """How a call was answered: one of `OUTCOMES`, and what was said."""
 
     outcome: str
     said: str
 
 
-def cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
-    """Yield all bad calls, and what makes the bad value of each."""
+def bad_cases(world: World) -> Iterator[Case]:
+    """Yield calls with one bad value, every value for every argument of every call."""
     for name in calls.public_calls():
-        try:
-            _, good = calls.valid(name, world)
-        except KeyError:  # no entry: a test tells
-            continue
+        _, good = calls.valid(name, world)
         for argument, parameter in calls.parameters(name).items():
             optional = parameter.default is None or "None" in str(parameter.annotation).split(" | ")
             kind = parameters.kind_of(name, argument)
             default = None if parameter.default is parameter.empty else parameter.default
             for label, make in kind.bad(good.get(argument, default), optional):
-                yield Case(name, argument, label), make
+                yield _case(name, argument, label, make)
 
 
-def good_cases(world: World) -> Iterator[tuple[Case, Callable[[], Any]]]:
-    """Yield calls with good values of an unusual kind, and what makes each value."""
+def pairs(cases: list[Case], count: int) -> Iterator[Case]:
+    """Yield calls with two bad values, drawn at random from those with one."""
+    draw = random.Random(count)
+    by_call: dict[str, list[Case]] = {}
+    for case in cases:
+        by_call.setdefault(case.call, []).append(case)
+    several = [case for case in cases if case.labels.keys() != by_call[case.call][0].labels.keys()]
+    for one in draw.choices(several, k=count):
+        others = [case for case in by_call[one.call] if case.labels.keys() != one.labels.keys()]
+        other = draw.choice(others)
+        labels = one.labels | other.labels
+        yield Case(one.call, labels, lambda a=one, b=other: a.make() | b.make())
+
+
+def good_cases(world: World) -> Iterator[Case]:
+    """Yield calls with a good value of an unusual kind."""
     for name in calls.public_calls():
-        _, good = calls.valid(name, world)
+        function, good = calls.valid(name, world)
+        own = inspect.signature(function).parameters
         for argument, parameter in calls.parameters(name).items():
-            value = good.get(argument, parameter.default)
-            for label, make in unusual(value):
-                yield Case(name, argument, label), make
+            if argument in own:
+                for label, make in unusual(good.get(argument, parameter.default)):
+                    yield _case(name, argument, label, make)
 
 
-def answer(case: Case, make: Callable[[], Any], world: World) -> Answer:
-    """Make a bad call, and say how it was answered."""
-    function, good = calls.valid(case.call, world)
-    # a good value that does not fit the others: any of them may be named
-    several = isinstance(function, type) or isinstance(good.get(case.argument), np.ndarray | list)
-    fits = several and case.label in GOOD_ALONE
-    names = tuple(calls.parameters(case.call)) if fits else (case.argument,)
-    good[case.argument] = make()
+def _case(name: str, argument: str, label: str, make: Callable[[], Any]) -> Case:
+    return Case(name, {argument: label}, lambda: {argument: make()})
+
+
+def answer(case: Case, world: World) -> Answer:
+    """Make a call, and say how it was answered."""
+    function, given = calls.valid(case.call, world)
+    names = set(case.labels)
+    for argument, label in case.labels.items():
+        # a good value that does not fit the others: any of them may be named
+        several = isinstance(function, type) or isinstance(given.get(argument), np.ndarray | list)
+        if several and label in GOOD_ALONE:
+            names |= set(calls.parameters(case.call))
+    given |= case.make()
     scenes = [world.mbs, world.assembled]
     before = [state(mbs) for mbs in scenes]
-    found = _outcome(function, good, names)
+    found = _outcome(function, given, names)
     pyplot.close("all")
     built = [state(mbs) for mbs in scenes] != before
     if built or found.outcome == ACCEPTED:
@@ -106,24 +135,25 @@ def state(mbs: exudyn.MainSystem) -> tuple[int, ...]:
     return (*counts, mbs.systemIsConsistent)
 
 
-def _outcome(function: Callable, given: dict[str, Any], names: tuple[str, ...]) -> Answer:
-    signal.signal(signal.SIGALRM, _stop)
-    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+def _outcome(function: Callable, given: dict[str, Any], names: set[str]) -> Answer:
+    _alarm(SECONDS)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             function(**given)
     except TimeoutError:
         return Answer(HUNG, f"more than {SECONDS:g} s")
-    # whatever it is, it is judged
+    except KeyboardInterrupt:
+        raise
+    # whatever else it is, it is judged
     except BaseException as error:
         return _judged(error, names)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _alarm(0.0)
     return Answer(ACCEPTED, "")
 
 
-def _judged(error: BaseException, names: tuple[str, ...]) -> Answer:
+def _judged(error: BaseException, names: set[str]) -> Answer:
     """Say whether an error is one of ours and names the argument."""
     said = f"{type(error).__name__}: {error}"
     if "unexpected keyword argument 'nonsense'" in said:  # Python's own words name it
@@ -157,6 +187,12 @@ def home(name: str) -> str:
     """Return the folder of the package in which a call is defined."""
     function = inspect.unwrap(calls.function_of(name))
     return function.__module__.removeprefix("exudyn_rotor.").split(".")[0]
+
+
+def _alarm(seconds: float) -> None:
+    if hasattr(signal, "SIGALRM"):  # not on Windows
+        signal.signal(signal.SIGALRM, _stop)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
 def _stop(number: int, frame: FrameType | None) -> None:

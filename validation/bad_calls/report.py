@@ -14,6 +14,7 @@ from multiprocessing.connection import Connection
 from tqdm import tqdm
 
 from bad_calls.judge import (
+    ACCEPTED,
     CLEAR,
     HALF_BUILT,
     HUNG,
@@ -22,15 +23,25 @@ from bad_calls.judge import (
     Answer,
     Case,
     answer,
-    cases,
+    bad_cases,
+    good_cases,
     home,
+    pairs,
 )
 from bad_calls.world import World
 
 CRASHED = "crashed"
 WANTED = 0.99  # share of bad calls that are refused clearly
 MEMORY = 12e9  # bytes for one process: a list of 10^10 numbers is refused by the system
+PAIRS = 3000  # calls with two bad values
 Answers = list[tuple[Case, Answer]]
+
+
+def all_cases(world: World) -> tuple[list[Case], int]:
+    """Return all calls, and how many of them are bad; those with good values come last."""
+    single = list(bad_cases(world))
+    bad = [*single, *pairs(single, PAIRS)]
+    return [*bad, *good_cases(world)], len(bad)
 
 
 def chosen(total: int, count: int | None, seed: int = 0) -> list[int]:
@@ -40,16 +51,16 @@ def chosen(total: int, count: int | None, seed: int = 0) -> list[int]:
     return sorted(random.Random(seed).sample(range(total), count))
 
 
-def answers(numbers: list[int], all_cases: list[Case], processes: int = 1) -> Answers:
-    """Make the bad calls of these numbers in processes of their own."""
+def answers(numbers: list[int], cases: list[Case], processes: int = 1) -> Answers:
+    """Make the calls of these numbers in processes of their own."""
     shares = [numbers[start::processes] for start in range(processes)]
     with tqdm(total=len(numbers), desc="bad calls") as bar, ThreadPoolExecutor(processes) as pool:
-        found = pool.map(lambda share: _answers_of(share, all_cases, bar), shares)
+        found = pool.map(lambda share: _answers_of(share, cases, bar), shares)
         return list(itertools.chain.from_iterable(found))
 
 
-def _answers_of(numbers: list[int], all_cases: list[Case], bar: tqdm) -> Answers:
-    """Make bad calls in one process after another: a new one after each crash or hang."""
+def _answers_of(numbers: list[int], cases: list[Case], bar: tqdm) -> Answers:
+    """Make calls in one process after another: a new one after each crash or hang."""
     found: Answers = []
     while len(found) < len(numbers):
         left = numbers[len(found) :]
@@ -60,7 +71,7 @@ def _answers_of(numbers: list[int], all_cases: list[Case], bar: tqdm) -> Answers
         there.close()
         for number in left:
             end = _received(here, process)
-            found.append((all_cases[number], end))
+            found.append((cases[number], end))
             bar.update()
             if end.outcome in (CRASHED, HUNG):
                 break
@@ -81,15 +92,14 @@ def _received(here: Connection, process: multiprocessing.process.BaseProcess) ->
 
 
 def _work(numbers: list[int], there: Connection) -> None:
-    """Send the answers of bad calls; what Exudyn prints is dropped."""
+    """Send the answers of calls; what Exudyn prints is dropped."""
     _limit_memory()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     world = World()
     os.chdir(world.folder)
-    wanted = set(numbers)
-    for number, (case, make) in enumerate(cases(world)):
-        if number in wanted:
-            there.send(answer(case, make, world))
+    cases, _ = all_cases(world)
+    for number in numbers:
+        there.send(answer(cases[number], world))
 
 
 def _limit_memory() -> None:
@@ -128,9 +138,9 @@ def share(found: Answers) -> float:
     return sum(end.outcome == CLEAR for _, end in found) / max(len(found), 1)
 
 
-def listed(found: Answers) -> str:
-    """Return what was not refused clearly, one line each, by folder of the package."""
-    failed = [(home(case.call), str(case), end) for case, end in found if end.outcome != CLEAR]
+def listed(found: Answers, wanted: str = CLEAR) -> str:
+    """Return what was answered otherwise than wanted, one line each, by folder of the package."""
+    failed = [(home(case.call), str(case), end) for case, end in found if end.outcome != wanted]
     failed.sort(key=lambda entry: entry[:2])
     return "\n".join(
         f"{place}: {case}: {end.outcome}: {' '.join(end.said.split())[:160]}"
@@ -139,22 +149,27 @@ def listed(found: Answers) -> str:
 
 
 def main() -> None:
-    """Make the bad calls; ends with an error code if too many are not refused clearly."""
+    """Make all calls; ends with an error code if too many are not answered as they should be."""
     parser = argparse.ArgumentParser(description="Is every bad call refused clearly?")
     parser.add_argument("--quick", action="store_true", help="two thousand of them only")
     parser.add_argument("--list", metavar="FILE", help="write what was not refused clearly")
     parser.add_argument("--call", metavar="NAME", help="only calls whose name begins so")
     parser.add_argument("--processes", type=int, default=1, help="how many at a time")
     options = parser.parse_args()
-    all_cases = [case for case, _ in cases(World())]
-    numbers = chosen(len(all_cases), 2000 if options.quick else None)
+    cases, bad_count = all_cases(World())
+    numbers = chosen(len(cases), 2000 if options.quick else None)
     if options.call:
-        numbers = [n for n in numbers if all_cases[n].call.startswith(options.call)]
-    found = answers(numbers, all_cases, options.processes)
-    print(printed(found))
+        numbers = [n for n in numbers if cases[n].call.startswith(options.call)]
+    found = answers(numbers, cases, options.processes)
+    is_bad = dict(zip(map(id, cases), (n < bad_count for n in range(len(cases))), strict=True))
+    bad = [(case, end) for case, end in found if is_bad[id(case)]]
+    good = [(case, end) for case, end in found if not is_bad[id(case)]]
+    refused = listed(good, ACCEPTED)
+    print(printed(bad))
+    print(f"good values of unusual kinds: {len(good)} calls, refused: {refused or 'none'}")
     if options.list:
         with open(options.list, "w", encoding="utf-8") as file:
-            file.write(listed(found) + "\n")
-    worst = sum(end.outcome in (CRASHED, HUNG, HALF_BUILT) for _, end in found)
-    if worst or share(found) < WANTED:
-        raise SystemExit(f"{share(found):.2%} refused clearly, {worst} crashed, hung or half-built")
+            file.write("\n".join(filter(None, (listed(bad), refused, ""))))
+    worst = sum(end.outcome in (CRASHED, HUNG, HALF_BUILT) for _, end in bad)
+    if worst or refused or share(bad) < WANTED:
+        raise SystemExit(f"{share(bad):.2%} refused clearly, {worst} crashed, hung or half-built")
