@@ -219,14 +219,13 @@ def matrix(values: Any, name: str, unit: str = "", *, shape: Shape = (None, None
         return array(values, name, unit, shape=shape)
     if not _has_shape(values.shape, shape):
         raise ValueError(_told(name, f"finite numbers{_unit(unit)}{_of_shape(shape)}", values))
-    rows = values.tocsr()
-    if not rows.has_canonical_format:  # later, in place, it could not be put into it
-        rows = rows.copy()
-        rows.sum_duplicates()
-    result = sp.csr_array(rows)
-    result.data = array(rows.data, f"{name}: its entries", unit, shape=(None,))
-    result.indices = read_only(rows.indices, rows.indices.dtype)
-    result.indptr = read_only(rows.indptr, rows.indptr.dtype)
+    result = sp.csr_array(values)
+    if not result.has_canonical_format:  # later, in place, it could not be put into it
+        result = result.copy()
+        result.sum_duplicates()
+    result.data = array(result.data, f"{name}: its entries", unit, shape=(None,))
+    result.indices = read_only(result.indices, result.indices.dtype)
+    result.indptr = read_only(result.indptr, result.indptr.dtype)
     return result
 
 
@@ -235,11 +234,10 @@ def symmetric(values: Any, name: str, unit: str = "", *, size: int, sign: int = 
     result = matrix(values, name, unit, shape=(size, size))
     if sp.issparse(result):
         return result
-    difference = np.abs(result - sign * result.T).max(initial=0.0)
-    largest = np.abs(result).max(initial=0.0)
-    if difference > _SYMMETRY * largest:
+    wrong, largest = (np.abs(m).max(initial=0.0) for m in (result - sign * result.T, result))
+    if wrong > _SYMMETRY * largest:
         kind = f"a {'symmetric' if sign > 0 else 'skew-symmetric'} matrix"
-        raise ValueError(f"{name}: needs {kind}; {difference:.3g} of {largest:.3g} is not")
+        raise ValueError(f"{name}: needs {kind}; {wrong:.3g} of {largest:.3g} is not")
     return result
 
 

@@ -12,9 +12,6 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "exudyn_rotor"
 NAME = PACKAGE.name
 
-# edges against the order that still stand, as (importing, imported)
-LEFT: tuple[tuple[str, str], ...] = ()
-
 
 def order() -> list[str]:
     """Return the entries of the listing in README, 'theory/' or 'checks.py', top down."""
@@ -82,23 +79,29 @@ def test_every_entry_of_the_listing_exists():
 
 @pytest.mark.parametrize("module", sorted(MODULES))
 def test_imports_go_up_the_listing(module):
-    above = {
-        (module, imported)
-        for imported in imports(module)
-        if place(imported) > place(module) and (module, imported) not in LEFT
-    }
-    assert not above
+    assert not {imported for imported in imports(module) if place(imported) > place(module)}
 
 
-def test_no_circle_of_files():
-    graph = {module: set(imports(module)) - {module} for module in MODULES}
-    for importing, imported in LEFT:
-        graph[importing].discard(imported)
+FOLDERS = sorted(name for name, path in MODULES.items() if path.name == "__init__.py" and name)
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_no_circle_within_a_folder(folder):
+    """Neither between its files nor between its folders."""
+    graph: dict[str, set[str]] = {}
+    for module in MODULES:
+        if module.startswith(f"{folder}."):
+            own = _entry(module, folder)
+            inside = (name for name in imports(module) if name.startswith(f"{folder}."))
+            graph.setdefault(own, set()).update({_entry(name, folder) for name in inside} - {own})
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
-        circle = " → ".join(name or NAME for name in reversed(error.args[1]))
-        pytest.fail(f"files import each other in a circle: {circle}")
+        pytest.fail(f"{folder}: a circle of imports: {' → '.join(reversed(error.args[1]))}")
+
+
+def _entry(module: str, folder: str) -> str:
+    return module.removeprefix(f"{folder}.").partition(".")[0]
 
 
 def test_a_circle_and_a_wrong_way_would_be_seen(tmp_path, monkeypatch):
