@@ -1,15 +1,9 @@
 """The fixed-axis body against Exudyn's own 3D body with the same modes, bearings and start."""
 
-import importlib
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "validation"))
-scenes = importlib.import_module("scenes")
-against_3d = importlib.import_module("against_3d")
+from validation.exudyn_3d import against_3d, scenes
 
 DURATION, STEP = 0.02, 5e-5  # one turn
 

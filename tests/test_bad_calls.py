@@ -1,14 +1,15 @@
 """Bad calls made from signatures are refused by a message that names the argument.
 
-``validation/bad_calls.py`` makes all of them, in processes of their own; here a share of them.
+``python -m validation bad_calls`` makes all of them, in processes of their own; here a share of them.
 """
 
 import warnings
 
 import numpy as np
 import pytest
-from bad_calls import calls, judge, parameters, report
-from bad_calls.world import World
+
+from validation.bad_calls import calls, judge, parameters, report
+from validation.bad_calls.world import World
 
 # of some ten thousands
 BAD, TWICE_BAD, GOOD = 500, 100, 100

@@ -1,9 +1,10 @@
-"""Blades at level 'full' beside rotating beams; the long form is validation/blade.py."""
+"""Blades at level 'full' beside rotating beams; long: python -m validation blade."""
 
-import beam_reference as beam
 import numpy as np
 import pytest
-from blade import MODES, beam_frequency, blade, solid_frequencies, southwell
+
+from validation.references import beam
+from validation.stiffening.blade import MODES, beam_frequency, blade, solid_frequencies, southwell
 
 ETAS = (0.0, 1.0, 8.0)
 

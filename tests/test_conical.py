@@ -1,14 +1,9 @@
 """Conical frequencies of rigid rotors on springs against the closed form in the inertial frame."""
 
-import importlib
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "validation"))
-conical = importlib.import_module("conical")
+from validation.exudyn_3d import conical
 
 STEP = 1e-4
 

@@ -1,11 +1,20 @@
-"""Rotating discs beside plane stress and plate theory; the long form is validation/disc.py."""
+"""Rotating discs beside plane stress and plate theory; long: python -m validation disc."""
 
 from dataclasses import replace
 
 import numpy as np
-import plate_reference as plate
 import pytest
-from disc import PLATE, RING, ROUND, bending_modes, disc_rotor, pair, static_values
+
+from validation.references import plate
+from validation.stiffening.disc import (
+    PLATE,
+    RING,
+    ROUND,
+    bending_modes,
+    disc_rotor,
+    pair,
+    static_values,
+)
 
 # thick enough that a coarse mesh will do: it makes thin plates too stiff
 THICK = replace(PLATE, thickness=0.02)

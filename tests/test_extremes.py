@@ -1,31 +1,21 @@
 """The fast rows of the table of extremes, and the helpers behind it."""
 
-import importlib
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from exudyn_rotor import stability
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "validation"))
-rows = importlib.import_module("extremes.rows")
-rotors = importlib.import_module("extremes.rotors")
-table = importlib.import_module("extremes.table")
-bad_numbers, bases, holding, sizes, spin, steps, turning, unbalance = (
-    importlib.import_module(f"extremes.{name}")
-    for name in (
-        "bad_numbers",
-        "bases",
-        "holding",
-        "sizes",
-        "spin",
-        "steps",
-        "turning",
-        "unbalance",
-    )
+from validation.extremes import (
+    bad_numbers,
+    bases,
+    rotors,
+    rows,
+    spin,
+    steps,
+    table,
+    turning,
+    unbalance,
 )
 
 CASES = [

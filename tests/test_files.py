@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import savers
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_results import STORED, rotor
 
 from exudyn_rotor import Campbell, ReducedRotor, load_result, storage
 from exudyn_rotor.storage import read_arrays, write_arrays
+from validation import savers
 
 # what a response has at nodes, at rest, without damping or beyond the last critical speed
 MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")

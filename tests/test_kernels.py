@@ -1,7 +1,8 @@
 """Which kernels of OpenBLAS the long run of the tests takes, and what it reads from each run."""
 
-import kernels
 import pytest
+
+from validation import kernels
 
 AVX2 = {"sse4_2", "avx2", "fma"}
 AVX512 = AVX2 | {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"}

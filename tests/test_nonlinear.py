@@ -1,10 +1,9 @@
 """'full' against vibrations about a geometrically nonlinear static state, on one mesh."""
 
-import nonlinear
 import numpy as np
-import overhung
 import pytest
-import spun_up_blade
+
+from validation.stiffening import nonlinear, overhung, spun_up_blade
 
 
 @pytest.fixture(scope="module")

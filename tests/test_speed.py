@@ -2,10 +2,10 @@
 
 import dataclasses
 
-import ablation
 import pytest
-import speed
-import speed_scenes
+
+from validation.speed import ablation, speed
+from validation.speed import scenes as speed_scenes
 
 STEPS = 20
 

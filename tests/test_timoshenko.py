@@ -1,17 +1,12 @@
 """Slender solid shafts against Timoshenko beams of ross-rotordynamics 2.3.0.
 
-The numbers are in validation/reference/timoshenko_ross.json, written by the script beside it.
+The numbers are in validation/references/timoshenko_ross.json, written by the script beside it.
 """
-
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "validation"))
-
-from timoshenko import compare_all
+from validation.references.timoshenko import compare_all
 
 
 @pytest.fixture(scope="module")

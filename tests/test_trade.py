@@ -4,14 +4,23 @@ import json
 
 import numpy as np
 import pytest
-import trade
-import trade_error
-import trade_linear
-import trade_picture
-import trade_plan
-import trade_run
-import trade_scene
-from trade_scene import CONSTANT_SPEED, FIXED_AXIS, FREE_FRAME, STANDARD, VIRTUAL, Body, Config
+
+from validation.trade import error as trade_error
+from validation.trade import linear as trade_linear
+from validation.trade import picture as trade_picture
+from validation.trade import plan as trade_plan
+from validation.trade import run as trade_run
+from validation.trade import scene as trade_scene
+from validation.trade import trade
+from validation.trade.scene import (
+    CONSTANT_SPEED,
+    FIXED_AXIS,
+    FREE_FRAME,
+    STANDARD,
+    VIRTUAL,
+    Body,
+    Config,
+)
 
 SHORT = {"duration": 0.05, "settled": 0.04}  # s
 

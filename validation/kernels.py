@@ -1,7 +1,7 @@
 """The tests under every kernel of OpenBLAS that this processor can run.
 
 numpy, scipy and NGSolve bring an OpenBLAS each, which picks its kernel by the processor: sums run
-in another order and rounding differs. Run ``python validation/kernels.py``; arguments go to pytest.
+in another order and rounding differs. Run ``python -m validation kernels``; arguments go to pytest.
 Takes as many times the time of the tests as there are kernels. Where the environment sets
 OPENBLAS_CORETYPE, only that kernel runs.
 """
@@ -151,7 +151,3 @@ def main() -> None:
     print(f"\n{table(outcomes)}")
     if not all(outcome.holds for outcome in outcomes):
         raise SystemExit(1)
-
-
-if __name__ == "__main__":
-    main()

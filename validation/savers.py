@@ -4,13 +4,13 @@ Pairs of processes save to one path without pause and are killed at random momen
 pair the file must be there and whole. Then three savers run beside a reader, each of whose loads
 must succeed. Prints a table; the exit code is 1 if a file was lost or could not be read.
 
-    python validation/savers.py [pairs] [seconds]
+    python -m validation savers [pairs] [seconds]
 """
 
 from __future__ import annotations
 
+import argparse
 import multiprocessing
-import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -151,8 +151,13 @@ def beside_a_reader(folder: Path, seconds: float) -> Outcome:
     return outcome
 
 
-def main(pairs: int = 40, seconds: float = 20.0) -> int:
+def main() -> int:
     """Run both trials, print the table, return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("pairs", type=int, nargs="?", default=40, help="of savers that are killed")
+    parser.add_argument("seconds", type=float, nargs="?", default=20.0, help="beside a reader")
+    options = parser.parse_args()
+    pairs, seconds = options.pairs, options.seconds
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         own = folder / "u.npz.part"  # a file of the user's that looks like a draft
@@ -168,8 +173,3 @@ def main(pairs: int = 40, seconds: float = 20.0) -> int:
         print(f"{label:32s}{counts}")
     print(f"another file with the suffix .part: {'left alone' if kept else 'LOST'}")
     return int(any(row.failed for row in rows.values()) or not kept)
-
-
-if __name__ == "__main__":
-    given = sys.argv[1:]
-    sys.exit(main(*(kind(text) for kind, text in zip((int, float), given, strict=False))))

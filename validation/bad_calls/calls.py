@@ -10,7 +10,7 @@ import numpy as np
 from exudyn import OutputVariableType, SystemContainer
 
 import exudyn_rotor as er
-from bad_calls.world import SPEEDS, World, arguments
+from validation.bad_calls.world import SPEEDS, World, arguments
 
 Call = tuple[Callable, dict[str, Any]]
 

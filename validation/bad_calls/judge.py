@@ -19,9 +19,9 @@ import numpy as np
 from matplotlib import pyplot
 
 import exudyn_rotor as er
-from bad_calls import calls, parameters
-from bad_calls.unusual import unusual
-from bad_calls.world import World
+from validation.bad_calls import calls, parameters
+from validation.bad_calls.unusual import unusual
+from validation.bad_calls.world import World
 
 PACKAGE = str(Path(er.__file__).parent)
 SECONDS = 20.0  # for one call; the slowest valid one takes one second

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from bad_calls import values as v
-from bad_calls.values import Kind, either
+from validation.bad_calls import values as v
+from validation.bad_calls.values import Kind, either
 
 _AXIS = v.VECTOR.but(another_letter="w", no_direction=[0.0, 0.0, 0.0])
 _SPIN = either(v.SIGNED, v.WORD).but(another_word="fixed")

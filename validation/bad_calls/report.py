@@ -1,4 +1,9 @@
-"""All bad calls in processes of their own, so that a crash or a hang is seen, and a table."""
+"""Thousands of bad calls: is each refused by a message that names the argument?
+
+Run ``python -m validation bad_calls``, with ``--quick`` for a share of them, ``--list FILE`` to
+keep what was not refused clearly. They run in processes of their own, so that a crash or a hang is
+seen.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +18,7 @@ from multiprocessing.connection import Connection
 
 from tqdm import tqdm
 
-from bad_calls.judge import (
+from validation.bad_calls.judge import (
     ACCEPTED,
     CLEAR,
     HALF_BUILT,
@@ -28,7 +33,7 @@ from bad_calls.judge import (
     home,
     pairs,
 )
-from bad_calls.world import World
+from validation.bad_calls.world import World
 
 CRASHED = "crashed"
 WANTED = 0.99  # share of bad calls that are refused clearly

@@ -1,1 +1,1 @@
-"""Measurements behind ``extremes.py``: one function makes one row of its table."""
+"""Measurements behind the table of extremes: one function makes one row."""

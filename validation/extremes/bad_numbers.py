@@ -7,9 +7,6 @@ from collections.abc import Callable
 import exudyn as exu
 import numpy as np
 
-from extremes.rotors import cloud, held, two_rings
-from extremes.rows import EPS, Row, breaking_point, message
-from extremes.runs import bare_rotor, run
 from exudyn_rotor import (
     BaseAcceleration,
     ConstantSpeed,
@@ -31,6 +28,9 @@ from exudyn_rotor import (
     unstable_ranges,
 )
 from exudyn_rotor.solid.units import materials_by_region
+from validation.extremes.rotors import cloud, held, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point, message
+from validation.extremes.runs import bare_rotor, run
 
 Inputs = dict[str, Callable[[float], object]]
 

@@ -9,10 +9,10 @@ import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
 
-from extremes.rotors import cloud
-from extremes.rows import EPS, Row, message
 from exudyn_rotor import ReducedRotor, SolidRotor, free_modes
 from exudyn_rotor.solvers.lanczos import check_modes
+from validation.extremes.rotors import cloud
+from validation.extremes.rows import EPS, Row, message
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 

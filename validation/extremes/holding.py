@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from extremes.rotors import held, shaft_frequencies, shaft_rotor, two_rings
-from extremes.rows import EPS, Row, breaking_point, message
-from extremes.runs import bare_rotor, history, run
 from exudyn_rotor import (
     Support,
     campbell,
@@ -14,6 +11,9 @@ from exudyn_rotor import (
     stability_threshold,
     unstable_ranges,
 )
+from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point, message
+from validation.extremes.runs import bare_rotor, history, run
 
 MASS = 2.0  # of the rigid rotor of two rings [kg]
 

@@ -6,10 +6,10 @@ import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
 
-from extremes.bases import STEEL, orthonormality
-from extremes.rotors import held, two_rings
-from extremes.rows import EPS, Row, breaking_point, message
 from exudyn_rotor import Formulation, SolidRotor, Support, campbell, select_modes, stability
+from validation.extremes.bases import STEEL, orthonormality
+from validation.extremes.rotors import held, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point, message
 
 MODES = 6
 
@@ -218,7 +218,7 @@ def far_axis(quick: bool = False) -> Row:
     return Row(
         "axis far outside of the body",
         "1000 × the radius",
-        "frequencies, Θ = I_p + md², g = 0; limit: round-off × squared distance, for I_p beside md²",
+        "frequencies, Θ = I_p + md², g = 0; limit: round-off × squared distance, I_p beside md²",
         max(far_axis_error(1e3), far_inertia_error(1e3)),
         EPS * 1e3**2,
         f"{found:.1g} radii: rotations are no longer seen to be free, or frequencies are wrong by "

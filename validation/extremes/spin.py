@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rings
-from extremes.rows import EPS, Row, breaking_point, message
-from extremes.runs import bare_rotor, run
 from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening
+from validation.extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point, message
+from validation.extremes.runs import bare_rotor, run
 
 BEARING = 2e5  # N/m at each end of the shaft
 TILT = 2e3  # N m/rad of a rigid rotor's support

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from extremes.rotors import shaft_rotor, two_rings
-from extremes.rows import EPS, Row, breaking_point
-from extremes.runs import SOLVERS, bare_rotor, history, run
+from validation.extremes.rotors import shaft_rotor, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point
+from validation.extremes.runs import SOLVERS, bare_rotor, history, run
 
 # stability polynomials, ascending
 POLYNOMIALS = {

@@ -1,4 +1,8 @@
-"""All rows, printed and written."""
+"""How far every input can be pushed, what breaks first, and what the user is told there.
+
+Run ``python -m validation extremes``, with ``--quick`` for less than a minute, ``--json FILE`` to
+keep the rows.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,8 @@ from functools import partial
 
 from tqdm import tqdm
 
-from extremes import bad_numbers, bases, holding, sizes, spin, steps, turning, unbalance
-from extremes.rows import Row
+from validation.extremes import bad_numbers, bases, holding, sizes, spin, steps, turning, unbalance
+from validation.extremes.rows import Row
 
 GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
     "Spin speed": (

@@ -7,10 +7,10 @@ from fractions import Fraction
 import exudyn as exu
 import numpy as np
 
-from extremes.rotors import shaft_rotor, two_rings
-from extremes.rows import EPS, Row, breaking_point
-from extremes.runs import SOLVERS, bare_rotor, run
 from exudyn_rotor import ConstantSpeed, add_rotor
+from validation.extremes.rotors import shaft_rotor, two_rings
+from validation.extremes.rows import EPS, Row, breaking_point
+from validation.extremes.runs import SOLVERS, bare_rotor, run
 
 # 2π to 50 digits: exact beside the 16 digits of a double
 _TURN = 2 * Fraction(31415926535897932384626433832795028841971693993751, 10**49)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from extremes.rotors import two_rings
-from extremes.rows import Row, breaking_point
 from exudyn_rotor import Support, unbalance_response
+from validation.extremes.rotors import two_rings
+from validation.extremes.rows import Row, breaking_point
 
 SPEED, TILT = 200.0, 2e3  # rad/s, N m/rad
 RADIUS, HALF_LENGTH, MASS = 0.1, 0.06, 2.0  # of the two rings

@@ -1,4 +1,9 @@
-"""Apply mutations one at a time to a copy of the package and run the tests that must fail."""
+"""Whether the tests notice wrong physics: signs, factors, dropped terms, swapped indices, frames.
+
+Run ``python -m validation mutations``; ``--quick`` does ten, ``--list`` shows all, ``--only TEXT``
+those with the text in their line. Each is put into a copy of the package, where the tests that must
+fail run.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +21,8 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
-from mutations.lists import ALL
-from mutations.mutation import PACKAGE, ROOT, Mutation
+from validation.mutations.lists import ALL
+from validation.mutations.mutation import PACKAGE, ROOT, Mutation
 
 _COPIED = (PACKAGE, "tests", "validation", "examples", "pyproject.toml", "README.md")
 _NO_CACHE = shutil.ignore_patterns("__pycache__", "pictures")
@@ -132,7 +137,7 @@ def summary(outcomes: list[Outcome]) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the script; returns 0 if the tests noticed every mutation."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help=f"{_QUICK} mutations, one a folder")
     parser.add_argument("--list", action="store_true", help="print them and do nothing")
     parser.add_argument("--only", metavar="TEXT", default="", help="those with TEXT in their line")

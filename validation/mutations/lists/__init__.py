@@ -1,15 +1,15 @@
 """All mutations, by folder of the package."""
 
-from mutations.lists.advice import ADVICE
-from mutations.lists.linear import LINEAR
-from mutations.lists.multibody import MULTIBODY
-from mutations.lists.prestress import PRESTRESS
-from mutations.lists.reduction import REDUCTION
-from mutations.lists.solid import SOLID
-from mutations.lists.solvers import SOLVERS
-from mutations.lists.strength import STRENGTH
-from mutations.lists.theory import THEORY
-from mutations.lists.top import TOP
+from validation.mutations.lists.advice import ADVICE
+from validation.mutations.lists.linear import LINEAR
+from validation.mutations.lists.multibody import MULTIBODY
+from validation.mutations.lists.prestress import PRESTRESS
+from validation.mutations.lists.reduction import REDUCTION
+from validation.mutations.lists.solid import SOLID
+from validation.mutations.lists.solvers import SOLVERS
+from validation.mutations.lists.strength import STRENGTH
+from validation.mutations.lists.theory import THEORY
+from validation.mutations.lists.top import TOP
 
 ALL = (
     *THEORY,

@@ -1,6 +1,6 @@
 """Advice before a run and checks after it."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 ADVICE = [
     *mutations(

@@ -1,6 +1,6 @@
 """Linear analyses: models, periodic systems, modes, responses, stability."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 LINEAR = [
     *mutations(

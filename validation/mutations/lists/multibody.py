@@ -1,6 +1,6 @@
 """The rotor in a scene: frame, locks, equations, markers, sensors, records."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 _SCENES = "test_body_scenes.py::test_directions_of_mesh_and_scene_change_nothing_else"
 _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_loads"

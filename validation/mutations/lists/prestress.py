@@ -1,6 +1,6 @@
 """Static solution at speed, hubs, stress at rest."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 _TESTS = "test_prestress.py test_prestress_checks.py test_prestress_import.py"
 

@@ -1,6 +1,6 @@
 """Component modes, orthonormal bases, selection for a formulation, truncation."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 REDUCTION = [
     *mutations(

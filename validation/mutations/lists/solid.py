@@ -1,6 +1,6 @@
 """Finite-element model: stress, geometric stiffness, interfaces, masses, rigid motions."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 SOLID = [
     *mutations(

@@ -1,6 +1,6 @@
 """Inertia relief, constrained solutions, eigenvalue iteration, factors."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 SOLVERS = [
     *mutations(

@@ -1,6 +1,6 @@
 """Stress of a running rotor."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 _STATIC = "test_strength.py::test_static_stress_of_a_blade_beside_the_axis"
 _RUN = "test_strength.py::test_stress_in_a_run_is_the_static_one_and_what_exudyn_s_own_sensor_adds"

@@ -1,6 +1,6 @@
 """Terms of the spin, equations of motion, invariants, stiffening, axis and kernel."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 THEORY = [
     *mutations(

@@ -1,6 +1,6 @@
 """Modules beside the folders: storage, checks, pictures, parameter studies."""
 
-from mutations.mutation import mutations
+from validation.mutations.mutation import mutations
 
 TOP = [
     *mutations(

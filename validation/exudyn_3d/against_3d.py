@@ -11,8 +11,8 @@ The story in four parts:
    body moves every basis to the mean motion, so its motion does not.
 4. The members of the formulation family are one physics in different coordinates.
 
-Run ``python against_3d.py``, with ``--quick`` for a short version, ``--json FILE`` to keep the
-numbers.
+Run ``python -m validation against_3d``, with ``--quick`` for a short version, ``--json FILE`` to
+keep the numbers.
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ from dataclasses import replace
 
 import numpy as np
 from exudyn.FEM import HCBstaticModeSelection
-from scenes import (
+from tqdm import tqdm
+
+from validation.exudyn_3d.scenes import (
     Bearings,
     Model,
     Orbits,
@@ -36,7 +38,6 @@ from scenes import (
     fixed_axis_orbits,
     three_d_orbits,
 )
-from tqdm import tqdm
 
 SPEED = 314.0  # rad/s
 SUPPORTS = {
@@ -319,7 +320,3 @@ def main() -> None:
         print_table(title, rows)
     if options.json:
         write_json(options.json, tables)
-
-
-if __name__ == "__main__":
-    main()

@@ -6,7 +6,7 @@ what Exudyn's 3D body has with its frame in the hub (``overhung.py``), and at 't
 integrates the geometrically nonlinear solid in the rotating frame; all models take the trapezoidal
 rule with the same steps.
 
-python validation/spun_up_blade.py [--json FILE] [--quick] [--picture FILE]
+python -m validation spun_up_blade [--json FILE] [--quick] [--picture FILE]
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from netgen.occ import Box, OCCGeometry, Pnt, X
-from nonlinear import ClampedSolid
 from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, PrescribedMotion, plotting, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
+from validation.stiffening.nonlinear import ClampedSolid
 
 HUB, LENGTH = 0.05, 0.4  # m
 END_SPEED, SPIN_UP, DURATION = 500.0, 0.4, 0.45  # rad/s, s, s
@@ -184,7 +184,3 @@ def main(argv: list[str] | None = None) -> None:
         draw(tracks, step, options.picture)
     if options.json:
         options.json.write_text(json.dumps({"largest": largest, "rows": rows}, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

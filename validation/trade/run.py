@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from against_3d import SUPPORTS, compare
-from scenes import Model, disc_on_shaft
 from tqdm import tqdm
-from trade_error import Motion, Row, errors
-from trade_plan import bodies
-from trade_scene import (
+
+from validation.exudyn_3d.against_3d import SUPPORTS, compare
+from validation.exudyn_3d.scenes import Model, disc_on_shaft
+from validation.trade.error import Motion, Row, errors
+from validation.trade.plan import bodies
+from validation.trade.scene import (
     CONSTANT_SPEED,
     CRAIG_BAMPTON,
     FIXED_AXIS,

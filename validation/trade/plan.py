@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from trade_scene import (
+from validation.trade.scene import (
     CONSTANT_SPEED,
     CRAIG_BAMPTON,
     FIXED_AXIS,

@@ -16,8 +16,8 @@ frequencies, from the unreduced model, are compared with Ritz solutions of the E
 
 The level 'none' loses the lag mode (NaN or −1) where the spin softening exceeds its stiffness.
 
-Run ``python blade.py``, with ``--quick`` for one mesh and fewer speeds, ``--json FILE`` to keep the
-numbers, ``--picture FILE`` for the frequencies over speed.
+Run ``python -m validation blade``, with ``--quick`` for one mesh and fewer speeds, ``--json FILE``
+to keep the numbers, ``--picture FILE`` for the frequencies over speed.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from collections.abc import Sequence
 
 import ngsolve as ngs
 import numpy as np
-from against_3d import Row, write_json
-from beam_reference import Section, flap_frequencies, lag_frequencies, thick_frequencies
 from netgen.occ import Box, OCCGeometry, Pnt, X
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, SpinAxis, campbell, free_modes, spinning_modes
 from exudyn_rotor.plotting import COLORS, LINES, figure, legend_above, save
+from validation.exudyn_3d.against_3d import Row, write_json
+from validation.references.beam import Section, flap_frequencies, lag_frequencies, thick_frequencies
 
 LENGTH, WIDTH, HEIGHT = 0.5, 0.02, 0.01  # along x, in the plane of rotation, across it [m]
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -310,7 +310,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         write_json(options.json, tables)
     if options.picture:
         draw(options.picture, size, np.linspace(0.0, 10.0, 6), hubs)
-
-
-if __name__ == "__main__":
-    main()

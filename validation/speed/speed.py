@@ -3,7 +3,7 @@
 The scene is the demonstration's rotor on two anisotropic bearings. All bodies have the same modes
 and the same steps; every body runs with Exudyn's default tolerances and with the recommended ones.
 
-python validation/speed.py [--json FILE] [--quick]
+python -m validation speed [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -14,7 +14,11 @@ from pathlib import Path
 
 import exudyn
 from exudyn.FEM import FEMinterface
-from speed_scenes import (
+from tqdm import tqdm
+
+from exudyn_rotor import recommended_settings
+from exudyn_rotor.demo.scene import AddRotor
+from validation.speed.scenes import (
     BODIES,
     POINT_BODIES,
     STEP,
@@ -24,10 +28,6 @@ from speed_scenes import (
     python_calls,
     seconds,
 )
-from tqdm import tqdm
-
-from exudyn_rotor import recommended_settings
-from exudyn_rotor.demo.scene import AddRotor
 
 ELEMENT_SIZE, QUICK_SIZE = 0.0155, 0.05  # m: 10 400 and 6800 nodes
 MODE_COUNTS, QUICK_COUNTS = (8, 20, 40), (8, 20)
@@ -153,7 +153,3 @@ def main(argv: list[str] | None = None) -> None:
     if options.json:
         data = {"nodes": model.node_count, "steps": steps, "rows": rows, "ratios": summary}
         options.json.write_text(json.dumps(data, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

@@ -20,9 +20,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from beam_reference import gyroscopic_frequencies, lowest_frequencies, shapes
 from scipy.optimize import brentq
 from scipy.special import iv, ivp, jv, jvp, kv, kvp, yv, yvp
+
+from validation.references.beam import gyroscopic_frequencies, lowest_frequencies, shapes
 
 # Frequencies ``ωb²√(ρh/D)``, no nodal circle, over (bore/rim radius, n), three digits as tabulated;
 # reproduced with ν = 0.3 (Vogel and Skinner; Leissa)

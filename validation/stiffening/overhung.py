@@ -3,7 +3,7 @@
 Lowest bending frequencies in the rotating frame over the speed: the levels of stiffening, Exudyn's
 3D body, and vibrations about the geometrically nonlinear static state as the referee.
 
-python validation/overhung.py [--json FILE] [--quick]
+python -m validation overhung [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from exudyn.itemInterface import (
     SensorNode,
 )
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
-from nonlinear import LEVELS, STEEL, ClampedSolid
 from tqdm import tqdm
 
 from exudyn_rotor import Formulation, Motion, ReducedRotor, free_modes, select_modes
 from exudyn_rotor.theory.stiffening import stiffening
+from validation.stiffening.nonlinear import LEVELS, STEEL, ClampedSolid
 
 SPEEDS, QUICK_SPEEDS = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0), (0.0, 60.0)  # rad/s
 MODES = 12
@@ -166,7 +166,3 @@ def main(argv: list[str] | None = None) -> None:
         print(f"{row['speed']:10.0f}{row['strain']:10.1e}{pair:>20}{errors}")
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

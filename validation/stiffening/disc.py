@@ -11,7 +11,8 @@
 Annuli have meshes of cyclic symmetry: waves with and against the spin stay pairs. The mid nodes of
 second-order elements lie on circles.
 
-Run ``python disc.py``, with ``--quick`` for coarser meshes, ``--json FILE`` to keep the numbers.
+Run ``python -m validation disc``, with ``--quick`` for coarser meshes, ``--json FILE`` to keep the
+numbers.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ from dataclasses import replace
 
 import ngsolve as ngs
 import numpy as np
-import plate_reference as plate
-from against_3d import Row, write_json
-from blade import STEEL, print_rows
 from netgen.meshing import FaceDescriptor, Mesh
-from plate_reference import Annulus, PlaneStress
 from scipy.integrate import simpson
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.linear.modal.campbell import Campbell
+from validation.exudyn_3d.against_3d import Row, write_json
+from validation.references import plate
+from validation.references.plate import Annulus, PlaneStress
+from validation.stiffening.blade import STEEL, print_rows
 
 MATERIAL = {"modulus": 2.1e11, "ratio": 0.3, "density": 7850.0}
 RING = Annulus(0.05, 0.2, 0.02, **MATERIAL)
@@ -343,7 +344,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         print_rows(title, rows)
     if options.json:
         write_json(options.json, tables)
-
-
-if __name__ == "__main__":
-    main()

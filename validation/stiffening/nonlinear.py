@@ -5,7 +5,7 @@ Newton's method finds the static state at speed in the rotating frame, and the t
 the frequencies. ``stiffening='full'`` must agree to first order in Ω², with the
 initial-displacement stiffness to second order.
 
-python validation/nonlinear.py [--json FILE] [--quick]
+python -m validation nonlinear [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -228,7 +228,3 @@ def main(argv: list[str] | None = None) -> None:
     print("order in Ω²: " + ", ".join(f"{level} {value:.2f}" for level, value in found.items()))
     if options.json:
         options.json.write_text(json.dumps({"rows": rows, "orders": found}, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

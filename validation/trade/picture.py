@@ -7,11 +7,18 @@ from os import PathLike
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from trade_error import Row, cheapest, front
-from trade_run import AXES, USERS
-from trade_scene import CONSTANT_SPEED, CRAIG_BAMPTON, FREE, FREE_FRAME, STANDARD, VIRTUAL
 
 from exudyn_rotor.plotting import COLORS, save
+from validation.trade.error import Row, cheapest, front
+from validation.trade.run import AXES, USERS
+from validation.trade.scene import (
+    CONSTANT_SPEED,
+    CRAIG_BAMPTON,
+    FREE,
+    FREE_FRAME,
+    STANDARD,
+    VIRTUAL,
+)
 
 GREY = "#666666"
 STYLES = {  # colour, marker

@@ -9,7 +9,8 @@ The rotor gets a tilting impulse, and the complex tilt ``φx + iφy`` of its axi
 rotating arrows. Prony's method finds both frequencies to many digits from a short motion. What
 the integrator does to them is known in closed form, and it is the tolerance.
 
-Run ``python conical.py``, with ``--quick`` for fewer speeds, ``--json FILE`` to keep the numbers.
+Run ``python -m validation conical``, with ``--quick`` for fewer speeds, ``--json FILE`` to keep the
+numbers.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ import argparse
 from collections.abc import Sequence
 
 import numpy as np
-from against_3d import Row, false_threshold, print_table, write_json
-from scenes import Bearings, Model, Start, cylinder, fixed_axis_orbits
 from tqdm import tqdm
+
+from validation.exudyn_3d.against_3d import Row, false_threshold, print_table, write_json
+from validation.exudyn_3d.scenes import Bearings, Model, Start, cylinder, fixed_axis_orbits
 
 SHAPES = {"shaft": (0.05, 0.3, 0.03), "disc": (0.15, 0.1, 0.04)}
 BEARINGS = Bearings((1e6, 1e6, 1e6))
@@ -124,7 +126,3 @@ def main() -> None:
     print_table("Conical frequencies [rad/s] and relative errors; nan: the tilt grows", rows)
     if options.json:
         write_json(options.json, {"conical frequencies": rows})
-
-
-if __name__ == "__main__":
-    main()

@@ -2,7 +2,7 @@
 
 One rotor on two bearings; every row changes one thing of the row it names.
 
-python validation/ablation.py [--json FILE] [--quick]
+python -m validation ablation [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import exudyn
-from speed_scenes import STEP, default_settings, seconds
 from tqdm import tqdm
 
 from exudyn_rotor import (
@@ -27,6 +26,7 @@ from exudyn_rotor import (
     recommended_settings,
 )
 from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
+from validation.speed.scenes import STEP, default_settings, seconds
 
 SPEED = 180.0  # rad/s
 KINDS = exudyn.OutputVariableType
@@ -241,7 +241,3 @@ def main(argv: list[str] | None = None) -> None:
         )
     if options.json:
         options.json.write_text(json.dumps({"steps": steps, "rows": rows}, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

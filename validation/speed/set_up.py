@@ -2,7 +2,7 @@
 
 Then what each part of our own set-up takes, with what ``stiffening='full'`` and stress add.
 
-python validation/set_up.py [--json FILE] [--quick]
+python -m validation set_up [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -102,7 +102,3 @@ def main() -> None:
             print(f"  {name:26s}{seconds:7.2f}")
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

@@ -10,8 +10,6 @@ import exudyn
 import numpy as np
 from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import MarkerSuperElementPosition, SensorMarker, SensorSuperElement
-from speed_scenes import assemble
-from trade_error import Motion
 
 from exudyn_rotor import (
     ReducedRotor,
@@ -31,6 +29,8 @@ from exudyn_rotor.demo.scene import (
     disc_on_shaft,
 )
 from exudyn_rotor.reduction.reduce import ModeSource
+from validation.speed.scenes import assemble
+from validation.trade.error import Motion
 
 DISC = 0.05  # m, place of the disc's middle on the x axis
 RIM = (DISC, 0.0, 0.12)  # m

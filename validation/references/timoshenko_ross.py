@@ -3,7 +3,7 @@
 Run it in an environment with ``ross-rotordynamics`` (not needed by anything else here); it writes
 ``timoshenko_ross.json``, which validation and tests read:
 
-    python validation/reference/timoshenko_ross.py
+    python validation/references/timoshenko_ross.py
 
 Steel shafts on two isotropic bearings at their ends: a uniform one, and one with two discs. A real
 disc is bonded to the shaft over its width and stiffens it there; beam models bracket that: with

@@ -1,12 +1,12 @@
 """Slender solid shafts against Timoshenko beams: frequencies over speed and critical speeds.
 
-The beam numbers come from the open package ROSS (``reference/timoshenko_ross.json``, written by
+The beam numbers come from the open package ROSS (``timoshenko_ross.json``, written by
 ``timoshenko_ross.py`` beside it). The solid rotors are meshed with second-order tetrahedra and
 reduced by Craig–Bampton modes with averaged interfaces, so that supports act on the mean of an end
 face. A beam's gyroscopic matrix is that of discs which tilt with the bending shaft: level 'full' of
 centrifugal stiffening holds that, level 'tilt' for rigid tilts of the whole rotor only.
 
-    python validation/timoshenko.py [--json FILE] [--quick]
+    python -m validation timoshenko [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 
-REFERENCE = Path(__file__).parent / "reference" / "timoshenko_ross.json"
+REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")
 
 
@@ -123,7 +123,3 @@ def main() -> None:
         print(table(name, data["speeds"], result))
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

@@ -8,7 +8,7 @@ it holds the errors of the step, of the modes and of the formulation together, s
 added. The mesh is the same for all; what it costs is in a table of its own. The time is that of
 the whole simulation without the set-up.
 
-    python validation/trade.py [--json FILE] [--quick] [--picture FILE]
+    python -m validation trade [--json FILE] [--quick] [--picture FILE]
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import exudyn
-from trade_error import Row, cheapest, crossing, front
-from trade_linear import mesh_errors, reduction_errors
-from trade_picture import draw
-from trade_plan import plan, run_up
-from trade_run import AXES, USERS, Bench, contributions, measure, tilts
-from trade_scene import CRAIG_BAMPTON, TORQUE, VIRTUAL, Body, Rotor
+
+from validation.trade.error import Row, cheapest, crossing, front
+from validation.trade.linear import mesh_errors, reduction_errors
+from validation.trade.picture import draw
+from validation.trade.plan import plan, run_up
+from validation.trade.run import AXES, USERS, Bench, contributions, measure, tilts
+from validation.trade.scene import CRAIG_BAMPTON, TORQUE, VIRTUAL, Body, Rotor
 
 ACCURACIES = (1e-2, 1e-3, 1e-4)
 CLAIM = (1e-4, 20.0)  # accuracy, wanted speed ratio
@@ -207,7 +208,3 @@ def main(argv: list[str] | None = None) -> None:
         options.json.write_text(json.dumps(strict(data), indent=1, allow_nan=False) + "\n")
     if options.picture:
         draw(options.picture, data["points"], data["modes"], data["tilts"], ACCURACIES)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,48 @@
+"""The list of the scripts behind the numbers is complete, and the documents name no other."""
+
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from validation.__main__ import SCRIPTS, listing
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_script_can_run(name):
+    assert callable(importlib.import_module(f"validation.{SCRIPTS[name].module}").main)
+
+
+def test_every_script_is_listed():
+    own = {"__main__", "references.timoshenko_ross"}  # needs another package
+    found = {
+        ".".join(path.relative_to(ROOT / "validation").with_suffix("").parts)
+        for path in (ROOT / "validation").rglob("*.py")
+        if re.search(r"^def main\(", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert found - own == {script.module for script in SCRIPTS.values()}
+    assert all(f"{name} " in listing() for name in SCRIPTS)
+
+
+def test_documents_name_scripts_that_exist():
+    files = [*ROOT.glob("*.md"), *ROOT.glob("*/**/*.py")]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    named = set(re.findall(r"python -m validation ([a-z]\w*)", text))
+    assert named <= set(SCRIPTS)
+    assert len(named) > 10
+
+
+def test_options_reach_the_script():
+    command = [sys.executable, "-m", "validation"]
+    answer = subprocess.run(
+        [*command, "savers", "--help"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert "usage: python -m validation savers" in answer.stdout
+    answer = subprocess.run([*command, "sabers"], cwd=ROOT, capture_output=True, text=True)
+    assert answer.returncode != 0
+    assert "'sabers' is unknown; there are: speed" in answer.stderr

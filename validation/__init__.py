@@ -1,0 +1,1 @@
+"""Scripts behind the numbers: ``python -m validation`` lists and runs them."""

@@ -1,0 +1,1 @@
+"""Published and closed-form references of beams and plates."""

@@ -1,0 +1,1 @@
+"""Cost of time steps and of the set-up."""

@@ -1,0 +1,1 @@
+"""Centrifugal stiffening beside nonlinear solids, beams and plates."""
