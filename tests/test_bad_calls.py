@@ -1,6 +1,6 @@
 """Bad calls made from signatures are refused by a message that names the argument.
 
-``python -m validation bad_calls`` makes all of them, in processes of their own; here a share of them.
+``python -m validation bad_calls`` makes all, in processes of their own; here a share of them.
 """
 
 import warnings

@@ -14,7 +14,10 @@ def demo(tmp_path_factory):
 
 
 def test_variants_agree_with_the_3d_body(demo):
-    """The 3D body's own O(h²) phase error bounds the agreement; see python -m validation against_3d."""
+    """The 3D body's own O(h²) phase error bounds the agreement.
+
+    ``python -m validation against_3d`` measures it.
+    """
     reference, virtual, free, none = demo[0]
     amplitude = np.abs(reference.orbit).max()
     assert amplitude > 1e-4
