@@ -1,12 +1,13 @@
-"""The list of mutations fits the package; ``python validation/mutations.py`` applies them."""
+"""The list of mutations fits the package; ``python -m validation mutations`` applies them."""
 
 from collections import Counter
 from pathlib import Path
 
 import pytest
-from mutations.lists import ALL
-from mutations.mutation import PACKAGE, ROOT, Mutation
-from mutations.run import main, quick, summary, tried
+
+from validation.mutations.lists import ALL
+from validation.mutations.mutation import PACKAGE, ROOT, Mutation
+from validation.mutations.run import main, quick, summary, tried
 
 FEWEST, FEWEST_OF_A_FOLDER = 60, 5
 TESTS = ROOT / "tests"
