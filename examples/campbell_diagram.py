@@ -9,9 +9,14 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, campbell, plotting
-from exudyn_rotor.linear.modal.critical_speeds import critical_speed_map, critical_speeds
-from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    campbell,
+    critical_speed_map,
+    critical_speeds,
+    plotting,
+)
 
 HERTZ = 2.0 * np.pi
 

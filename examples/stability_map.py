@@ -12,11 +12,15 @@ import numpy as np
 import scipy.linalg
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, plotting
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.stability.stability import unstable_ranges
-from exudyn_rotor.linear.stability.stability_map import stability_map
+from exudyn_rotor import (
+    LinearModel,
+    SolidRotor,
+    Support,
+    linear_model,
+    plotting,
+    stability_map,
+    unstable_ranges,
+)
 from exudyn_rotor.reduction.mode_kind import ModeKind
 
 UPRIGHT, SIDEWAYS, ALONG = 6e6, 3e6, 1e7  # stiffness of a bearing [N/m]
@@ -37,18 +41,17 @@ def bearings(sideways: float, upright: float, damping: float) -> list[Support]:
     return [Support(name, stiffness, np.eye(3) * damping) for name in ("left", "right")]
 
 
-def damped(speed: float, damping: float) -> tuple[LinearRotor, float]:
+def damped(speed: float, damping: float) -> tuple[LinearModel, float]:
     """Return the rotor on bearings softer sideways, and the speed [rad/s]."""
-    return LinearRotor.of(reduced, bearings(SIDEWAYS, UPRIGHT, damping)), speed
+    return linear_model(reduced, supports=bearings(SIDEWAYS, UPRIGHT, damping)), speed
 
 
 speeds = np.linspace(440.0, 580.0, 57)
 isotropic = bearings(UPRIGHT, UPRIGHT, 0.0)
 found = unstable_ranges(reduced, speeds, supports=isotropic)
 keep = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
-at_rest, turning = (
-    LinearRotor.of(reduced, isotropic).at(speed).K[0][np.ix_(keep, keep)] for speed in (0.0, 1.0)
-)
+model = linear_model(reduced, supports=isotropic)
+at_rest, turning = (model.at(speed).K[0][np.ix_(keep, keep)] for speed in (0.0, 1.0))
 squares = scipy.linalg.eigvals(at_rest, at_rest - turning).real
 expected = np.sqrt(np.sort(squares[squares > 0.0])[:2])
 print(f"isotropic bearings: unstable from {found[0, 0]:.4f} to {found[0, 1]:.4f} rad/s")

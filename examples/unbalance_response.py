@@ -10,11 +10,16 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, plotting
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
-from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
-from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
+from exudyn_rotor import (
+    HarmonicForce,
+    SolidRotor,
+    Support,
+    Unbalance,
+    harmonic_response,
+    permissible_unbalance,
+    plotting,
+    unbalance_response,
+)
 
 SIDEWAYS, UPWARDS, DAMPING = 4e5, 8e5, 250.0  # of one bearing [N/m], [N s/m]
 GRADE, SERVICE = 6.3, 6000.0 * np.pi / 30.0  # [mm/s], [rad/s]

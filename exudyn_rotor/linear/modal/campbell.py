@@ -310,9 +310,11 @@ def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count:
     for group in groups(modes.values, modes.resolution):
         if len(group) > 1:
             vectors[:, :, group] = content.polarised(vectors[:, :, group], modes.orders)
-    found = content.classify(vectors, modes.orders, modes.values.imag, speed)
-    kept = FloquetModes(modes.values[:count], vectors[:, :, :count], modes.orders, modes.resolution)
-    return kept, *(array[:count] for array in found)
+    classified = content.classify(vectors, modes.orders, modes.values.imag, speed)
+    lowest = FloquetModes(
+        modes.values[:count], vectors[:, :, :count], modes.orders, modes.resolution
+    )
+    return lowest, *(array[:count] for array in classified)
 
 
 def _collected(

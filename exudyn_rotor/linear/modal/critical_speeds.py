@@ -146,8 +146,8 @@ def critical_speeds(
     residual = options.accuracy(residual, "residual")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
     content = WhirlContent.of(model)
-    found = resonances(model, content, order, waves, max_speed, tolerance, residual)
-    return _collected(found, content, order, model.size)
+    critical = resonances(model, content, order, waves, max_speed, tolerance, residual)
+    return _collected(critical, content, order, model.size)
 
 
 @storable
@@ -281,10 +281,10 @@ def critical_speed_map(
         "stiffening": stiffening,
     }
     task = partial(_at_stiffness, target, names, supports, given)
-    found = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
-    most = max(len(entry.speeds) for entry in found)
+    solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
+    most = max(len(entry.speeds) for entry in solved)
     speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
-    for row, entry in enumerate(found):
+    for row, entry in enumerate(solved):
         count = len(entry.speeds)
         speeds[row, :count] = entry.speeds
         codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
@@ -323,10 +323,10 @@ def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
 
 
 def _collected(
-    found: list[Resonance], content: WhirlContent, order: float, size: int
+    critical: list[Resonance], content: WhirlContent, order: float, size: int
 ) -> CriticalSpeeds:
     words, diameters, rotating, vectors = [], [], [], []
-    for entry in found:
+    for entry in critical:
         strongest = np.argmax(np.linalg.norm(entry.vectors, axis=1))
         _, code, n = content.classify(
             entry.vectors[:, :, None], entry.multiples, np.zeros(1), entry.speed
@@ -337,7 +337,7 @@ def _collected(
         vectors.append(entry.vectors[strongest])
     return CriticalSpeeds(
         order=order,
-        speeds=np.array([entry.speed for entry in found]),
+        speeds=np.array([entry.speed for entry in critical]),
         frequencies_rotor=np.array(rotating),
         whirl=tuple(words),
         nodal_diameters=np.array(diameters, dtype=np.int64),

@@ -72,11 +72,13 @@ def resonances(
     space = model.space(_MODES, limit or 0.0, residual=residual)
     for _ in range(_MOST_ROUNDS):
         equations = _Equations(space, model.stiffness_varies, {})
-        found = _resonances(equations, content.within(space.basis), order, waves, limit, tolerance)
+        critical = _resonances(
+            equations, content.within(space.basis), order, waves, limit, tolerance
+        )
         if space.basis is not None:
-            found = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in found]
-        if space.holds([(entry.speed, _as_modes(entry)) for entry in found]):
-            return found
+            critical = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in critical]
+        if space.holds([(entry.speed, _as_modes(entry)) for entry in critical]):
+            return critical
     raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
 
 
@@ -97,16 +99,18 @@ def _resonances(
 ) -> list[Resonance]:
     """Return all critical speeds of dense equations, ascending."""
     step = equations.at(0.0).step
-    found = []
+    critical = []
     if step == 0:
         for n in waves:
-            found += _kept(_solved(equations, np.array([order - n]), limit), content, order, waves)
+            critical += _turning(
+                _solved(equations, np.array([order - n]), limit), content, order, waves
+            )
     else:
         for start in {n % step: n for n in waves}.values():
-            found += _converged(
+            critical += _converged(
                 equations, content, order, waves, order - start, step, limit, tolerance
             )
-    return sorted(found, key=lambda entry: entry.speed)
+    return sorted(critical, key=lambda entry: entry.speed)
 
 
 def _converged(
@@ -123,11 +127,11 @@ def _converged(
     last = None
     for count in range(2, _MOST_STEPS):
         multiples = center + step * np.arange(-count, count + 1)
-        found = _kept(_solved(equations, multiples, limit), content, order, waves)
-        speeds = np.sort([entry.speed for entry in found])
+        critical = _turning(_solved(equations, multiples, limit), content, order, waves)
+        speeds = np.sort([entry.speed for entry in critical])
         same = last is not None and len(last) == len(speeds)
         if same and np.all(np.abs(speeds - last) <= tolerance * speeds):
-            return found
+            return critical
         last = speeds
     raise ValueError(
         f"critical speeds: they still change with harmonics up to the {step * (_MOST_STEPS - 1)}th;"
@@ -152,8 +156,8 @@ def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarr
             )
             row.append(sum(parts) + np.zeros((size, size)))
         rows.append(row)
-    whole = np.block(rows)
-    return 0.5 * (whole + whole.conj().T)
+    dynamic = np.block(rows)
+    return 0.5 * (dynamic + dynamic.conj().T)
 
 
 def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
@@ -237,8 +241,8 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
     basis = W - R @ ((R.conj().T @ B @ W) / inertia[moving, None])
     inverse, shapes = la.eigh(basis.conj().T @ B @ basis)
     positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
-    found = zip(1.0 / np.sqrt(inverse[positive]), (basis @ shapes[:, positive]).T, strict=True)
-    return [(float(speed), vector) for speed, vector in found]
+    pairs = zip(1.0 / np.sqrt(inverse[positive]), (basis @ shapes[:, positive]).T, strict=True)
+    return [(float(speed), vector) for speed, vector in pairs]
 
 
 def _bracketed(
@@ -247,7 +251,7 @@ def _bracketed(
     """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit]."""
     grid = np.linspace(limit / count, limit, count)
     branches = np.array([la.eigvalsh(stiffness(speed)) for speed in grid])
-    found = []
+    crossings = []
     for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
         signs = branches[1:, branch] * branches[:-1, branch] < 0.0
         for i in np.flatnonzero(signs):
@@ -259,16 +263,16 @@ def _bracketed(
                 rtol=1e-13,
             )
             _, vector = la.eigh(stiffness(speed), subset_by_index=[branch, branch])
-            found.append((float(speed), vector[:, 0]))
-    return found
+            crossings.append((float(speed), vector[:, 0]))
+    return crossings
 
 
-def _kept(
-    found: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
+def _turning(
+    candidates: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
 ) -> list[Resonance]:
     """Keep motions that turn with the excitation; of a motion and its conjugate, one."""
-    kept = []
-    for group in _same_speed(found):
+    chosen = []
+    for group in _same_speed(candidates):
         multiples = group[0].multiples
         vectors = np.stack([entry.vectors for entry in group], axis=2)
         vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(group)), axis=0)
@@ -276,22 +280,22 @@ def _kept(
             vectors = content.polarised(vectors, multiples)
         seen = multiples[:, None] + content.orders[None, :]
         energy = content.energies(vectors)
-        whole = np.maximum(content.whole_energy(vectors), 1e-300)
+        total = np.maximum(content.whole_energy(vectors), 1e-300)
         meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(
             np.abs(content.orders), np.abs(waves)
         )
         turning = np.sum(energy * meets[..., None], axis=(0, 1))
         mean = np.einsum("ho,hok->k", seen, energy)
         for column, entry in enumerate(group):
-            conjugate = mean[column] < -_CONJUGATE * order * whole[column]
-            if turning[column] >= _SHARE * whole[column] and not conjugate:
-                kept.append(Resonance(entry.speed, multiples, vectors[:, :, column]))
-    return kept
+            conjugate = mean[column] < -_CONJUGATE * order * total[column]
+            if turning[column] >= _SHARE * total[column] and not conjugate:
+                chosen.append(Resonance(entry.speed, multiples, vectors[:, :, column]))
+    return chosen
 
 
-def _same_speed(found: list[Resonance]) -> list[list[Resonance]]:
+def _same_speed(candidates: list[Resonance]) -> list[list[Resonance]]:
     groups: list[list[Resonance]] = []
-    for entry in sorted(found, key=lambda entry: entry.speed):
+    for entry in sorted(candidates, key=lambda entry: entry.speed):
         if groups and entry.speed - groups[-1][-1].speed <= _SAME * entry.speed:
             groups[-1].append(entry)
         else:

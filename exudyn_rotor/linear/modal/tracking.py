@@ -56,16 +56,16 @@ def track(
             entry = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
             better = entry < cost
             cost[better], choice[better] = entry[better], number
-        rows, found = linear_sum_assignment(cost)
-        columns[step, rows] = found
-        used = choice[rows, found]
-        signed = np.array([copies[c][0][j] for c, j in zip(used, found, strict=True)])
+        rows, matched = linear_sum_assignment(cost)
+        columns[step, rows] = matched
+        used = choice[rows, matched]
+        signed = np.array([copies[c][0][j] for c, j in zip(used, matched, strict=True)])
         orders = sorted({m for c in used for m in copies[c][1]})
         last = {
             m: np.column_stack(
                 [
                     copies[c][1][m][:, j] if m in copies[c][1] else 0.0 * modes[step].central[:, j]
-                    for c, j in zip(used, found, strict=True)
+                    for c, j in zip(used, matched, strict=True)
                 ]
             )
             for m in orders

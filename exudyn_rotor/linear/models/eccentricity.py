@@ -15,13 +15,13 @@ _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly b
 
 
 def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
-    """Tell that spin and lateral motion are coupled where they are taken apart."""
+    """Tell that spin and lateral motion are coupled where they are taken for decoupled."""
     distance = float(np.linalg.norm(invariants.center))
     error, band = without_drive(invariants)
     if error <= _ECCENTRIC:
         return
     what = (
-        "a load and keep spin and lateral motion apart, as for a rotor driven at constant speed. "
+        "a load and decouple spin and lateral motion, as for a rotor driven at constant speed. "
         f"Without a drive, frequencies differ by about {error:.1%} at rest, near a critical speed "
         "by m r²/Θ with the whirl radius r of the centre of mass, and the rotor is unstable up to "
         f"about {band:.0%} above it; balance the rotor"

@@ -124,10 +124,10 @@ class FullEquations:
 
     def with_spin(self: Kind) -> Kind:
         """Return the same with the spin as a coordinate, as all analyses need it."""
-        own = spin_of(self.rotor)
-        if self.spin is not None or own is None:
+        rigid_spin = spin_of(self.rotor)
+        if self.spin is not None or rigid_spin is None:
             return self
-        spin = Spin.of(*own, self.supports, self.motions, self.invariants, self.axis)
+        spin = Spin.of(*rigid_spin, self.supports, self.motions, self.invariants, self.axis)
         warn_of_eccentricity(self.invariants, spin)
         return replace(self, spin=spin)
 

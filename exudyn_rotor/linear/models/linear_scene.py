@@ -87,10 +87,10 @@ class LinearScene(SceneCoordinates):
         """
         _check(mbs, body)
         checks.choice(about, "about", ABOUT)
-        own = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
+        rotor = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
         rest = np.array(mbs.systemData.GetODE2Coordinates(), dtype=float)
-        others = np.setdiff1d(np.arange(len(rest)), own)
-        unknowns = own[_without_spin(body)]
+        others = np.setdiff1d(np.arange(len(rest)), rotor)
+        unknowns = rotor[_without_spin(body)]
         rest[unknowns[body.motion.formulation.translation_count :]] = 0.0
         free = np.r_[unknowns, others]
         with probing(SceneCoordinates(body, free, np.eye(len(free)), rest), 0.0) as probe:
@@ -122,7 +122,7 @@ class LinearScene(SceneCoordinates):
         load = np.zeros(len(self.free))
         across = body.axis.radial(body.frame.origin)
         load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
-        load[self.own] = inv.h
+        load[self.modal] = inv.h
         return self.N.T @ load
 
     @property
@@ -143,7 +143,7 @@ class LinearScene(SceneCoordinates):
         motion = np.zeros((6, len(self.free)))
         motion[: self.count, : self.count] = np.eye(self.count)
         turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
-        motion[:, self.own] = turn @ _marker_motion(self.body, name)
+        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
         return motion @ self.N
 
     def at(self, speed: float) -> PeriodicSystem:
@@ -207,7 +207,7 @@ def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> Peri
     for _ in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
-        terms = [_terms(*part) for part in _scaled(points)]
+        terms = [_terms(*entry) for entry in _scaled(points)]
         if any(X is None for X in terms):
             return None
         system = PeriodicSystem(speed, *terms)
@@ -237,8 +237,8 @@ def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     # a row of round-off is not blown up to the size of the others
     scale = 1.0 / np.sqrt(np.maximum(rows, max(_NOISE * rows.max(), 1e-300)))
     scaled = scale[:, None] * K * scale
-    found = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
-    answer = scale * found[0]
+    solution = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
+    answer = scale * solution[0]
     return answer, load - K @ answer
 
 

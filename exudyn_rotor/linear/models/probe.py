@@ -41,7 +41,7 @@ class Probe:
         body = scene.body
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
         self.spin = _spin_coordinate(body)
-        self.rotor = np.arange(scene.own.stop)
+        self.rotor = np.arange(scene.modal.stop)
         self.step = None
         self.constant = None
         if body.motion.is_constant:
@@ -71,7 +71,7 @@ class Probe:
         mass[np.ix_(self.rotor, self.rotor)] = 0.0
         return mass
 
-    def own(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
         form = replace(body.motion.formulation, spin=ConstantSpeed(self.speed, theta))
@@ -136,14 +136,14 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     settings.solution.file.write = False
     settings.solution.sensors.active = False
     data = mbs.systemData
-    kept = [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
+    saved = [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
     solver = exudyn.MainSolverStatic()
     try:
         solver.InitializeSolver(mbs, settings)
         yield Probe(scene, speed, solver)
     finally:
         solver.FinalizeSolver(mbs, settings)
-        for state, values, time in kept:
+        for state, values, time in saved:
             data.SetSystemState(values, state)
             data.SetTime(time, state)
 
@@ -155,27 +155,29 @@ def linearised(
     speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
     T1, T2 = speed * T1, speed**2 * T2
     x, v = T @ y, T @ y_t + T1 @ y
-    own_M, own_D, own_K, own_force = probe.own(theta)
+    rotor_M, rotor_D, rotor_K, rotor_force = probe.rotor_terms(theta)
     force = probe.force(theta, x, v)
-    M = own_M + probe.mass()
-    residual = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + own_D @ v + own_K @ x - own_force - force
+    M = rotor_M + probe.mass()
+    residual = (
+        M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + rotor_D @ v + rotor_K @ x - rotor_force - force
+    )
     sizes = np.sqrt(probe.scene.mass / np.maximum(np.diag(T.T @ M @ T), 1e-300))
 
     def moved(x_i: np.ndarray) -> np.ndarray:
         return probe.force(theta, x + x_i, v)
 
-    def pushed(v_i: np.ndarray) -> np.ndarray:
+    def sped_up(v_i: np.ndarray) -> np.ndarray:
         return probe.force(theta, x, v + v_i)
 
     if probe.step is None:
         probe.step = _chosen_step(moved, T * sizes)
     rest_K = -_differences(moved, probe.step * T * sizes)[0] / (probe.step * sizes)
-    rest_D = -_differences(pushed, _VELOCITY_STEP * T * sizes)[0] / (_VELOCITY_STEP * sizes)
+    rest_D = -_differences(sped_up, _VELOCITY_STEP * T * sizes)[0] / (_VELOCITY_STEP * sizes)
     carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
     return (
         T.T @ M @ T,
-        T.T @ (2.0 * M @ T1 + own_D @ T + rest_D),
-        T.T @ (M @ T2 + own_D @ T1 + own_K @ T + rest_K + carried),
+        T.T @ (2.0 * M @ T1 + rotor_D @ T + rest_D),
+        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T + rest_K + carried),
         T.T @ residual,
     )
 

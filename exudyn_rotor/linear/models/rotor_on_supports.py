@@ -192,8 +192,8 @@ class LinearRotor:
             _add(D, damping, U)
             _add(K, stiffness, U)
         if self.spin is not None and self.spin.coupled:
-            own = self.steady_torsion(speed)
-            K[0] = K[0] + own * np.outer(self.spin.momentum, self.spin.momentum)
+            torsion = self.steady_torsion(speed)
+            K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)
         return PeriodicSystem(float(speed), M, D, K)
 
     def steady_torsion(self, speed: float) -> float:

@@ -44,7 +44,7 @@ class SceneCoordinates:
         return self.body.motion.invariants.mass
 
     @property
-    def own(self) -> slice:
+    def modal(self) -> slice:
         """Where the rotor's modal coordinates stand among the free ones."""
         return slice(self.count, self.count + self.body.motion.invariants.size)
 

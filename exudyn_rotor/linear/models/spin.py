@@ -4,7 +4,7 @@ A displacement x holds the spin ``a = sᵀMx``, with s the unit rotation about t
 centre of mass, ``sᵀMs = 1``. The centrifugal field does not resist it, at any level of stiffening:
 a rotation of the whole keeps its potential, so ``K2 − C`` acts on the rest of x only.
 
-*Apart*: nothing else resists the spin either when the whole steady state turns about the axis.
+*Decoupled*: nothing else resists the spin either when the whole steady state turns about the axis.
 Linear terms of supports feign a stiffness by first order in the eccentricity, which the forces of
 the steady state cancel. The translations of supports then act on the rest of x only: lateral motion
 is that of a rotor driven at constant speed, and the spin is neutral, or on a torsion spring of its
@@ -38,7 +38,7 @@ _NO_MOTION = 1e-6
 # arm off the axis, squared and in radii of gyration, from which springs that turn hold the spin
 _ARM = 1e-4
 # the same of springs that stand still, from their centre: bearings are off it by the mesh alone
-_APART = 1e-2
+_OFF_CENTER = 1e-2
 _PROBED = (0.0, 1.0, 10.0, 100.0, 1e3, 1e4)  # rad/s, for supports that depend on the speed
 
 
@@ -101,7 +101,7 @@ class Spin:
         at_arm = [u[:3] + np.cross(u[3:], offset) for u in turned]  # by rotation about the axis
         probed = [_stiffnesses(support) for support in supports]
         turning = [support.frame == "rotor" for support in supports]
-        coupled = _held_apart(
+        coupled = _held_off_center(
             [each for each, turns in zip(probed, turning, strict=True) if not turns],
             [u[:2] for u, turns in zip(turned, turning, strict=True) if not turns],
             invariants.mass,
@@ -151,7 +151,7 @@ def _couples(stiffnesses: Sequence[np.ndarray], about_axis: np.ndarray, mass: fl
     )
 
 
-def _held_apart(
+def _held_off_center(
     stiffnesses: Sequence[Sequence[np.ndarray]], turned: Sequence[np.ndarray], mass: float
 ) -> bool:
     """Return True if springs that stand still hold the spin by their distance from each other."""
@@ -159,8 +159,8 @@ def _held_apart(
     for index in range(len(_PROBED)):
         k = np.array([0.5 * np.trace(each[index][:2, :2]) for each in stiffnesses])
         if np.any(k > 0.0):
-            apart = moved - k @ moved / k.sum()
-            if k @ (apart**2).sum(axis=1) > _APART * k.sum() / mass:
+            off_center = moved - k @ moved / k.sum()
+            if k @ (off_center**2).sum(axis=1) > _OFF_CENTER * k.sum() / mass:
                 return True
     return False
 

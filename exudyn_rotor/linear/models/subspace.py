@@ -319,8 +319,8 @@ class Subspace:
             columns = columns - self.basis @ (self.basis.T @ (inv.M @ columns))
             gram = columns.T @ (inv.M @ columns)
             values, turn = np.linalg.eigh(0.5 * (gram + gram.T))
-            kept = values > 1e-13
-            columns = columns @ (turn[:, kept] / np.sqrt(values[kept]))
+            independent = values > 1e-13
+            columns = columns @ (turn[:, independent] / np.sqrt(values[independent]))
         for name in self._projected:
             image = getattr(inv, name) @ columns
             side, corner = self.basis.T @ image, columns.T @ image

@@ -92,8 +92,8 @@ class Companion:
         size = len(self.lower)
         right = np.vstack([self.lower.T @ states[:size], self.lower.T @ states[size:]])
         left = _inverse(right)[columns, size:]
-        pushed = la.solve_triangular(self.lower, loads, lower=True) / self.scale
-        return -np.einsum("jr,rj->j", left, pushed)
+        accelerations = la.solve_triangular(self.lower, loads, lower=True) / self.scale
+        return -np.einsum("jr,rj->j", left, accelerations)
 
 
 def _within(lower: np.ndarray, X: np.ndarray) -> np.ndarray:

@@ -194,8 +194,8 @@ def _feedback(
         if np.ndim(excited) == 0:
             continue
         rate = (values + 1j * n * system.speed)[:, None, None]
-        own = rate**2 * system.M[0] + rate * system.D[0] + system.K[0]
-        answer = -np.linalg.solve(own, excited.T[:, :, None])[:, :, 0].T
+        dynamic = rate**2 * system.M[0] + rate * system.D[0] + system.K[0]
+        answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
         for m in range(len(orders)):
             back = _links(terms, orders[m] - n)
             if back is not None:

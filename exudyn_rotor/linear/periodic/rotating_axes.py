@@ -32,15 +32,15 @@ def turning_harmonics(size: int) -> dict[int, np.ndarray]:
 def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
     """Return the harmonics of ``Rᵀ(θ) v`` for v (3,) or (6,) fixed in space; none that is zero."""
     turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
-    return {n: part for n, part in turned.items() if np.any(part)}
+    return {n: term for n, term in turned.items() if np.any(term)}
 
 
 def into_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
     """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
     turned: dict[int, np.ndarray] = {}
-    for m, part in motion.items():
-        for n, R in turning_harmonics(part.shape[-1]).items():
-            turned[m + n] = turned.get(m + n, 0.0) + part @ R.T
+    for m, amplitudes in motion.items():
+        for n, R in turning_harmonics(amplitudes.shape[-1]).items():
+            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ R.T
     return turned
 
 

@@ -69,7 +69,7 @@ class HarmonicForce:
             )
         wrench = np.concatenate([self.force, self.moment])
         parts = {0: wrench} if self.frame == "rotor" else into_rotor_frame(wrench)
-        return {n: _pulled(point, part) for n, part in parts.items()}
+        return {n: _pulled(point, amplitude) for n, amplitude in parts.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +111,7 @@ class BaseAcceleration:
                 "the moving parts"
             )
         parts = into_rotor_frame(self.acceleration)
-        return {n: model.base_loads.T @ part for n, part in parts.items()}
+        return {n: model.base_loads.T @ amplitude for n, amplitude in parts.items()}
 
 
 def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
@@ -142,9 +142,9 @@ def total(loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel)
     """
     harmonics: dict[int, np.ndarray] = {}
     for load in loads:
-        for n, part in load._harmonics(model).items():
-            harmonics[n] = harmonics.get(n, 0.0) + part
-    if not any(np.any(part) for part in harmonics.values()):
+        for n, force in load._harmonics(model).items():
+            harmonics[n] = harmonics.get(n, 0.0) + force
+    if not any(np.any(force) for force in harmonics.values()):
         raise ValueError(
             "no load, so no response: give loads=[HarmonicForce(…)] that move the rotor"
         )

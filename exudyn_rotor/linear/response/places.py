@@ -71,13 +71,13 @@ def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
 
 def places(model: LinearModel, at: Sequence[At] | None) -> list[Place]:
     """Return the places asked for; by default all interfaces."""
-    found = [place(model, one) for one in (model.interfaces if at is None else at)]
-    if not found:
+    observed = [place(model, one) for one in (model.interfaces if at is None else at)]
+    if not observed:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
-    labels = [one.label for one in found]
+    labels = [one.label for one in observed]
     if len(set(labels)) < len(labels):
         raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
-    return found
+    return observed
 
 
 def _interface(model: LinearModel, name: str) -> Place:

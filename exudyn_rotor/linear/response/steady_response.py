@@ -116,17 +116,16 @@ def unbalance_response(
     options.check_sweep(executor, progress)
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
-    seen = places(model, at)
+    observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
     space = model.space(_MODES, values[-1], loads=[load], residual=residual)
-    task = _UnbalanceTask(
-        space.prepared(values[values > 0.0]), load, _Watch.of(seen, frame, tolerance)
-    )
+    observation = _Observation.of(observed, frame, tolerance)
+    task = _UnbalanceTask(space.prepared(values[values > 0.0]), load, observation)
     workers = None if space.is_shared else executor
     motions = sweep(task, values, executor=workers, progress=progress, label="unbalance response")
-    labels = tuple(one.label for one in seen)
+    labels = tuple(one.label for one in observed)
     return UnbalanceResponse(
-        labels, *_collected(motions, seen, tolerance, model.radius), frame, values
+        labels, *_collected(motions, observed, tolerance, model.radius), frame, values
     )
 
 
@@ -188,21 +187,21 @@ def harmonic_response(
     options.check_sweep(executor, progress)
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
-    seen = places(model, at)
+    observed = places(model, at)
     load = total(loads, model)
     fastest = max(values[-1], abs(speed))
     space = model.space(_MODES, fastest, loads=list(load.values()), residual=residual)
-    watch = _Watch.of(seen, frame, tolerance)
-    task = _HarmonicTask(space.prepared([speed]), speed, load, watch)
+    observation = _Observation.of(observed, frame, tolerance)
+    task = _HarmonicTask(space.prepared([speed]), speed, load, observation)
     workers = None if space.is_shared else executor
     motions = sweep(task, values, executor=workers, progress=progress, label="harmonic response")
-    labels = tuple(one.label for one in seen)
-    collected = _collected(motions, seen, tolerance, model.radius)
+    labels = tuple(one.label for one in observed)
+    collected = _collected(motions, observed, tolerance, model.radius)
     return HarmonicResponse(labels, *collected, frame, values, speed)
 
 
 @dataclass(frozen=True, eq=False)
-class _Watch:
+class _Observation:
     """What is looked at: rows (p, 6, k) of the places, and how."""
 
     rows: np.ndarray
@@ -210,8 +209,8 @@ class _Watch:
     tolerance: float
 
     @classmethod
-    def of(cls, seen: Sequence[Place], frame: str, tolerance: float) -> _Watch:
-        return cls(np.array([one.motion for one in seen]), frame, tolerance)
+    def of(cls, observed: Sequence[Place], frame: str, tolerance: float) -> _Observation:
+        return cls(np.array([one.motion for one in observed]), frame, tolerance)
 
     def motion(
         self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
@@ -230,13 +229,13 @@ class _UnbalanceTask:
 
     space: Space
     load: np.ndarray
-    watch: _Watch
+    observation: _Observation
 
     def __call__(self, speed: float) -> Motion:
         if speed == 0.0:  # no load, and nothing that would have to hold the rotor
-            return {0: np.zeros(self.watch.rows.shape[:2])}
+            return {0: np.zeros(self.observation.rows.shape[:2])}
         loads = {0: speed**2 * self.load + 0j}
-        return _folded(self.watch.motion(self.space, float(speed), loads, 0.0))
+        return _folded(self.observation.motion(self.space, float(speed), loads, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,29 +245,29 @@ class _HarmonicTask:
     space: Space
     speed: float
     loads: Mapping[int, np.ndarray]
-    watch: _Watch
+    observation: _Observation
 
     def __call__(self, frequency: float) -> Motion:
-        return self.watch.motion(self.space, self.speed, self.loads, float(frequency))
+        return self.observation.motion(self.space, self.speed, self.loads, float(frequency))
 
 
 def _folded(motion: Motion) -> Motion:
     """Return a real periodic motion by its harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
     folded: dict[int, np.ndarray] = {}
-    for n, part in motion.items():
-        folded[abs(n)] = folded.get(abs(n), 0.0) + (part if n > 0 else part.conj())
+    for n, a in motion.items():
+        folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
     return folded
 
 
 def _collected(
-    motions: Sequence[Motion], seen: Sequence[Place], tolerance: float, length: float
+    motions: Sequence[Motion], observed: Sequence[Place], tolerance: float, length: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
     orders = sorted({n for motion in motions for n in motion})
-    full = np.zeros((len(motions), len(seen), len(orders), 6), dtype=complex)
+    full = np.zeros((len(motions), len(observed), len(orders), 6), dtype=complex)
     for row, motion in zip(full, motions, strict=True):
-        for n, part in motion.items():
-            row[:, orders.index(n)] = part
+        for n, amplitudes in motion.items():
+            row[:, orders.index(n)] = amplitudes
     if not np.all(np.isfinite(full)):
         raise ValueError("the response left the range of floats; check speeds and loads (SI units)")
     # a rotation counts as the displacement that it makes at the rotor's radius of gyration
@@ -276,7 +275,7 @@ def _collected(
     keep = sizes > tolerance * sizes.max()
     if not np.any(keep):
         keep[np.argmin(np.abs(orders))] = True
-    full[:, [one.is_node for one in seen], :, 3:] = np.nan
+    full[:, [one.is_node for one in observed], :, 3:] = np.nan
     return np.array(orders)[keep], full[:, :, keep]
 
 

@@ -183,8 +183,8 @@ def stability(
         space = space.prepared(values)
     task = _Task(space, method, tolerance)
     workers = None if space.is_shared else executor
-    found = sweep(task, values, executor=workers, progress=progress, label="stability")
-    exponents, base, excess = (np.array(part) for part in zip(*found, strict=True))
+    solved = sweep(task, values, executor=workers, progress=progress, label="stability")
+    exponents, base, excess = (np.array(column) for column in zip(*solved, strict=True))
     periodic = np.where(base > 0.0, base, values)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])

@@ -134,8 +134,8 @@ def stability_map(
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     points = [(a, b) for a in grid[0] for b in grid[1]]
     point = partial(_map_point, build=build, method=method, tolerance=tolerance)
-    found = sweep(point, points, executor=executor, progress=progress, label="stability map")
-    growth, excess = np.array(found).T.reshape(2, len(grid[0]), len(grid[1]))
+    margins = sweep(point, points, executor=executor, progress=progress, label="stability map")
+    growth, excess = np.array(margins).T.reshape(2, len(grid[0]), len(grid[1]))
     return StabilityMap(*grid, growth, excess <= 0.0, names)
 
 

@@ -57,8 +57,8 @@ LINEAR = [
         ("blocks transposed", "terms.get(int(n - m))", "terms.get(int(m - n))"),
         (
             "harmonics left out are not answered",
-            "answer = -np.linalg.solve(own",
-            "answer = -0.0 * np.linalg.solve(own",
+            "answer = -np.linalg.solve(dynamic",
+            "answer = -0.0 * np.linalg.solve(dynamic",
         ),
     ),
     *mutations(
