@@ -57,11 +57,11 @@ def recommended_settings(
     Examples
     --------
     >>> from exudyn_rotor import recommended_settings
-    >>> settings = recommended_settings(end_time=0.1, step=1e-4, accuracy=1e-5)
+    >>> settings = recommended_settings(end_time=0.1, step=1e-4, accuracy=1e-4)
     >>> int(settings.timeIntegration.numberOfSteps)
     1000
     >>> settings.timeIntegration.newton.relativeTolerance
-    1e-06
+    1e-05
     """
     if settings is not None:
         checks.instance(settings, "settings", exudyn.SimulationSettings)
