@@ -2,8 +2,6 @@
 
 from validation.mutations.mutation import mutations
 
-_TESTS = "test_prestress.py test_prestress_checks.py test_prestress_import.py"
-
 PRESTRESS = [
     *mutations(
         "prestress/static_solution.py",
