@@ -38,8 +38,8 @@ TOP = [
         ("mirror taken for a rotation", " or np.linalg.det(result) < 0.0", ""),
         (
             "skew-symmetric taken for symmetric",
-            "np.abs(result - sign * result.T)",
-            "np.abs(result + sign * result.T)",
+            "(result - sign * result.T, result)",
+            "(result + sign * result.T, result)",
         ),
     ),
 ]
