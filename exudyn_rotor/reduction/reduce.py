@@ -106,6 +106,8 @@ def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
         return modes
     if isinstance(modes, FEMinterface):
         return fem_interface_modes(rotor, modes)
+    if isinstance(modes, np.ndarray) and modes.ndim == 0 and modes.dtype.kind in "iu":
+        modes = int(modes)
     if isinstance(modes, np.ndarray):
         columns = checks.array(modes, "modes", shape=(rotor.nodes.size, None))
         labels = tuple(f"column {i + 1}" for i in range(columns.shape[1]))

@@ -134,7 +134,6 @@ def printed(found: Answers) -> str:
         )
     total = sum(counts.values(), Counter())
     lines.append(f"\n{'all':{width}} {total.total():7}" + "".join(f"{total[k]:16}" for k in kinds))
-    lines.append(f"refused clearly: {share(found):.2%}")
     return "\n".join(lines)
 
 
@@ -172,6 +171,7 @@ def main() -> None:
     refused = listed(good, ACCEPTED)
     print(printed(bad))
     print(f"good values of unusual kinds: {len(good)} calls, refused: {refused or 'none'}")
+    print(f"bad calls refused clearly: {share(bad):.2%}")
     if options.list:
         with open(options.list, "w", encoding="utf-8") as file:
             file.write("\n".join(filter(None, (listed(bad), refused, ""))))
