@@ -4,6 +4,7 @@ from functools import cache
 
 import ngsolve as ngs
 import numpy as np
+from exudyn.FEM import FEMinterface, KirchhoffMaterial
 from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import SolidRotor
@@ -32,6 +33,24 @@ def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0, safety: float = 1.0) -
     solid.faces.Max(Z).name = "right"
     geometry = OCCGeometry(solid)
     return ngs.Mesh(geometry.GenerateMesh(maxh=maxh * scale, curvaturesafety=safety))
+
+
+@cache
+def disc_fem() -> FEMinterface:
+    """Return a FEMinterface of :func:`disc_on_shaft`, first order, with six modes and their stress.
+
+    Made once: change a copy only.
+    """
+    fem = FEMinterface()
+    _, _, space = fem.ImportMeshFromNGsolve(
+        disc_on_shaft(),
+        materials={"steel": STEEL},
+        boundaryNamesList=["left", "right"],
+        meshOrder=1,
+    )
+    fem.ComputeEigenmodes(6, 6)
+    fem.ComputePostProcessingModesNGsolve(space, KirchhoffMaterial(2.1e11, 0.3, 7850.0))
+    return fem
 
 
 def two_material_cylinder(maxh: float = 0.06) -> ngs.Mesh:

@@ -29,3 +29,11 @@ def solve(mbs, steps, end_time, period=None, **options):
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = period or end_time / steps
     mbs.SolveDynamic(settings, **options)
+
+
+def item_counts(mbs):
+    data = mbs.systemData
+    return [
+        getattr(data, f"NumberOf{kind}")()
+        for kind in ("Nodes", "Objects", "Markers", "Loads", "Sensors")
+    ]

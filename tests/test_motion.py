@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Formulation, Invariants, Motion, PrescribedMotion, SpinAxis, select_modes
 from exudyn_rotor.theory.formulation import ConstantSpeed
-from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.stiffening import stiffening
 
 AXIS = SpinAxis(SKEW_AXIS)
@@ -359,7 +358,7 @@ def test_conservation_over_1000_revolutions(translation):
     assert np.abs(invariants.h).max() > 1e-3  # the unbalance tilts the body
     start = np.array([*np.zeros(count + 1), *zeta])
     rate = np.array([*[0.3, -0.2, 0.1][:count], speed, *zeta_t])
-    assert max(drifts(motion, 1000, start, rate, 1e-7)) < 1e-8  # 6e-10
+    assert max(drifts(motion, 1000, start, rate, 1e-8)) < 1e-8  # the integrator's tolerance
 
 
 def slow_wobble(invariants: Invariants, speed: float, amplitude: float) -> tuple:
@@ -373,82 +372,3 @@ def slow_wobble(invariants: Invariants, speed: float, amplitude: float) -> tuple
     slowest *= amplitude / np.linalg.norm(slowest[:2])
     static = -np.linalg.solve(by_q, steady.forces(0.0, rest, rest))
     return static + slowest[:2], slowest[2:]
-
-
-# ------------------------------------------------------------------ the family hangs together
-
-
-def assert_falls_with_stiffness(deviation):
-    """Check that a deviation falls with 1/k for springs far stiffer than the rotor (order 1)."""
-    soft, stiff = deviation(1e5), deviation(1e6)
-    assert soft > 1e-8
-    # the next term of the series in 1/k is smaller by 1e-4
-    assert np.log10(soft / stiff) == pytest.approx(1.0, abs=1e-3)
-
-
-def steady_whirl(translation: str, springs: np.ndarray) -> np.ndarray:
-    """Return deflection of the origin and modal coordinates, both constant in rotor axes.
-
-    Constant spin, weight along the axis, and springs (3, 3) on the origin that are isotropic
-    across the axis. The residual of the equations is linear in the unknowns.
-    """
-    invariants, _, _ = random_invariants(1, MODES)
-    spin = Formulation(translation, 1.3)
-    terms = stiffening(invariants, "tilt")
-    motion = Motion(invariants, spin, terms, gravity=0.7 * SKEW_AXIS)
-    N, turning = motion.free_directions, 1.3 * skew(SKEW_AXIS)
-    count = N.shape[1]
-
-    def residual(unknowns: np.ndarray) -> np.ndarray:
-        place, zeta = N @ unknowns[:count], unknowns[count:]
-        at_rest = np.zeros(MODES)
-        q = np.append(N.T @ place, zeta)
-        v = np.append(N.T @ turning @ place, at_rest)
-        a = np.append(N.T @ turning @ turning @ place, at_rest)
-        force = motion.forces(0.0, q, v)
-        force[:count] -= N.T @ springs @ place
-        return motion.mass_matrix(0.0, q) @ a - force
-
-    offset = residual(np.zeros(motion.size))
-    matrix = np.stack([residual(unit) - offset for unit in np.eye(motion.size)], axis=1)
-    unknowns = np.linalg.solve(matrix, -offset)
-    return np.append(N @ unknowns[:count], unknowns[count:])
-
-
-ALONG = np.outer(SKEW_AXIS, SKEW_AXIS)
-
-
-@pytest.mark.parametrize(
-    ("richer", "poorer", "held"),
-    [
-        ("free", "in-plane", ALONG),
-        ("in-plane", "none", np.eye(3) - ALONG),
-        ("free", "none", np.eye(3)),
-    ],
-    ids=["2.2 to 2.3", "2.3 to 2.4", "2.2 to 2.4"],
-)
-def test_stiff_springs_on_the_origin_lead_to_the_poorer_formulation(richer, poorer, held):
-    rest = 2.0 * (np.eye(3) - held)  # ordinary springs in the directions that stay free
-    expected = steady_whirl(poorer, rest)
-    assert_falls_with_stiffness(
-        lambda k: np.linalg.norm(steady_whirl(richer, rest + k * held) - expected)
-    )
-
-
-def test_a_stiff_torsional_spring_leads_to_the_prescribed_spin():
-    invariants, _, _ = random_invariants(1, MODES)
-    terms = stiffening(invariants, "tilt")
-
-    def sag(spin, k: float) -> np.ndarray:
-        """Return (θ, ζ) at rest under transverse gravity, by Newton's method."""
-        motion = Motion(invariants, Formulation("none", spin), terms, gravity=GRAVITY)
-        q, rest = np.zeros(motion.size), np.zeros(motion.size)
-        spring = np.zeros((motion.size, motion.size))
-        spring[0, 0] = k
-        for _ in range(8):
-            by_q, _ = motion.jacobian(0.0, q, rest)
-            q = q - np.linalg.solve(by_q - spring, motion.forces(0.0, q, rest) - spring @ q)
-        return q
-
-    expected = np.append(0.0, sag(0.0, 0.0))
-    assert_falls_with_stiffness(lambda k: np.linalg.norm(sag("free", k) - expected))

@@ -7,12 +7,12 @@ import exudyn.utilities
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from exudyn.FEM import FEMinterface, KirchhoffMaterial
-from models import STEEL, disc_on_shaft, disc_rotor
+from exudyn.FEM import FEMinterface
+from models import disc_fem
+from run_scenes import item_counts
 from scipy.spatial.transform import Rotation
 
-# the package adds the call to MainSystem
-from exudyn_rotor import Formulation, Prestress, select_modes
+import exudyn_rotor  # noqa: F401  adds the call to MainSystem
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
@@ -73,16 +73,7 @@ DIRECTIONS = {
 
 @pytest.fixture(scope="module")
 def fem():
-    model = FEMinterface()
-    _, _, space = model.ImportMeshFromNGsolve(
-        disc_on_shaft(),
-        materials={"steel": STEEL},
-        boundaryNamesList=["left", "right"],
-        meshOrder=1,
-    )
-    model.ComputeEigenmodes(6, 6)
-    model.ComputePostProcessingModesNGsolve(space, KirchhoffMaterial(2.1e11, 0.3, 7850.0))
-    return model
+    return disc_fem()
 
 
 def turned(fem, rotation):
@@ -267,14 +258,6 @@ def test_verbose_prints_a_report(fem, capfd):
     assert "Sect. 2.2" in capfd.readouterr().out
 
 
-def item_counts(mbs):
-    data = mbs.systemData
-    return [
-        getattr(data, f"NumberOf{kind}")()
-        for kind in ("Nodes", "Objects", "Markers", "Loads", "Sensors")
-    ]
-
-
 def bare_interface(fem):
     model = turned(fem, TO_X)
     model.modeBasis = {}
@@ -351,55 +334,6 @@ def test_rotor_at_rest_without_seats_needs_an_axis(fem):
     before = item_counts(mbs)
     with pytest.raises(ValueError, match="give axis='x'"):
         mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model)
-    assert item_counts(mbs) == before
-
-
-@pytest.fixture(scope="module")
-def solid():
-    return disc_rotor(1)
-
-
-def stiffness_at_speed(fem, **options):
-    """Return the eigenvalues of the stiffness of the modes at 2000 rad/s."""
-    mbs = exu.SystemContainer().AddSystem()
-    made = mbs.CreateFixedAxisFFRFReducedOrderObject(
-        "rotor", fem, axis="z", translation="none", spin=2000.0, **options
-    )
-    motion = made["FFRFReducedOrderObjectDict"]["rotorBody"].motion
-    rest = np.zeros(motion.size)
-    at_rest = motion.forces(0.0, rest, rest)
-    matrix = [at_rest - motion.forces(0.0, unit, rest) for unit in np.eye(motion.size)]
-    return np.linalg.eigvalsh(np.array(matrix))
-
-
-@pytest.mark.parametrize("source", ["same mesh", "matrix"])
-def test_full_stiffening_with_a_given_prestress(fem, solid, source):
-    """``K + ω²(K2 − C)`` is that of the rotor reduced with the same prestress."""
-    prestress = solid.prestress()
-    if source == "matrix":
-        prestress = Prestress.from_matrix(prestress.matrix, solid.nodes)
-    found = stiffness_at_speed(fem, stiffening="full", prestress=prestress)
-    reduced = solid.reduce(fem, prestress=prestress)
-    chosen = select_modes(reduced, Formulation("none", 2000.0)).invariants
-    expected = np.linalg.eigvalsh(chosen.K + 2000.0**2 * (chosen.K2 - chosen.C))
-    assert found == pytest.approx(expected, rel=1e-6, abs=1.0)  # a spin has none
-    tilt = stiffness_at_speed(fem, stiffening="tilt")
-    assert np.abs(found - tilt).max() > 0.1 * 2000.0**2
-
-
-WRONG_PRESTRESS = {
-    "full without": ({"stiffening": "full"}, ValueError, r"full' .*: give prestress=, made by"),
-    "True": ({"prestress": True}, TypeError, "prestress: needs a Prestress, got True"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG_PRESTRESS)
-def test_prestress_that_cannot_be_used_says_what_to_give(fem, case):
-    options, kind, message = WRONG_PRESTRESS[case]
-    mbs = exu.SystemContainer().AddSystem()
-    before = item_counts(mbs)
-    with pytest.raises(kind, match=message):
-        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z", **options)
     assert item_counts(mbs) == before
 
 
