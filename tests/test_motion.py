@@ -169,7 +169,11 @@ class NodalEnergy:
         return self.directions @ self.split(q)[0]
 
     def angle(self, t, q):
-        return self.split(q)[1][0] if self.formulation.has_spin else self.formulation.spin.value(t)
+        if self.formulation.has_spin:
+            return self.split(q)[1][0]
+        spin = self.formulation.spin
+        # written out, because a complex step is no time for the class
+        return spin.angle + spin.speed * t if isinstance(spin, ConstantSpeed) else spin.value(t)
 
     def positions(self, t, q) -> np.ndarray:
         local = self.nodes + (self.modes @ self.split(q)[2]).reshape(-1, 3)
