@@ -219,8 +219,7 @@ def check_run(
 
     Examples
     --------
-    >>> import exudyn
-    >>> import numpy as np
+    >>> import exudyn, numpy as np
     >>> from exudyn_rotor import SolidRotor, add_rotor, check_run, recommended_settings
     >>> rotor = SolidRotor.from_matrices(
     ...     np.eye(6), 1e6 * np.eye(6), [[0.1, 0, 0], [-0.1, 0, 0]], "z", interfaces={"top": [0]}
@@ -235,10 +234,7 @@ def check_run(
     >>> settings.timeIntegration.verboseMode = 0
     >>> mbs.SolveDynamic(settings)
     True
-    >>> check = check_run(body)
-    >>> check.ok, check.instants
-    (True, 101)
-    >>> check["strain"].value < check["strain"].limit
+    >>> check_run(body).ok
     True
     """
     checks.instance(body, "body", RotorBody, "add_rotor returns one")
