@@ -72,6 +72,8 @@ def static_prestress(
         constant = constant - elements.geometric_stiffness(springback)
         reactions = residual - rotor.stiffness @ springback
         constant = constant + _hub_stiffness(rotor, state.hub, reactions)
+        # where all of the stress springs back, rounding is left
+        constant = sp.csr_array(0.5 * (constant + constant.T))
         rest_stress = _in_equilibrium(rotor, rest_stress, springback)
         state = state.stressed(constant)
 

@@ -1,1 +1,1 @@
-"""Wrong physics, one line at a time, that the tests must notice; see ``mutations.py``."""
+"""Wrong physics, one line at a time, that the tests must notice."""

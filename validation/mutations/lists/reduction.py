@@ -22,9 +22,9 @@ REDUCTION = [
         "test_reduction.py",
         ("one pass of Gram and Schmidt", "for _ in range(2):", "for _ in range(1):"),
         (
-            "rotations about the mesh origin",
-            "turns = rotations(nodes, center) @",
-            "turns = rotations(nodes, 0.0 * center) @",
+            "spin and tilt exchanged",
+            "np.column_stack([e, first, second])",
+            "np.column_stack([first, e, second])",
         ),
         (
             "modes not orthogonal to the rigid motions",

@@ -47,7 +47,8 @@ THEORY = [
     ),
     *mutations(
         "theory/invariants.py",
-        "test_invariants.py",
+        "test_invariants.py::test_moved_equals_recomputed "
+        "test_invariants.py::test_contracted_matrices_of_exudyn",
         ("parallel axis term dropped", "cross.T + self.mass * np.outer(shift, shift)", "cross.T"),
         (
             "g with the sign of the other sense of spin",
@@ -91,7 +92,7 @@ THEORY = [
     ),
     *mutations(
         "theory/formulation.py",
-        "test_reduction.py::test_run_up_has_the_rates_that_it_says",
+        "test_formulation.py::test_run_up_has_the_rates_that_it_says",
         (
             "angle of a run-up off by its rounded start",
             "0.5 * s**2 + (math.cos",
