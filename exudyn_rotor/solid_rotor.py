@@ -60,6 +60,8 @@ class SolidRotor(FiniteElementRotor):
     mass_damping : scipy.sparse.csr_array or None
         Damping in proportion to the mass [N s/m], of the motion beside the free rigid ones; set
         by :meth:`with_damping`.
+    structural_damping : scipy.sparse.csr_array or None
+        H = Σ η K [N/m] over the materials, of loss factors η; set by :meth:`with_damping`.
 
     Examples
     --------
@@ -317,13 +319,21 @@ class SolidRotor(FiniteElementRotor):
         *,
         mass: float = 0.0,
         stiffness: float = 0.0,
+        loss: float = 0.0,
         materials: Mapping[str, Mapping[str, float]] | None = None,
     ) -> SolidRotor:
-        """Return the rotor with Rayleigh damping of its own material added to what it has.
+        """Return the rotor with damping of its own material added to what it has.
 
         ``mass·M + stiffness·K`` acts in the rotor frame, where it makes a rotor unstable above a
         critical speed: with an external damping c_e, an internal one c_i and the eigenfrequency
         ω₀ of a Jeffcott rotor above ``ω₀ (1 + c_e/c_i)``. Scenes and all linear analyses take it.
+
+        Structural (hysteretic) damping dissipates the same work per cycle at any frequency: a
+        motion ``e^{iνt}`` in the rotor frame has the stiffness ``K + i sign(ν) η K``. Where ν = 0
+        it does nothing, so it does not damp synchronous whirl on isotropic supports; where a
+        forward whirl is slower than the spin, ν < 0 and it drives the whirl. It is only for
+        :func:`harmonic_response` and :func:`unbalance_response`; scenes, :func:`campbell` and
+        :func:`stability` leave it out with a warning. ``stiffness=η/ν`` is equal at one ν.
 
         Parameters
         ----------
@@ -333,9 +343,11 @@ class SolidRotor(FiniteElementRotor):
         stiffness : float, optional
             Damping per stiffness [s] (Kelvin and Voigt's material); that of springs to the ground
             inside the stiffness matrix as well.
+        loss : float, optional
+            Loss factor η of structural damping, of the whole stiffness as well.
         materials : mapping, optional
-            Region name of the mesh → ``{'mass': 1/s, 'stiffness': s}``, one of them or both: added
-            to the above in this region. Only of a rotor from :meth:`from_ngsolve`.
+            Region name of the mesh → ``{'mass': 1/s, 'stiffness': s, 'loss': η}``, one of them or
+            more: added to the above in this region. Only of a rotor from :meth:`from_ngsolve`.
 
         Raises
         ------
@@ -353,7 +365,7 @@ class SolidRotor(FiniteElementRotor):
         >>> float(damped.damping[0, 0])
         10.0
         """
-        return with_damping(self, mass, stiffness, materials)
+        return with_damping(self, mass, stiffness, loss, materials)
 
     def reduce(
         self,

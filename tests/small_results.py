@@ -34,7 +34,9 @@ def rotor(attached: bool) -> ReducedRotor:
     square = RNG.normal(size=(size, size))
     return replace(
         made,
-        invariants=replace(made.invariants, K2=square + square.T, B=square @ square.T),
+        invariants=replace(
+            made.invariants, K2=square + square.T, B=square @ square.T, H=0.1 * made.invariants.K
+        ),
         shapes=replace(made.shapes, stress=RNG.normal(size=(count, 6, size))),
         centrifugal=Centrifugal(
             RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))

@@ -77,6 +77,7 @@ def test_a_body_with_factors_is_that_of_a_damped_rotor(reduced, spin):
     [
         ({"mass": -1.0}, ValueError, r"mass: needs a finite number \[1/s\] ≥ 0, got -1.0"),
         ({"stiffness": "low"}, TypeError, r"stiffness: needs a finite number \[s\].* got 'low'"),
+        ({"loss": -0.1}, ValueError, "loss: needs a finite number ≥ 0, got -0.1"),
     ],
 )
 def test_wrong_factors_are_refused(reduced, factors, kind, message):

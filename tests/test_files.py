@@ -114,7 +114,7 @@ def test_no_missing_or_added_entry_loads(name, tmp_path):
         if key == "sha256":  # forged again
             load(name, path)
             continue
-        optional = key.endswith((".K2", ".B", "shapes.stress")) or "centrifugal." in key
+        optional = key.endswith((".K2", ".B", ".H", "shapes.stress")) or "centrifugal." in key
         if not optional:
             with pytest.raises(ValueError, match=r"kept\.npz: "):
                 pytest.fail(f"without {key}: loaded as {load(name, path)!r}")
@@ -130,6 +130,7 @@ WRONG_ROTORS = {
     "G": lambda data: np.eye(9),
     "C": lambda data: data["invariants.C"] + np.triu(np.ones((9, 9)), 1),
     "K2": lambda data: data["invariants.K2"] + np.triu(np.ones((9, 9)), 1),
+    "H": lambda data: -data["invariants.H"],
     "J": lambda data: -data["invariants.J"],
     "mass": lambda data: -data["invariants.mass"],
     "direction": lambda data: np.roll(data["invariants.direction"], 1),

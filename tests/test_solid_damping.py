@@ -136,13 +136,14 @@ def test_large_model_with_mass_damping_is_refused():
     [
         ({"mass": -1.0}, ValueError, r"mass: needs a finite number \[1/s\] ≥ 0, got -1.0"),
         ({"stiffness": "low"}, TypeError, r"stiffness: needs a finite number \[s\].* got 'low'"),
+        ({"loss": -0.1}, ValueError, "loss: needs a finite number ≥ 0, got -0.1"),
         ({"materials": 1.0}, TypeError, "materials: needs a dictionary of name to factors"),
         ({"materials": {"gold": {}}}, ValueError, "materials: 'gold' is unknown; .*'steel'"),
         ({"materials": {"steel": 1.0}}, TypeError, "materials: 'steel': needs a dictionary"),
         (
-            {"materials": {"steel": {"loss": 1.0}}},
+            {"materials": {"steel": {"friction": 1.0}}},
             ValueError,
-            "materials: 'steel': 'loss' is unknown; there are: 'mass', 'stiffness'",
+            "materials: 'steel': 'friction' is unknown; there are: 'mass', 'stiffness', 'loss'",
         ),
         (
             {"materials": {"steel": {"mass": -1.0}}},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 
 import exudyn
@@ -34,6 +35,7 @@ from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
+from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -203,6 +205,8 @@ def add_rotor(
     )
     plan = make_plan(reduced, setup)
     inputs.check_free_names(mbs, setup)
+    if reduced.invariants.H is not None:
+        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
     if not marker_body:
         return _add_bare(mbs, plan)
     offsets = {interface: request.offset for interface, request in requests.items()}

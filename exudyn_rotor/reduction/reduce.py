@@ -71,6 +71,9 @@ def _reduced(
     if rotor.mass_damping is not None:
         damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
         invariants = replace(invariants, D=damping)
+    if rotor.structural_damping is not None:
+        structural = basis.matrix.T @ (rotor.structural_damping @ basis.matrix)
+        invariants = replace(invariants, H=0.5 * (structural + structural.T))
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
@@ -142,8 +145,12 @@ def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
     stiffness = np.maximum(np.diag(invariants.K), 0.0)
     stiffness[:rigid_count] = 0.0
+    structural = None if invariants.H is None else invariants.H.copy()
+    if structural is not None:
+        structural[:rigid_count] = structural[:, :rigid_count] = 0.0
     return replace(
         invariants,
+        H=structural,
         M=np.eye(invariants.size),
         K=np.diag(stiffness),
         center=np.zeros(3),

@@ -19,7 +19,7 @@ Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this m
 
 _KIND = "reduced rotor"
 _INVARIANTS = ("direction", "center", "J", "S", "P", "M", "K", "D", "G", "C")
-_OPTIONAL_INVARIANTS = ("K2", "B")
+_OPTIONAL_INVARIANTS = ("K2", "B", "H")
 _INTERFACE = ("reference", "center", "motion")
 _SHAPES = ("nodes", "matrix")
 _CENTRIFUGAL = ("displacement", "stress", "constant_stress")
@@ -119,8 +119,9 @@ def _invariants(entries: Entries) -> Invariants:
         **entries.arrays(*_INVARIANTS),
         **entries.arrays(*_OPTIONAL_INVARIANTS, optional=True),
     )
-    for name in ("K", "C", "J"):
-        _definite(getattr(invariants, name), f"invariants.{name}")
+    for name in ("K", "C", "J", "H"):
+        if getattr(invariants, name) is not None:
+            _definite(getattr(invariants, name), f"invariants.{name}")
     entries.close()
     return invariants
 

@@ -166,12 +166,16 @@ class ReducedRotor:
         """Return the rotor without fields at mesh nodes: the least to store and to simulate."""
         return replace(self, shapes=None, centrifugal=None)
 
-    def with_damping(self, *, mass: float = 0.0, stiffness: float = 0.0) -> ReducedRotor:
-        """Return the rotor with Rayleigh damping of its own material added to what it has.
+    def with_damping(
+        self, *, mass: float = 0.0, stiffness: float = 0.0, loss: float = 0.0
+    ) -> ReducedRotor:
+        """Return the rotor with damping of its own material added to what it has.
 
         It acts in the rotor frame, where it makes a rotor unstable above a critical speed. Scenes
-        and all linear analyses take it; ``add_rotor`` has the same as ``mass_damping`` and
-        ``stiffness_damping`` for one body.
+        and all linear analyses take Rayleigh damping by `mass` and `stiffness`; ``add_rotor`` has
+        the same as ``mass_damping`` and ``stiffness_damping`` for one body. Structural damping by
+        `loss` is only for :func:`harmonic_response` and :func:`unbalance_response`, see
+        :meth:`exudyn_rotor.SolidRotor.with_damping`.
 
         Parameters
         ----------
@@ -179,6 +183,8 @@ class ReducedRotor:
             Damping per modal mass [1/s]; rigid motions are not damped (:attr:`mode_mass`).
         stiffness : float, optional
             Damping per modal stiffness [s].
+        loss : float, optional
+            Loss factor η of structural damping: its part of the modal stiffness.
 
         Raises
         ------
@@ -187,13 +193,18 @@ class ReducedRotor:
         """
         mass = checks.number(mass, "mass", "1/s", least=0.0)
         stiffness = checks.number(stiffness, "stiffness", "s", least=0.0)
-        if mass == 0.0 and stiffness == 0.0:
+        loss = checks.number(loss, "loss", least=0.0)
+        if mass == 0.0 and stiffness == 0.0 and loss == 0.0:
             return self
         inv, added = self.invariants, self.with_attachments
+        structural = inv.H
+        if loss:
+            structural = loss * inv.K + (0.0 if inv.H is None else inv.H)
         damping = inv.D + mass * self.mode_mass + stiffness * inv.K
         if added is not None:
-            added = added.with_damping(mass=mass, stiffness=stiffness)
-        return replace(self, invariants=replace(inv, D=damping), with_attachments=added)
+            added = added.with_damping(mass=mass, stiffness=stiffness, loss=loss)
+        damped = replace(inv, D=damping, H=structural)
+        return replace(self, invariants=damped, with_attachments=added)
 
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.

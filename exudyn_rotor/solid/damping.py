@@ -1,4 +1,4 @@
-"""Rayleigh damping of the rotor's own material; it acts in the rotor frame."""
+"""Rayleigh and structural damping of the rotor's own material; it acts in the rotor frame."""
 
 from __future__ import annotations
 
@@ -13,28 +13,42 @@ from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.rotor import FiniteElementRotor, Rotor
 from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 
-_UNITS = {"mass": "1/s", "stiffness": "s"}
+_UNITS = {"mass": "1/s", "stiffness": "s", "loss": ""}
+
+LOSS_LEFT_OUT = (
+    "structural damping, with_damping(loss=η), belongs to one frequency at a time: only "
+    "harmonic_response and unbalance_response take it. {} without it; with_damping(stiffness=η/ν) "
+    "is viscous damping that is equal at the frequency ν [rad/s] seen in the rotor frame"
+)
 
 
 def with_damping(
     rotor: Rotor,
     mass: float,
     stiffness: float,
+    loss: float,
     materials: Mapping[str, Mapping[str, float]] | None,
 ) -> Rotor:
     """Return the damped rotor; see :meth:`exudyn_rotor.SolidRotor.with_damping`."""
-    factors = _factors({"mass": mass, "stiffness": stiffness}, "")
+    factors = _factors({"mass": mass, "stiffness": stiffness, "loss": loss}, "")
     by_mass, by_stiffness = factors["mass"] * rotor.mass, factors["stiffness"] * rotor.stiffness
+    by_loss = factors["loss"] * rotor.stiffness
     if materials is not None:
-        of_mass, of_stiffness = _of_regions(rotor, materials)
+        of_mass, of_stiffness, of_loss = _of_regions(rotor, materials)
         by_mass = by_mass + rotor.elements.mass_matrix(of_mass)
         by_stiffness = by_stiffness + rotor.elements.stiffness_matrix(of_stiffness)
+        by_loss = by_loss + rotor.elements.stiffness_matrix(of_loss)
     damping, mass_damping = rotor.damping, rotor.mass_damping
     if rotor.rigid_motions:
-        mass_damping = _sum("mass_damping", mass_damping, by_mass)
+        mass_damping = _sum(mass_damping, by_mass)
     else:
         by_stiffness = by_stiffness + by_mass
-    return replace(rotor, damping=_sum("damping", damping, by_stiffness), mass_damping=mass_damping)
+    return replace(
+        rotor,
+        damping=_sum(damping, by_stiffness),
+        mass_damping=mass_damping,
+        structural_damping=_sum(rotor.structural_damping, by_loss),
+    )
 
 
 def dense_damping(rotor: FiniteElementRotor) -> np.ndarray:
@@ -73,9 +87,9 @@ def _factors(given: Mapping[str, float], label: str) -> dict[str, float]:
 
 def _of_regions(
     rotor: FiniteElementRotor, materials: Mapping[str, Mapping[str, float]]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the factors of mass and of stiffness for every region of the mesh."""
-    checks.mapping(materials, "materials", "factors {'mass': 1/s, 'stiffness': s}")
+) -> tuple[np.ndarray, ...]:
+    """Return the factors of mass, stiffness and loss for every region of the mesh."""
+    checks.mapping(materials, "materials", "factors {'mass': 1/s, 'stiffness': s, 'loss': 1}")
     if rotor.elements is None:
         raise ValueError(
             "materials: this rotor has no elements that tell its materials apart; make it with "
@@ -94,7 +108,7 @@ def _of_regions(
     return tuple(np.array([row[name] for row in rows]) for name in _UNITS)
 
 
-def _sum(name: str, before: sp.csr_array | None, added: sp.csr_array) -> sp.csr_array | None:
+def _sum(before: sp.csr_array | None, added: sp.csr_array) -> sp.csr_array | None:
     """Return the sum; None if there is nothing in it."""
     total = added if before is None else before + added
     total = matrices.frozen(sp.csr_array(total))

@@ -46,6 +46,7 @@ class FiniteElementRotor:
     elements: NgsolveElements | None = None
     carried_prestress: Prestress | None = None
     mass_damping: sp.csr_array | None = None
+    structural_damping: sp.csr_array | None = None
 
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
@@ -59,8 +60,9 @@ class FiniteElementRotor:
             "point_masses": checks.instances(self.point_masses, "point_masses", PointMass),
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
         }
-        for name, label in (("damping", "damping matrix"), ("mass_damping", "mass_damping")):
+        for name in ("damping", "mass_damping", "structural_damping"):
             if getattr(self, name) is not None:
+                label = "damping matrix" if name == "damping" else name
                 checked[name] = matrices.as_matrix(label, getattr(self, name), len(nodes))
         if self.stress_recovery is not None:
             checks.function(self.stress_recovery, "stress_recovery")

@@ -53,12 +53,15 @@ class Invariants:
     K2, B : shape (k, k), optional
         Stiffness per ω² and per ω̇ of a static prestress, see
         :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
+    H : shape (k, k), optional
+        Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness
+        ``K + i sign(ν) H``. Only analyses in the frequency domain can use it.
 
     Raises
     ------
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
-        definite, the direction is no unit vector, M, K, C, J, K2 or B is not symmetric, or G not
+        definite, the direction is no unit vector, M, K, C, J, K2, B or H is not symmetric, or G not
         skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
         checked them: of them only shape and entries are looked at.
 
@@ -89,6 +92,7 @@ class Invariants:
     C: Matrix
     K2: Matrix | None = None
     B: Matrix | None = None
+    H: Matrix | None = None
 
     def __post_init__(self) -> None:
         direction = checks.vector(self.direction, "direction")
@@ -106,7 +110,7 @@ class Invariants:
             "D": checks.matrix(self.D, "D", shape=(size, size)),
             "G": checks.symmetric(self.G, "G", size=size, sign=-1),
         }
-        for name in ("M", "K", "C", "K2", "B"):
+        for name in ("M", "K", "C", "K2", "B", "H"):
             matrix = getattr(self, name)
             if matrix is not None or name in "MKC":
                 checked[name] = checks.symmetric(matrix, name, size=size)
@@ -208,7 +212,7 @@ class Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))
         projected = {"D": T.T @ (self.D @ T), "G": _mean(T.T @ (self.G @ T), -1)}
-        for name in ("M", "K", "C", "K2", "B"):
+        for name in ("M", "K", "C", "K2", "B", "H"):
             if getattr(self, name) is not None:
                 projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)

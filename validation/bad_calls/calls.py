@@ -194,7 +194,11 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "SolidRotor.nearest_node": lambda w: {"position": _ZEROS},
     "SolidRotor.prestress": lambda w: {"yield_stress": 1e9, "speed": 10.0},
     "SolidRotor.reduce": lambda w: {"modes": 2},
-    "SolidRotor.with_damping": lambda w: {"stiffness": 1e-6, "materials": {"steel": {"mass": 0.1}}},
+    "SolidRotor.with_damping": lambda w: {
+        "stiffness": 1e-6,
+        "loss": 0.01,
+        "materials": {"steel": {"mass": 0.1, "loss": 0.02}},
+    },
     "SolidRotor.with_interface": lambda w: {
         "name": "middle",
         "nodes": [0, 1, 2, 3],

@@ -31,8 +31,8 @@ _POSITIVES = Kind(v.SERIES.good - {"zero", "range"}, spoiled=True).but(negative=
 _FIELD = v.ARRAY
 
 BY_NAME: dict[str, Kind] = {
-    "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "J": _FIELD, "K": _FIELD, "K2": _FIELD,
-    "M": _FIELD, "P": _FIELD, "S": _FIELD, "T": _FIELD,
+    "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "H": _FIELD, "J": _FIELD, "K": _FIELD,
+    "K2": _FIELD, "M": _FIELD, "P": _FIELD, "S": _FIELD, "T": _FIELD,
     "about": v.WORD.but(another_word="rest"),
     "accuracy": v.SHARE,
     "allow_negative": v.FLAG,
@@ -205,6 +205,7 @@ BY_NAME: dict[str, Kind] = {
     "stiffnesses": _POSITIVES,
     "storeInternal": v.FLAG,
     "stress": v.FLAG,
+    "structural_damping": _FIELD,
     "stress_recovery": v.FUNCTION,
     "superElementRigidMarkersOffsets": _FIELD,
     "supports": _SUPPORTS,
@@ -250,6 +251,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Motion.momentum", "q"): _FIELD,
     ("PointMass", "mass"): v.SIGNED,
     ("PointMass", "node"): v.COUNT,
+    ("ReducedRotor.with_damping", "loss"): v.NOT_NEGATIVE,
     ("ReducedRotor.with_damping", "mass"): v.NOT_NEGATIVE,
     ("ReducedRotor.with_damping", "stiffness"): v.NOT_NEGATIVE,
     ("PrescribedMotion", "acceleration"): v.FUNCTION,
@@ -266,6 +268,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("SolidRotor", "interfaces"): v.MAPPING,
     ("SolidRotor", "mass"): _FIELD,
     ("SolidRotor", "mass_damping"): _FIELD,
+    ("*.with_damping", "loss"): v.NOT_NEGATIVE,
     ("*.with_damping", "mass"): v.NOT_NEGATIVE,
     ("*.with_damping", "materials"): v.MAPPING,
     ("*.with_damping", "stiffness"): v.NOT_NEGATIVE,

@@ -16,7 +16,11 @@ from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.linear_model import (
+    Target,
+    linear_model,
+    warn_of_structural_damping,
+)
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.eigenvalues import groups
@@ -276,6 +280,7 @@ def campbell(
     residual = options.accuracy(residual, "residual")
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    warn_of_structural_damping(model, "campbell finds modes")
     count = _checked_count(modes, model)
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:

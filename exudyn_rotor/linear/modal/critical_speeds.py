@@ -91,7 +91,7 @@ def critical_speeds(
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
 
-    Damping and the skew part of the supports' stiffness do not take part.
+    Damping, also structural, and the skew part of the supports' stiffness do not take part.
 
     Parameters
     ----------

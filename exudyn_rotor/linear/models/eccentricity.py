@@ -35,11 +35,11 @@ def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
         f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this as "
         + what,
         UserWarning,
-        stacklevel=_user_level(),
+        stacklevel=user_level(),
     )
 
 
-def _user_level() -> int:
+def user_level() -> int:
     """Return the stack level of the first caller outside the package."""
     frame, level = sys._getframe(1), 1
     while frame.f_back and frame.f_globals.get("__name__", "").startswith("exudyn_rotor."):

@@ -35,7 +35,9 @@ Kind = TypeVar("Kind", bound="FullEquations")
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
     basis = sp.eye_array(3 * rotor.node_count, format="csr")
     matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
-    return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+    invariants = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+    structural = rotor.structural_damping
+    return invariants if structural is None else replace(invariants, H=structural)
 
 
 def _second_order(

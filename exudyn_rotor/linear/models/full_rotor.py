@@ -74,6 +74,11 @@ class FullRotor(FullEquations):
         """True where the stiffness of a support depends on the speed by a function."""
         return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in self.supports)
 
+    @property
+    def has_structural_damping(self) -> bool:
+        """True where steady motions have structural damping, which other analyses leave out."""
+        return self.invariants.H is not None
+
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, 3n): displacement and rotation along (n1, n2, e)."""
         turn = np.kron(np.eye(2), axes_of(self.axis).T)
@@ -82,9 +87,8 @@ class FullRotor(FullEquations):
     def undamped(self) -> FullRotor:
         """Return the model without damping, and without the skew part of supports' stiffness."""
         supports = tuple(support.undamped() for support in self.supports)
-        return replace(
-            self, supports=supports, invariants=replace(self.invariants, D=0.0 * self.invariants.D)
-        )
+        undamped = replace(self.invariants, D=0.0 * self.invariants.D, H=None)
+        return replace(self, supports=supports, invariants=undamped)
 
     def point_motions(self, most: int) -> PointMotions:
         """Return up to `most` nodes spread over the mesh; `rows` are their displacements."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from exudyn_rotor.prestress.static_solution import relief_rotations
@@ -41,6 +43,8 @@ def _invariants(rotor: SolidRotor) -> Invariants:
     matrices = rotor.mass.toarray(), rotor.stiffness.toarray(), dense_damping(rotor)
     arms, identity = rotor.nodes - rotor.center_of_mass, np.eye(3 * rotor.node_count)
     invariants = Invariants.of(arms, *matrices, identity, rotor.axis.direction)
+    if rotor.structural_damping is not None:
+        invariants = replace(invariants, H=rotor.structural_damping.toarray())
     carried = rotor.carried_prestress
     if carried is None:
         return invariants

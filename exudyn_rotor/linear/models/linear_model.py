@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import exudyn
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.models.eccentricity import user_level
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
@@ -14,6 +16,7 @@ from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -109,3 +112,9 @@ def linear_model(
     if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
         return LinearRotor.of_solid(target, supports, stiffening)
     return FullRotor.of(target, supports, stiffening).with_spin()
+
+
+def warn_of_structural_damping(model: LinearModel, what: str) -> None:
+    """Warn that an analysis, named by `what`, leaves structural damping out."""
+    if model.has_structural_damping:
+        warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())

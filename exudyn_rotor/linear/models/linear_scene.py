@@ -130,6 +130,17 @@ class LinearScene(SceneCoordinates):
         """True where the rotor has no unbalance at all."""
         return not np.any(self.unit_unbalance)
 
+    @property
+    def has_structural_damping(self) -> bool:
+        """True where steady motions have structural damping, which other analyses leave out."""
+        return self.structural_damping is not None
+
+    @cached_property
+    def structural_damping(self) -> np.ndarray | None:
+        """H of the rotor's own modes, shape (k, k); the steady motion is found without it."""
+        H = self.body.motion.invariants.H
+        return None if H is None else self.N[self.own].T @ H @ self.N[self.own]
+
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
 
@@ -210,7 +221,7 @@ def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> Peri
         terms = [_terms(*entry) for entry in _scaled(points)]
         if any(X is None for X in terms):
             return None
-        system = PeriodicSystem(speed, *terms)
+        system = PeriodicSystem(speed, *terms, scene.structural_damping)
         if scene.about == "given":
             return system
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples

@@ -116,6 +116,8 @@ class LinearModel(Protocol):
         Load of the rotor's own eccentricity per Ω², rotor frame.
     is_balanced : bool
         True where that is rounding.
+    has_structural_damping : bool
+        True where steady motions have structural damping, which other analyses leave out.
     base_loads : ndarray, shape (3, k), or None
         Loads of unit accelerations of the ground along (n1, n2, e); None for a scene.
     radius : float
@@ -153,6 +155,8 @@ class LinearModel(Protocol):
     def unit_unbalance(self) -> np.ndarray: ...
     @property
     def is_balanced(self) -> bool: ...
+    @property
+    def has_structural_damping(self) -> bool: ...
     @property
     def base_loads(self) -> np.ndarray | None: ...
     @property

@@ -136,6 +136,11 @@ class LinearRotor:
         """Load of the rotor's own eccentricity per Ω², ``h`` (83), shape (k,), rotor frame."""
         return self.invariants.h
 
+    @property
+    def has_structural_damping(self) -> bool:
+        """True where steady motions have structural damping, which other analyses leave out."""
+        return self.invariants.H is not None
+
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
         turn = np.kron(np.eye(2), axes_of(self.rotor.axis).T)
@@ -194,7 +199,7 @@ class LinearRotor:
         if self.spin is not None and self.spin.coupled:
             torsion = self.steady_torsion(speed)
             K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)
-        return PeriodicSystem(float(speed), M, D, K)
+        return PeriodicSystem(float(speed), M, D, K, inv.H)
 
     def steady_torsion(self, speed: float) -> float:
         """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].
@@ -216,9 +221,8 @@ class LinearRotor:
     def undamped(self) -> LinearRotor:
         """Return the model without damping, and without the skew part of supports' stiffness."""
         supports = tuple(support.undamped() for support in self.supports)
-        return replace(
-            self, supports=supports, invariants=replace(self.invariants, D=0.0 * self.invariants.D)
-        )
+        undamped = replace(self.invariants, D=0.0 * self.invariants.D, H=None)
+        return replace(self, supports=supports, invariants=undamped)
 
     def point_motions(self, most: int) -> PointMotions:
         """Return points of the mesh, or of rings that move with the interfaces."""

@@ -21,7 +21,7 @@ from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.spin import seeds
 from exudyn_rotor.linear.periodic.exponents import in_order
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, floquet_modes
-from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
+from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion, senses_of_turning
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.fields import ReducedInterface
@@ -80,7 +80,8 @@ class Subspace:
         self._factor = SparseCholesky(self._shifted)
         self.basis = np.zeros((full.size, 0))
         self._small: LinearRotor | None = None
-        names = ("M", "K", "D", "G", "C") + (() if inv.K2 is None else ("K2",))
+        given = tuple(name for name in ("K2", "H") if getattr(inv, name) is not None)
+        names = ("M", "K", "D", "G", "C", *given)
         self._projected = {name: np.zeros((0, 0)) for name in names}
         # one by one, so that each stays a column of its own: a free one is told by its stiffness
         for column in np.hstack(seeds(full.rotor)).T:
@@ -240,10 +241,13 @@ class Subspace:
         left = self.full.residual(
             speed, np.array([1j * rate]), stack, strained, self._torsion(speed)
         )
-        columns = []
+        columns, H = [], self.full.invariants.H
         for n, force in left.items():
             force = force[:, 0] - loads.get(n, 0.0)
-            if abs(rate + n * speed) <= 1e-12 * max(abs(rate), abs(speed)):
+            sense = senses_of_turning(rate, n, speed)
+            if H is not None:
+                force = force + 1j * sense * (H @ strained[n][:, 0])
+            if sense == 0.0:
                 force = self._without_rigid(force)
             columns += [force.real, force.imag]
         residual = np.column_stack(columns)
@@ -273,7 +277,8 @@ class Subspace:
         inv = full.invariants
         blocks = {name: X.copy() for name, X in self._projected.items()}
         # exactly, so that rounding does not hold what is free
-        blocks["K"][: self.rigid] = blocks["K"][:, : self.rigid] = 0.0
+        for name in {"K", "H"} & blocks.keys():
+            blocks[name][: self.rigid] = blocks[name][:, : self.rigid] = 0.0
         # as one contiguous matrix, which is many times faster than nine products
         P = (np.ascontiguousarray(inv.P).reshape(9, -1) @ self.basis).reshape(3, 3, -1)
         invariants = replace(inv, S=inv.S @ self.basis, P=P, **blocks)

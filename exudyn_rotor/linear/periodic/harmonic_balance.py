@@ -2,7 +2,8 @@
 
 In the rotor frame, loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give
 ``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with the equations of
-:mod:`exudyn_rotor.linear.periodic.hill` at λ = iω.
+:mod:`exudyn_rotor.linear.periodic.hill` at λ = iω, and ``i sign(ν) H`` of structural damping with
+the frequency ``ν = ω + mΩ`` of each harmonic.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def forced_motion(
         nothing holds, or a resonance without any damping.
     """
     if system.speed == 0.0:  # θ stands still: all harmonics are one
-        system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)))
+        system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)), system.H)
         loads = {0: sum(loads.values())}
     balance = _Balance(system, loads, rate, list(driven))
     step = system.step
@@ -74,6 +75,13 @@ def forced_motion(
         if _change(system.M[0], earlier, motion) <= tolerance:
             break
     return motion
+
+
+def senses_of_turning(rate: float, orders: np.ndarray, speed: float) -> np.ndarray:
+    """Return the sign of each frequency ``ω + nΩ``; 0 where that is zero but for rounding."""
+    frequencies = rate + np.asarray(orders) * speed
+    zero = np.abs(frequencies) <= 1e-12 * max(abs(rate), abs(speed))
+    return np.where(zero, 0.0, np.sign(frequencies))
 
 
 def _change(mass: np.ndarray, earlier: Harmonics, motion: Harmonics) -> float:
@@ -141,8 +149,10 @@ class _Balance:
         load = np.array([self.loads.get(n, zero) for n in orders], dtype=complex)
         M, D, K = hill_matrices(self.system, orders)
         A = K + 1j * self.rate * D - self.rate**2 * M
-        rates = self.rate + orders * self.system.speed
-        for index in np.flatnonzero(np.abs(rates) <= 1e-12 * self.fastest):
+        senses = senses_of_turning(self.rate, orders, self.system.speed)
+        if self.system.H is not None:
+            A = A + 1j * np.kron(np.diag(senses), self.system.H)
+        for index in np.flatnonzero(senses == 0.0):
             rows = slice(index * size, (index + 1) * size)
             driven = index * size + np.array(self.driven, dtype=int)
             A[driven, :] = A[:, driven] = 0.0

@@ -31,12 +31,16 @@ class PeriodicSystem:
         Spin speed Ω [rad/s].
     M, D, K : mapping of int to ndarray, shape (k, k)
         Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
+    H : ndarray, shape (k, k), optional
+        Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i sign(ν) H``. Only
+        :func:`forced_motion` knows the frequency ν; all else leaves it out.
     """
 
     speed: float
     M: Terms
     D: Terms
     K: Terms
+    H: np.ndarray | None = None
 
     @property
     def size(self) -> int:
@@ -82,7 +86,8 @@ class PeriodicSystem:
         parts = (
             {n: basis.T @ X @ basis for n, X in terms.items()} for terms in (self.M, self.D, self.K)
         )
-        return PeriodicSystem(self.speed, *parts)
+        H = None if self.H is None else basis.T @ self.H @ basis
+        return PeriodicSystem(self.speed, *parts, H)
 
 
 def fold(exponents: np.ndarray, base: float) -> np.ndarray:

@@ -19,7 +19,11 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.linear_model import (
+    Target,
+    linear_model,
+    warn_of_structural_damping,
+)
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.exponents import METHODS
@@ -223,6 +227,7 @@ def held_space(model: LinearModel, fastest: float, modes: int | None, residual: 
     ValueError
         For a number of modes where all are found, or of more than a quarter of the coordinates.
     """
+    warn_of_structural_damping(model, "stability finds exponents")
     if model.gives_all and modes is not None:
         raise ValueError("modes: is only for a large SolidRotor; this target gives all exponents")
     count = _MODES if modes is None else modes

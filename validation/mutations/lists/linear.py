@@ -83,6 +83,29 @@ LINEAR = [
         ("damping with the wrong sign", "A = K + 1j * self.rate * D", "A = K - 1j * self.rate * D"),
     ),
     *mutations(
+        "linear/periodic/harmonic_balance.py",
+        "test_structural_damping.py::test_whirl_of_a_turning_rotor",
+        (
+            "structural damping whatever the sense of the turning",
+            "np.where(zero, 0.0, np.sign(frequencies))",
+            "np.where(zero, 0.0, 1.0)",
+        ),
+        (
+            "structural damping by the frequency in the inertial frame",
+            "np.diag(senses), self.system.H",
+            "np.sign(self.rate) * np.eye(len(orders)), self.system.H",
+        ),
+    ),
+    *mutations(
+        "linear/models/subspace.py",
+        "test_structural_damping.py::test_a_full_model_is_that_of_all_its_coordinates",
+        (
+            "structural damping drives in the residual",
+            "force = force + 1j * sense * (H @",
+            "force = force - 1j * sense * (H @",
+        ),
+    ),
+    *mutations(
         "linear/modal/whirl.py",
         "test_campbell_frames.py",
         (
