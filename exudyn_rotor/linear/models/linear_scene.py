@@ -139,7 +139,7 @@ class LinearScene(SceneCoordinates):
     def structural_damping(self) -> np.ndarray | None:
         """H of the rotor's own modes, shape (k, k); the steady motion is found without it."""
         H = self.body.motion.invariants.H
-        return None if H is None else self.N[self.own].T @ H @ self.N[self.own]
+        return None if H is None else self.N[self.modal].T @ H @ self.N[self.modal]
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).

@@ -42,6 +42,15 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/models/subspace.py",
+        "test_structural_damping.py::test_a_full_model_is_that_of_all_its_coordinates",
+        (
+            "structural damping drives in the residual",
+            "force = force + 1j * sense * (H @",
+            "force = force - 1j * sense * (H @",
+        ),
+    ),
+    *mutations(
         "linear/models/full_equations.py",
         "test_full_response.py::test_unbalance_response_is_that_of_all_modes",
         (
@@ -94,15 +103,6 @@ LINEAR = [
             "structural damping by the frequency in the inertial frame",
             "np.diag(senses), self.system.H",
             "np.sign(self.rate) * np.eye(len(orders)), self.system.H",
-        ),
-    ),
-    *mutations(
-        "linear/models/subspace.py",
-        "test_structural_damping.py::test_a_full_model_is_that_of_all_its_coordinates",
-        (
-            "structural damping drives in the residual",
-            "force = force + 1j * sense * (H @",
-            "force = force - 1j * sense * (H @",
         ),
     ),
     *mutations(
