@@ -74,6 +74,20 @@ def stress_at_speed_without_prestress(beam):
     stress_history(field, [0.0], np.zeros((1, field.modes.shape[2])), 10.0)
 
 
+def lossy():
+    springs = SolidRotor.from_matrices(np.eye(3), 1e4 * np.eye(3), [[0, 0, 0]], "z")
+    return springs.with_damping(loss=0.01).reduce(3)
+
+
+def campbell_of_a_lossy_rotor(_):
+    campbell(lossy(), [0.0, 5.0])
+
+
+def scene_of_a_lossy_rotor(_):
+    mbs = exu.SystemContainer().AddSystem()
+    add_rotor(mbs, lossy(), spin=4.0, translation="none")
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
@@ -93,6 +107,12 @@ PLACES = {
     ),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
+    ),
+    "linear/models/linear_model.py:warn_of_structural_damping": (
+        campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it",
+    ),
+    "multibody/add_rotor.py:add_rotor": (
+        scene_of_a_lossy_rotor, UserWarning, "A scene runs without it",
     ),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",
