@@ -164,6 +164,9 @@ def test_directions_of_mesh_and_scene_change_nothing_else(
         assert abs(actual - expected).max() < 1e-9 * abs(expected).max()
     skew_plane = formulation == "in-plane" and "skew in" in direction and placed is not UNIT
     assert ("plane" in body.constraints) == skew_plane
+    if skew_plane:  # the axial motion is the modes', though any other plane would serve
+        travel = mbs.GetNodeOutput(body.nodes["rigid"], exu.OutputVariableType.Coordinates)[:3]
+        assert abs(travel @ placed[:, 2]) < 1e-9 * np.linalg.norm(travel)
     assert body.formulation.section == {"free": "2.2", "in-plane": "2.3", "none": "2.4"}.get(
         formulation, "2.2"
     )

@@ -159,6 +159,25 @@ def test_sag_at_rest_in_space_is_no_slow_motion(rings, ratio):
     assert check_run(body, warn=False)["step"].value == pytest.approx(expected, rel=4 / steps)
 
 
+@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+@pytest.mark.parametrize("marker_body", [True, False])
+def test_recorded_speed_of_a_free_spin(rings, translation, marker_body):
+    """It stays; with a marker body a torque adds T t/Θ, generalised alpha integrates that."""
+    mbs = exu.SystemContainer().AddSystem()
+    options = {"initial_speed": 30.0, "marker_body": marker_body}
+    body = add_rotor(mbs, rings, translation=translation, **options)
+    if marker_body:
+        for name in ("left", "right"):
+            mbs.CreateTorque(itemNumber=body.marker(name), loadVector=[0, 0, 0.4])
+    body.start_recording()
+    mbs.Assemble()
+    solve(mbs, 20, 0.1)
+    record = body.recorded()
+    gain = 0.8 / POLAR * record.time if marker_body else 0.0 * record.time
+    assert len(record.time) == 21
+    assert record.speed == pytest.approx(30.0 + gain, rel=1e-9)
+
+
 # ------------------------------------------------------------------ divergence
 
 

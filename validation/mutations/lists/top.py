@@ -6,7 +6,7 @@ TOP = [
     *mutations(
         "storage.py",
         "test_results.py::test_arrays_come_back_from_either_memory_order "
-        "test_files.py::test_no_replaced_entry_loads",
+        "test_results.py::test_one_changed_value_is_damage",
         ("arrays in Fortran's order read as C's", 'order="F" if fortran else "C"', 'order="C"'),
         (
             "checksum without the values",
