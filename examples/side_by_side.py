@@ -24,7 +24,7 @@ def finite_element_model() -> FEMinterface:
     solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
     fem = FEMinterface()
     fem.ImportMeshFromNGsolve(
-        ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04)),
+        ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04, curvaturesafety=1.0)),
         materials={"steel": {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}},
         boundaryNamesList=["left", "right"],
         meshOrder=2,

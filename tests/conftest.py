@@ -2,15 +2,14 @@
 
 import os
 
-import matplotlib
 import pytest
-from matplotlib import pyplot
 
+# before numpy is imported, which reads them; processes that tests start have them, too
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
+os.environ["MPLBACKEND"] = "Agg"
 
-os.environ["MPLBACKEND"] = "Agg"  # of processes that tests start
-matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
 
 _MOST_WORKERS = 4  # each takes up to 1 GB
 

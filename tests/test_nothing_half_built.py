@@ -4,7 +4,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.FEM import FEMinterface
-from models import STEEL, disc_on_shaft
+from models import STEEL, block_beam
 from point_rotors import ring_rotor
 
 from exudyn_rotor import PrescribedMotion, add_rotor
@@ -137,7 +137,7 @@ def reduced():
 def fem():
     model = FEMinterface()
     model.ImportMeshFromNGsolve(
-        disc_on_shaft(0.1),
+        block_beam(0.1),
         materials={"steel": STEEL},
         boundaryNamesList=["left", "right"],
         meshOrder=1,

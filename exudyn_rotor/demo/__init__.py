@@ -13,7 +13,8 @@ from exudyn_rotor.demo.simulation import Run, simulate
 MODES = 12
 END_TIME = 0.5  # s
 STEP = 1e-4  # s
-FINE_MESH, QUICK_MESH = 0.0145, 0.05  # largest element [m]
+# largest element [m], and the radius of curves over the length of the elements there
+FINE_MESH, QUICK_MESH = (0.0145, 2.0), (0.05, 1.0)
 
 
 def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
@@ -40,7 +41,7 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     checks.flag(quick, "quick")
     target.mkdir(parents=True, exist_ok=True)
     print("meshing with NGSolve, computing modes with FEMinterface …", flush=True)
-    fem = scene.unbalanced_model(QUICK_MESH if quick else FINE_MESH, MODES)
+    fem = scene.unbalanced_model(MODES, *(QUICK_MESH if quick else FINE_MESH))
     print(f"{len(fem.GetNodePositionsAsArray())} nodes, {MODES} modes")
     end_time = END_TIME / 5.0 if quick else END_TIME
     variants = {

@@ -30,23 +30,27 @@ TORQUE = 42.0  # N m
 BEARINGS = {"left": -0.3, "right": 0.3}  # places on the x axis [m]
 
 
-def disc_on_shaft(max_element_size: float) -> ngsolve.Mesh:
-    """Return a steel disc (0.24 m × 40 mm) on a shaft (0.6 m × 30 mm) along x, faces named."""
+def disc_on_shaft(max_element_size: float, safety: float = 2.0) -> ngsolve.Mesh:
+    """Return a steel disc (0.24 m × 40 mm) on a shaft (0.6 m × 30 mm) along x, faces named.
+
+    `safety` is the radius of the curves over the length of the elements there.
+    """
     checks.number(max_element_size, "max_element_size", "m", above=0.0)
     shaft = occ.Cylinder(occ.Pnt(-0.3, 0, 0), occ.X, 0.015, 0.6)
     disc = occ.Cylinder(occ.Pnt(0.03, 0, 0), occ.X, 0.12, 0.04)
     solid = shaft + disc
     solid.name = "steel"
     solid.faces.Min(occ.X).name, solid.faces.Max(occ.X).name = BEARINGS
-    return ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=max_element_size))
+    geometry = occ.OCCGeometry(solid)
+    return ngsolve.Mesh(geometry.GenerateMesh(maxh=max_element_size, curvaturesafety=safety))
 
 
-def unbalanced_model(max_element_size: float, mode_count: int) -> FEMinterface:
+def unbalanced_model(mode_count: int, max_element_size: float, safety: float = 2.0) -> FEMinterface:
     """Return the FE model with an unbalance of 8 g at the disc's rim, and its free modes."""
     checks.count(mode_count, "mode_count", least=1)
     fem = FEMinterface()
     fem.ImportMeshFromNGsolve(
-        disc_on_shaft(max_element_size),
+        disc_on_shaft(max_element_size, safety),
         materials=STEEL,
         boundaryNamesList=list(BEARINGS),
         meshOrder=2,
