@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -28,6 +29,8 @@ _COPIED = (PACKAGE, "tests", "validation", "examples", "pyproject.toml", "README
 _NO_CACHE = shutil.ignore_patterns("__pycache__", "pictures")
 _LONGEST = 600.0  # seconds; a mutation that makes a test run on counts as killed
 _QUICK = 10
+# a wrong program may end so; a run that somebody ends from outside tells nothing
+_CRASHES = (signal.SIGABRT, signal.SIGFPE, signal.SIGILL, signal.SIGSEGV)
 # of pytest: all passed, tests failed; anything else says that the tests did not run
 _PASSED, _FAILED = 0, 1
 
@@ -111,7 +114,7 @@ def _tested(folder: Path, tests: Iterable[str], longest: float | None = None) ->
     if run.returncode == _FAILED:
         failed = [line for line in lines if line.startswith(("FAILED ", "ERROR "))]
         return _FAILED, failed[0].partition(" - ")[0] if failed else ""
-    if run.returncode < 0:  # a crash is noticed, too
+    if -run.returncode in _CRASHES:
         return _FAILED, f"ended by signal {-run.returncode}"
     return run.returncode, "" if run.returncode == _PASSED else " | ".join(lines[-5:])
 
