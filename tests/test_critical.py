@@ -117,6 +117,50 @@ def disc():
     return rotor.center_interfaces()
 
 
+def rising(stiffness):
+    """Return a stiffness that grows by a tenth within 4000 rad/s, as a table of nine speeds."""
+    speeds = np.linspace(0.0, 4000.0, 9)
+    return speeds, stiffness * (1.0 + 0.1 * speeds / 4000.0)
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_a_table_leaves_spin_and_axial_motion_free(disc, order):
+    """Equal values in a table are a number: the same critical speeds, but by bracketing.
+
+    Both solve the same equations; bracketing stops at 1e-12 of the range, and the conditioning of
+    an eigenvalue of 1e6 rad²/s² beside 1e12 costs ten digits of the square.
+    """
+    reduced = disc.reduce(8)
+    names = ("left", "right")
+    by_number = [Support(name, 2e7, 300.0) for name in names]
+    by_table = [Support(name, ([0.0, 500.0, 4000.0], [2e7] * 3), 300.0) for name in names]
+    given = {"order": order, "max_speed": 4000.0}
+    expected = critical_speeds(reduced, supports=by_number, **given)
+    result = critical_speeds(reduced, supports=by_table, **given)
+    assert len(expected.speeds) >= 2
+    np.testing.assert_allclose(result.speeds, expected.speeds, rtol=1e-8)
+    assert sorted(result.whirl) == sorted(expected.whirl)
+
+
+def test_critical_speeds_with_a_table_are_fixed_points(disc):
+    """Each is a critical speed on springs of the stiffness that the table has there."""
+    reduced = disc.reduce(8)
+    names = ("left", "right")
+    table = rising(2e7)
+    result = critical_speeds(
+        reduced, supports=[Support(name, table) for name in names], max_speed=4000.0
+    )
+    assert len(result.speeds) >= 2
+    for speed in result.speeds:
+        there = float(np.interp(speed, *table))
+        fixed = critical_speeds(reduced, supports=[Support(name, there) for name in names])
+        assert np.abs(fixed.speeds / speed - 1.0).min() < 1e-8
+    varied = critical_speed_map(
+        reduced, "left", [1e6, 1e7], supports=[Support("right", table)], max_speed=4000.0
+    )
+    assert np.all(np.sum(np.isfinite(varied.speeds), axis=1) >= 2)
+
+
 # the spin is held, too: free, an uneven mesh lets it take part in ν = 0
 HELD_SPIN = np.diag([0.0, 0.0, 1e4])
 SUPPORTS = (Support("left", 2e7 * np.eye(3), tilt_stiffness=HELD_SPIN), Support("right", 2e7))

@@ -184,6 +184,25 @@ def test_tables_and_matrices_are_told_apart():
         Support("left", lambda speed: "x").matrices(5.0)
 
 
+def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
+    rotor = ROTOR.reduce(0)
+    for table, speed in ((([5.0, 10.0], [1.0, 3.0]), 4.0), (([0.0, 10.0], [1.0, 3.0]), 11.0)):
+        for name in ("stiffness", "damping", "tilt_stiffness", "tilt_damping"):
+            support = Support("left", **{"stiffness": 2.0, name: table})
+            with pytest.raises(ValueError, match=rf"'left': the table of its {name} holds"):
+                campbell(rotor, [speed], supports=[support])
+            extended = Support("left", **{"stiffness": 2.0, name: table}, extrapolate=True)
+            held = Support("left", **{"stiffness": 2.0, name: 1.0 if speed < 5.0 else 3.0})
+            np.testing.assert_array_equal(
+                campbell(rotor, [speed], supports=[extended]).frequencies_rotor,
+                campbell(rotor, [speed], supports=[held]).frequencies_rotor,
+            )
+    for call in (critical_speeds, stability):
+        with pytest.raises(ValueError, match="holds 0 to 10 rad/s, not"):
+            given = {"max_speed": 40.0} if call is critical_speeds else {"speeds": [40.0]}
+            call(rotor, supports=[Support("left", ([0.0, 10.0], [1.0, 3.0]))], **given)
+
+
 def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
     monkeypatch.setattr(source, "DENSE_SIZE", 0)
     monkeypatch.setattr(source.FullRotor, "of", None)

@@ -248,23 +248,55 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
 def _bracketed(
     stiffness: Callable[[float], np.ndarray], limit: float, count: int = _BRACKETS
 ) -> list[tuple[float, np.ndarray]]:
-    """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit]."""
+    """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit].
+
+    What is a free motion at every speed, like a spin or an axial motion that nothing holds, is
+    left out first: the sign of its eigenvalue is rounding.
+    """
     grid = np.linspace(limit / count, limit, count)
-    branches = np.array([la.eigvalsh(stiffness(speed)) for speed in grid])
+    rest = _never_free(stiffness, grid)
+
+    def at(speed: float) -> np.ndarray:
+        return rest.conj().T @ stiffness(speed) @ rest
+
+    branches = np.array([la.eigvalsh(at(speed)) for speed in grid])
     crossings = []
     for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
-        signs = branches[1:, branch] * branches[:-1, branch] < 0.0
-        for i in np.flatnonzero(signs):
-            speed = brentq(
-                lambda s, b=branch: la.eigvalsh(stiffness(s), subset_by_index=[b, b])[0],
-                grid[i],
-                grid[i + 1],
-                xtol=1e-12 * limit,
-                rtol=1e-13,
-            )
-            _, vector = la.eigh(stiffness(speed), subset_by_index=[branch, branch])
-            crossings.append((float(speed), vector[:, 0]))
+        for low, high in _sign_changes(branches[:, branch]):
+            speed = grid[low]
+            if low != high:
+                speed = brentq(
+                    lambda s, b=branch: la.eigvalsh(at(s))[b],
+                    grid[low],
+                    grid[high],
+                    xtol=1e-12 * limit,
+                    rtol=1e-13,
+                )
+            _, vector = la.eigh(at(speed), subset_by_index=[branch, branch])
+            crossings.append((float(speed), rest @ vector[:, 0]))
     return crossings
+
+
+def _sign_changes(values: np.ndarray) -> list[tuple[int, int]]:
+    """Return the places (before, after) of every change of sign; both the same at a zero."""
+    zeros = [(int(i), int(i)) for i in np.flatnonzero(values == 0.0)]
+    changes = np.flatnonzero(values[1:] * values[:-1] < 0.0)
+    return zeros + [(int(i), int(i) + 1) for i in changes]
+
+
+def _never_free(stiffness: Callable[[float], np.ndarray], grid: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis of the motions that are not free at every speed of the grid.
+
+    An eigenvalue counts as zero below the rounding of its matrix, ``10 n ε ‖H‖``.
+    """
+    sizes = []
+    for speed in grid:
+        values = np.sort(np.abs(la.eigvalsh(stiffness(speed))))
+        sizes.append(values / (10.0 * len(values) * np.finfo(float).eps * max(values[-1], 1e-300)))
+    free = min(int(np.sum(entry <= 1.0)) for entry in sizes)
+    apart = [entry[free] if np.sum(entry <= 1.0) == free else 0.0 for entry in sizes]
+    values, vectors = la.eigh(stiffness(grid[int(np.argmax(apart))]))
+    return vectors[:, np.argsort(np.abs(values))[free:]]
 
 
 def _turning(

@@ -71,8 +71,8 @@ class FullRotor(FullEquations):
 
     @property
     def stiffness_varies(self) -> bool:
-        """True where the stiffness of a support depends on the speed by a function."""
-        return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in self.supports)
+        """True where the stiffness of a support depends on the speed."""
+        return any(support.stiffness_varies for support in self.supports)
 
     @property
     def has_structural_damping(self) -> bool:

@@ -168,8 +168,8 @@ class LinearRotor:
 
     @property
     def stiffness_varies(self) -> bool:
-        """True where the stiffness of a support depends on the speed by a function."""
-        return any(callable(s.stiffness) or callable(s.tilt_stiffness) for s in self.supports)
+        """True where the stiffness of a support depends on the speed."""
+        return any(support.stiffness_varies for support in self.supports)
 
     @cached_property
     def _centrifugal(self) -> np.ndarray:

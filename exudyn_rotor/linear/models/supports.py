@@ -32,11 +32,14 @@ class Support:
         axis, a 3 × 3 matrix also along it, both in the axes (n1, n2[, e]) of
         :attr:`SpinAxis.plane` [N/m], [N s/m]. A tuple of two, the speeds (s,) and the values
         (s,), (s, 2, 2) or (s, 3, 3), is a table: interpolated linearly over the spin speed
-        [rad/s], constant beyond its ends. A callable takes the spin speed. Arrays are copied.
+        [rad/s]. A callable takes the spin speed. Arrays are copied.
     tilt_stiffness, tilt_damping : same, optional
         Against the mean rotation of the interface about (n1, n2[, e]) [N m/rad], [N m s/rad].
     frame : {'inertial', 'rotor'}
         Whether the support stands still or turns with the rotor.
+    extrapolate : bool, optional
+        Whether analyses may use tables beyond their ends, with the value there; an error by
+        default.
 
     Raises
     ------
@@ -65,9 +68,11 @@ class Support:
     tilt_stiffness: Coefficient = 0.0
     tilt_damping: Coefficient = 0.0
     frame: str = "inertial"
+    extrapolate: bool = False
 
     def __post_init__(self) -> None:
         checks.label(self.interface, "interface")
+        checks.flag(self.extrapolate, "extrapolate")
         checks.choice(self.frame, "frame", FRAMES)
         for name in COEFFICIENTS:
             value = _kept(getattr(self, name), f"support at {self.interface!r}: {name}")
@@ -76,7 +81,8 @@ class Support:
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping at a spin speed [rad/s], each (6, 6).
 
-        Rows: displacement along n1, n2, e, then rotation about them.
+        Rows: displacement along n1, n2, e, then rotation about them. A table keeps its last value
+        beyond its end.
         """
         checks.number(speed, "speed", "rad/s")
         stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
@@ -91,7 +97,13 @@ class Support:
 
         A support that stands still damps the inertial velocity: the rotor sees u_inertial =
         R(θ) u, whose rate is R(u̇ + Ω ẽ u), so part of the damping becomes a stiffness.
+
+        Raises
+        ------
+        ValueError
+            If the speed is beyond a table that may not be extrapolated.
         """
+        self.check_range(speed)
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
             return {0: damping}, {0: stiffness}
@@ -100,12 +112,7 @@ class Support:
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
-        parts = {
-            name: partial(_symmetric_part, self, first)
-            if self.stiffness_varies
-            else _symmetric_part(self, first, 0.0)
-            for name, first in (("stiffness", 0), ("tilt_stiffness", 3))
-        }
+        parts = {name: _symmetric(getattr(self, name)) for name in ("stiffness", "tilt_stiffness")}
         return replace(self, **parts, damping=0.0, tilt_damping=0.0)
 
     @property
@@ -113,6 +120,17 @@ class Support:
         """True when a stiffness depends on the spin speed."""
         values = (self.stiffness, self.tilt_stiffness)
         return any(callable(value) or isinstance(value, tuple) for value in values)
+
+    def check_range(self, speed: float) -> None:
+        """Refuse a speed [rad/s] beyond the end of a table."""
+        for name in () if self.extrapolate else COEFFICIENTS:
+            value = getattr(self, name)
+            if isinstance(value, tuple) and not value[0][0] <= speed <= value[0][-1]:
+                raise ValueError(
+                    f"support at {self.interface!r}: the table of its {name} holds "
+                    f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "
+                    "it, or extrapolate=True to keep the value at its end"
+                )
 
     def _matrix(self, name: str, speed: float) -> np.ndarray:
         """Return one coefficient as a 3 × 3 matrix in the axes (n1, n2, e)."""
@@ -125,9 +143,24 @@ class Support:
         return _in_three_axes(value)
 
 
-def _symmetric_part(support: Support, first: int, speed: float) -> np.ndarray:
-    block = support.matrices(speed)[0][first : first + 3, first : first + 3]
-    return 0.5 * (block + block.T)
+def _symmetric(value: Coefficient) -> Coefficient:
+    """Return a coefficient without its skew part."""
+    if callable(value):
+        return partial(_symmetric_value, value)
+    if isinstance(value, tuple):
+        return value[0], _symmetric_matrix(value[1])
+    return _symmetric_matrix(value)
+
+
+def _symmetric_value(function: Callable[[float], ArrayLike], speed: float) -> float | np.ndarray:
+    return _symmetric_matrix(np.asarray(function(speed), dtype=float))
+
+
+def _symmetric_matrix(values: float | np.ndarray) -> float | np.ndarray:
+    """Return the symmetric part of a matrix or a stack of them; numbers as they are."""
+    if np.ndim(values) < 2:
+        return values
+    return 0.5 * (values + np.swapaxes(values, -1, -2))
 
 
 def _kept(value: Coefficient, name: str) -> Coefficient:
