@@ -157,13 +157,20 @@ def _refined(
     iteration is not enough.
     """
     refined = np.array(vectors, dtype=complex)
+    mass, size = M.astype(complex), len(M)
+    terms = np.stack([M.T, D.T, K.T]).astype(complex).reshape(3, -1)
+    # LAPACK itself: with so many small matrices scipy's checks would take longer than the solutions
+    factorise, solve = la.get_lapack_funcs(("getrf", "getrs"), (refined,))
     for column, value in enumerate(values):
         if value != 0.0:
             shifted = value * (1.0 + _OFF_ROOT)
-            factors = la.lu_factor(shifted**2 * M + shifted * D + K)
+            dynamic = np.array([shifted**2, shifted, 1.0]) @ terms
+            lu, pivots, _ = factorise(dynamic.reshape(size, size).T, overwrite_a=True)
+            vector = refined[:, column]
             for _ in range(2):
-                vector = la.lu_solve(factors, M @ refined[:, column])
-                refined[:, column] = vector / np.maximum(np.linalg.norm(vector), 1e-300)
+                vector, _ = solve(lu, pivots, mass @ vector)
+                vector = vector / max(np.sqrt(np.vdot(vector, vector).real), 1e-300)
+            refined[:, column] = vector
     return refined / np.maximum(np.linalg.norm(refined, axis=0), 1e-300)
 
 
@@ -183,12 +190,17 @@ def merged(values: np.ndarray, states: np.ndarray, resolution: float) -> np.ndar
 
 def groups(values: np.ndarray, resolution: float) -> list[np.ndarray]:
     """Return the indices of values that `resolution` does not tell apart, group by group."""
-    left = np.argsort(values.imag, kind="stable")
+    order = np.argsort(values.imag, kind="stable")
     result = []
-    while left.size:
-        near = np.abs(values[left] - values[left[0]]) <= resolution
-        result.append(left[near])
-        left = left[~near]
+    ends = np.flatnonzero(np.diff(values.imag[order]) > resolution) + 1
+    for first, end in zip([0, *ends], [*ends, order.size], strict=True):
+        left = order[first:end]
+        while left.size > 1:
+            near = np.abs(values[left] - values[left[0]]) <= resolution
+            result.append(left[near])
+            left = left[~near]
+        if left.size:
+            result.append(left)
     return result
 
 

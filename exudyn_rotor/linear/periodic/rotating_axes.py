@@ -6,6 +6,7 @@ Axes are (n1, n2, e) of :attr:`SpinAxis.plane` and the spin axis.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -50,13 +51,17 @@ def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
     R turns both triples of a (6, 6) matrix X about e by θ; the result holds the harmonics
     −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
     """
-    angles = 2.0 * np.pi * np.arange(5) / 5.0
-    turn = SpinAxis((0.0, 0.0, 1.0)).rotation
-    samples = []
-    for angle in angles:
-        R = np.kron(np.eye(2), turn(angle))
-        samples.append(R.T @ matrix @ R)
-    spectrum = np.fft.fft(np.array(samples), axis=0) / 5.0
+    R = _turns()
+    products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  # R is real: Rᵀ has the terms R_nᵀ
+    spectrum = {n: np.zeros((6, 6), dtype=complex) for n in range(-2, 3)}
+    for n, row in enumerate(products):
+        for m, product in enumerate(row):
+            spectrum[n + m - 2] += product
     largest = np.abs(matrix).max(initial=0.0)
-    terms = {n: spectrum[n % 5] for n in range(-2, 3)}
-    return {n: X for n, X in terms.items() if np.abs(X).max() > 1e-14 * largest}
+    return {n: X for n, X in spectrum.items() if np.abs(X).max() > 1e-14 * largest}
+
+
+@cache
+def _turns() -> np.ndarray:
+    """Return R_n for n = −1, 0, 1, shape (3, 6, 6)."""
+    return np.stack(list(turning_harmonics(6).values()))
