@@ -197,10 +197,10 @@ def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
                 campbell(rotor, [speed], supports=[extended]).frequencies_rotor,
                 campbell(rotor, [speed], supports=[held]).frequencies_rotor,
             )
-    for call in (critical_speeds, stability):
+    short = [Support("left", ([0.0, 10.0], [1.0, 3.0]))]
+    for call, given in ((critical_speeds, {"max_speed": 40.0}), (stability, {"speeds": [40.0]})):
         with pytest.raises(ValueError, match="holds 0 to 10 rad/s, not"):
-            given = {"max_speed": 40.0} if call is critical_speeds else {"speeds": [40.0]}
-            call(rotor, supports=[Support("left", ([0.0, 10.0], [1.0, 3.0]))], **given)
+            call(rotor, supports=short, **given)
 
 
 def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):

@@ -103,7 +103,7 @@ class Support:
         ValueError
             If the speed is beyond a table that may not be extrapolated.
         """
-        self.check_range(speed)
+        self._check_range(speed)
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
             return {0: damping}, {0: stiffness}
@@ -121,7 +121,7 @@ class Support:
         values = (self.stiffness, self.tilt_stiffness)
         return any(callable(value) or isinstance(value, tuple) for value in values)
 
-    def check_range(self, speed: float) -> None:
+    def _check_range(self, speed: float) -> None:
         """Refuse a speed [rad/s] beyond the end of a table."""
         for name in () if self.extrapolate else COEFFICIENTS:
             value = getattr(self, name)
