@@ -76,6 +76,7 @@ BY_NAME: dict[str, Kind] = {
     "end_time": v.POSITIVE,
     "error": v.NOT_NEGATIVE,
     "euler": v.FLAG,
+    "extrapolate": v.FLAG,
     "executor": v.OBJECT,
     "exponents": v.ANY_VALUES,
     "fem": v.OBJECT,
