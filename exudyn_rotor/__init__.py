@@ -1,6 +1,7 @@
 """Flexible solid rotors about one fixed axis, for Exudyn multibody scenes.
 
-Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exudyn.
+Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exudyn, and lets
+``mbs.Assemble()`` make the markers of a script on this package's rotors cheap.
 """
 
 from exudyn_rotor.advice.proposal import Proposal, propose

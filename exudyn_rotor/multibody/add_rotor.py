@@ -20,7 +20,7 @@ from exudyn.itemInterface import (
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import inputs
+from exudyn_rotor.multibody import condensed_markers, inputs
 from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
@@ -64,6 +64,7 @@ def add_rotor(
     markers: Mapping[str, str] | str | None = None,
     marker_offsets: Mapping[str, ArrayLike] | None = None,
     show_markers: bool = True,
+    condense_markers: bool = True,
     locking: str = "auto",
     marker_body: bool = True,
     negligible: float = NEGLIGIBLE,
@@ -107,6 +108,10 @@ def add_rotor(
         Offset of a marker from the interface's reference point, mesh axes [m].
     show_markers : bool
         Whether markers are drawn.
+    condense_markers : bool
+        Whether ``mbs.Assemble()`` moves a script's own markers on many mesh nodes of the rotor to
+        one or three added nodes with the same mean motion: the same to round-off, at a cost that
+        does not depend on the mesh. See :mod:`exudyn_rotor.multibody.condensed_markers`.
     locking : {'auto', 'mass', 'constraints'}
         How coordinates of the marker body that the formulation does not have are held; see the
         notes and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for
@@ -198,6 +203,7 @@ def add_rotor(
         mass_damping=checks.number(mass_damping, "mass_damping", "1/s", least=0.0),
         stiffness_damping=checks.number(stiffness_damping, "stiffness_damping", "s", least=0.0),
         markers=requests,
+        condense_markers=checks.flag(condense_markers, "condense_markers"),
         locking=checks.choice(locking, "locking", LOCKINGS),
         marker_body=marker_body,
         negligible=negligible,
@@ -253,6 +259,7 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
             plan.setup.color,
         )
     )
+    condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers)
     load = None
     if np.any(plan.marker_body_gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))

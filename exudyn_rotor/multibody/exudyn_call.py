@@ -51,6 +51,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     stiffening: str = "tilt",
     locking: str = "auto",
     markers: str = "rigid",
+    condense_markers: bool = True,
     prestress: Prestress | None = None,
 ) -> dict:
     """Create a flexible rotor that spins about one fixed axis.
@@ -86,6 +87,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.multibody.locking
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost
+        condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
+            to few added nodes with the same mean motion: the same to round-off, and much faster
         prestress: static stress for stiffening='full', since a FEMinterface holds no elements to
             compute it on: SolidRotor.prestress() of a rotor from NGSolve with the same mesh, or
             Prestress.from_matrix() with the geometric stiffness of another program
@@ -136,6 +139,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         ),
         "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
         "show_markers": checks.flag(showMarkers, "showMarkers"),
+        "condense_markers": checks.flag(condense_markers, "condense_markers"),
     }
     checks.flag(verbose, "verbose")
     if axis is None:

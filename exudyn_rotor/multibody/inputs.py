@@ -68,6 +68,7 @@ class Setup:
     mass_damping: float
     stiffness_damping: float
     markers: Mapping[str, MarkerRequest]
+    condense_markers: bool
     locking: str
     marker_body: bool
     negligible: float

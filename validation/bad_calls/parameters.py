@@ -55,6 +55,7 @@ BY_NAME: dict[str, Kind] = {
     "check_units": v.FLAG,
     "clamped": _INTERFACES,
     "color": v.VECTOR.but(five=[0.1] * 5),
+    "condense_markers": v.FLAG,
     "configuration": v.OBJECT,
     "constant": _FIELD,
     "constant_stress": _FIELD,

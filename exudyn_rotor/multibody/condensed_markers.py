@@ -1,0 +1,163 @@
+"""A script's own markers on many mesh nodes, moved to few nodes with the same mean motion.
+
+Exudyn evaluates a super-element marker at every one of its nodes, and connectors at such markers
+are differentiated numerically: with full Newton they take nine tenths of a step. What a marker
+needs of its nodes is linear in the modal coordinates,
+
+    position  Σ w (x + Ψζ),    rotation  W⁻¹ Σ w p̃ (Ψζ − Σ w Ψζ),    W = −Σ w p̃p̃,  p = x − Σ w x,
+
+so that one node serves a position marker, and three a rigid one: nodes that move rigidly with this
+displacement and rotation give the same marker to round-off.
+
+Markers are known when the system is assembled. Importing this module therefore lets
+``mbs.Assemble()`` do this first, for the rotors of this package that stand in the ``mbs``.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.multibody.marker_body import virtual_nodes
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
+
+_BODIES = "exudyn_rotor: bodies whose markers are condensed"  # key in mbs.sys
+_NEEDED = {"SuperElementPosition": 1, "SuperElementRigid": 3}  # nodes of a condensed marker
+_UNIT_SUM = 1e-12  # error of a sum of weights that is one
+_Z = SpinAxis([0.0, 0.0, 1.0])  # of the plane of the three nodes; any serves
+_SINGULAR = 1e-10  # ratio of eigenvalues of W: nodes on a line, which Exudyn refuses itself
+
+
+def at_assembly(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex, wanted: bool) -> None:
+    """Say whether ``mbs.Assemble()`` condenses the markers on a marker body."""
+    mbs.sys.setdefault(_BODIES, {})[int(marker_body)] = wanted
+
+
+def condense_markers(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex | int) -> int:
+    """Move markers on many mesh nodes of a marker body to nodes that are added to it.
+
+    Markers stay as they are where their weights do not add up to one, where a rigid marker takes
+    the rotation by the other formula (``useAlternativeApproach=False``) or has its nodes on a line.
+
+    Returns
+    -------
+    int
+        Number of markers that were moved.
+    """
+    chosen = [
+        (number, marker)
+        for number, marker in enumerate(_markers_on(mbs, int(marker_body)))
+        if marker is not None and _can_be_condensed(marker)
+    ]
+    if not chosen:
+        return 0
+    body = mbs.GetObject(marker_body)
+    points = np.asarray(body["referencePositions"]).reshape(-1, 3)
+    shapes = np.asarray(body["modeBasis"]).reshape(len(points), 3, -1)
+    new_points, new_columns, places = [], [], []
+    count = len(points)
+    for number, marker in chosen:
+        nodes = np.asarray(marker["meshNodeNumbers"])
+        weights = np.asarray(marker["weightingFactors"])
+        moved = _condensed(marker["markerType"], points[nodes], shapes[nodes], weights)
+        if moved is None:
+            continue
+        new_points.append(moved[0])
+        new_columns.append(moved[1])
+        places.append((number, list(range(count, count + len(moved[0])))))
+        count += len(moved[0])
+    if places:
+        _add_nodes(mbs, marker_body, body, np.vstack(new_points), np.vstack(new_columns))
+    for number, nodes in places:
+        mbs.SetMarkerParameter(number, "meshNodeNumbers", nodes)
+        mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(nodes)] * len(nodes))
+    return len(places)
+
+
+def _markers_on(mbs: exudyn.MainSystem, body: int) -> list[dict | None]:
+    """Return the super-element markers on a body, None for all other markers."""
+    markers = (mbs.GetMarker(number) for number in range(mbs.systemData.NumberOfMarkers()))
+    return [
+        marker if marker["markerType"] in _NEEDED and int(marker["bodyNumber"]) == body else None
+        for marker in markers
+    ]
+
+
+def _can_be_condensed(marker: dict) -> bool:
+    if len(marker["meshNodeNumbers"]) <= _NEEDED[marker["markerType"]]:
+        return False
+    if len(marker["meshNodeNumbers"]) != len(marker["weightingFactors"]):
+        return False  # Exudyn says so in Assemble()
+    unit = abs(np.sum(marker["weightingFactors"]) - 1.0) <= _UNIT_SUM
+    return bool(unit and marker.get("useAlternativeApproach", True))
+
+
+def _condensed(
+    kind: str, points: np.ndarray, shapes: np.ndarray, weights: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return nodes (1 or 3, 3) and columns (3 or 9, m) with the same mean motion, if there are."""
+    center, mean = weights @ points, np.einsum("n,nak->ak", weights, shapes)
+    if kind == "SuperElementPosition":
+        return center[None, :], mean
+    arms = [skew(point - center) for point in points]
+    W = -np.einsum("n,nab,nbc->ac", weights, arms, arms)
+    sizes = np.linalg.eigvalsh(0.5 * (W + W.T))
+    if sizes[0] <= _SINGULAR * sizes[-1]:
+        return None
+    turn = np.linalg.solve(W, np.einsum("n,nab,nbk->ak", weights, arms, shapes - mean))
+    motion = np.vstack([mean, turn])
+    return virtual_nodes(center, float(np.sqrt(sizes[-1])), motion, _Z)
+
+
+def _add_nodes(
+    mbs: exudyn.MainSystem,
+    marker_body: exudyn.ObjectIndex | int,
+    body: dict,
+    points: np.ndarray,
+    columns: np.ndarray,
+) -> None:
+    """Append nodes to the marker body; they carry no stress."""
+    new = {
+        "referencePositions": np.hstack([body["referencePositions"], points.ravel()]),
+        "modeBasis": np.vstack([body["modeBasis"], columns]),
+    }
+    stress = np.asarray(body["outputVariableModeBasis"])
+    if stress.size:
+        new["outputVariableModeBasis"] = np.vstack(
+            [stress, np.zeros((len(points), stress.shape[1]))]
+        )
+    for name, value in new.items():
+        mbs.SetObjectParameter(marker_body, name, value)
+
+
+def _is_marker_body(mbs: exudyn.MainSystem, number: int) -> bool:
+    """Return whether the object is still that of a rotor: an ``mbs`` can be reset."""
+    if number >= mbs.systemData.NumberOfObjects():
+        return False
+    item = mbs.GetObject(number)
+    if item["objectType"] != "FFRFreducedOrder":
+        return False
+    return not (item["computeFFRFterms"] or item["massMatrixUserFunction"])
+
+
+def _install() -> None:
+    """Put the condensation in front of ``MainSystem.Assemble``, once."""
+    assemble = exudyn.MainSystem.Assemble
+    if getattr(assemble, "condenses_markers", False):
+        return
+
+    @functools.wraps(assemble)
+    def Assemble(mbs: exudyn.MainSystem) -> None:
+        for number, wanted in mbs.sys.get(_BODIES, {}).items():
+            if wanted and _is_marker_body(mbs, number):
+                condense_markers(mbs, number)
+        return assemble(mbs)
+
+    Assemble.condenses_markers = True
+    exudyn.MainSystem.Assemble = Assemble
+
+
+_install()
