@@ -53,7 +53,8 @@ def results() -> list:
     motion = RNG.normal(size=(3, 2, 1, 6)) + 1j
     return [
         Campbell(speeds, *[table] * 5, codes, codes, RNG.normal(size=(3, 4, 2)) + 0j,
-                 np.array([[0, 1], [1, 0], [0, 1]]), ("spin",)),
+                 np.array([[0, 1], [1, 0], [0, 1]]), codes < 2,
+                 ("spin",)),
         CriticalSpeeds(1.0, speeds, speeds, ("forward", "backward", "mixed"), np.array([1, 1, -1]),
                        RNG.normal(size=(4, 3)) + 0j),
         CriticalSpeedMap(speeds, table, codes, 1.0),

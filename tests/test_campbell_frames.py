@@ -4,15 +4,18 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
-from models import STEEL, block_beam, two_masses
+from models import STEEL, block_beam, disc_rotor, two_masses
 from point_rotors import random_rotor, ring_rotor
 
-from exudyn_rotor import SolidRotor, campbell, linear_model, stability
+from exudyn_rotor import SolidRotor, campbell, linear_model, plotting, stability
 from exudyn_rotor.linear.modal.campbell import Campbell
+from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
+from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.results import load_result
 
@@ -189,6 +192,41 @@ def test_columns_ascend_and_tracked_columns_follow_the_modes():
         assert len(words) == 1
         inertial = 600.0 if words == {"axial"} else 100.0
         np.testing.assert_allclose(tracked.frequencies_inertial[:, column], inertial, rtol=1e-9)
+
+
+@pytest.mark.parametrize("count", [4, 6, 8])
+def test_few_modes_are_the_same_at_all_speeds(count):
+    """Kept are those that are lowest at rest, also where others pass below them in the rotor frame.
+
+    Gyroscopic moments change an inertial frequency by ``|dω/dΩ| ≤ I_p/I_t``, the precession of a
+    free rigid body, and ``I_p ≤ 2 I_t`` for every body.
+    """
+    speeds = np.linspace(0.0, 2500.0, 13)
+    reduced = disc_rotor(1).center_interfaces().reduce(10)
+    supports = [Support(name, 2e7, 500.0) for name in ("left", "right")]
+    every = campbell(reduced, speeds, supports=supports).tracked()
+    few = campbell(reduced, speeds, supports=supports, modes=count).tracked()
+    assert few.frequencies_rotor.shape == (13, count)
+    assert np.all(few.continued)
+    lowest = np.argsort(every.frequencies_inertial[0], kind="stable")[:count]
+    expected = every.frequencies_inertial[:, np.sort(lowest)]
+    np.testing.assert_array_equal(few.frequencies_inertial, expected)
+    steps = np.abs(np.diff(few.frequencies_inertial, axis=0))
+    assert steps.max() <= 2.0 * (speeds[1] - speeds[0])
+
+
+def test_a_line_breaks_where_it_would_join_different_modes():
+    """Two masses that share no motion: only one of them at each of two speeds."""
+    first, second = np.eye(2)[:, :1], np.eye(2)[:, 1:]
+    at = [
+        FloquetModes(np.array([100j]), x[None] + 0j, np.array([0]), 1e-6) for x in (first, second)
+    ]
+    found = track([at[0], at[0], at[1]], np.array([0.0, 1.0, 2.0]), np.eye(2).__matmul__)
+    assert found.continued.ravel().tolist() == [True, True, False]
+    ax = plotting.axes_or_new(None)
+    values, codes = np.full((3, 1), 5.0), np.zeros((3, 1), dtype=int)
+    draw_campbell(ax, np.arange(3.0), values, codes, found.continued, np.zeros((3, 1), dtype=bool))
+    assert sorted(len(line.get_xdata()) for line in ax.lines) == [1, 2]
 
 
 @pytest.mark.parametrize("wave", range(-4, 5))

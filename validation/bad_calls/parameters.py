@@ -239,6 +239,7 @@ BY_NAME: dict[str, Kind] = {
 
 BY_CALL: dict[tuple[str, str], Kind] = {
     ("BaseAcceleration", "acceleration"): v.COMPLEX,
+    ("Campbell", "continued"): _FIELD,
     ("Campbell", "order"): _FIELD,
     ("Campbell", "speeds"): _FIELD,
     ("CriticalSpeedMap", "speeds"): v.ANY_VALUES,

@@ -14,7 +14,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
-from exudyn_rotor.linear.modal.tracking import track
+from exudyn_rotor.linear.modal.tracking import Tracks, track
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -39,7 +39,7 @@ _UNSTABLE = 1e-4
 @storable
 @dataclass(frozen=True, eq=False)
 class Campbell(Result):
-    """Eigenfrequencies over spin speed; column j at every speed is the j-th lowest mode.
+    """Eigenfrequencies over spin speed, at every speed ascending in the rotor frame.
 
     In the order of :meth:`tracked`, column j is the same mode at all speeds.
 
@@ -65,6 +65,9 @@ class Campbell(Result):
         periodic systems.
     order : ndarray of int, shape (s, k)
         ``order[i, j]`` is the column at speed i that continues column j of the first speed.
+    continued : ndarray of bool, shape (s, k)
+        Where that is the same mode as at the speed before, by its shape and frequency; False where
+        it had to be another one, as where a mode leaves those that were computed.
     free_motions : tuple of str
         Rigid motions that nothing holds.
 
@@ -97,6 +100,7 @@ class Campbell(Result):
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
     vectors: np.ndarray = numbers("speeds", "coordinates", "modes", dtype=complex)
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
+    continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -119,7 +123,8 @@ class Campbell(Result):
         """Return the same result with columns that follow each mode over the speeds.
 
         Neighbouring speeds are matched by the mass-weighted modal assurance criterion and the
-        distance in frequency; steps in speed must be small where modes veer.
+        distance in frequency; steps in speed must be small where modes veer. A column holds
+        different modes before and after a speed where :attr:`continued` is False.
         """
         names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
@@ -130,6 +135,8 @@ class Campbell(Result):
 
     def plot(self, ax: Axes | None = None, frame: str = "inertial") -> Axes:
         """Draw the tracked modes [Hz] over the spin speed [Hz]; see :mod:`exudyn_rotor.plotting`.
+
+        A line breaks where it would join different modes.
 
         Parameters
         ----------
@@ -150,7 +157,8 @@ class Campbell(Result):
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
-        handles = draw_campbell(ax, speeds, hertz * values, tracked.whirl_codes, unstable)
+        codes, continued = tracked.whirl_codes, tracked.continued
+        handles = draw_campbell(ax, speeds, hertz * values, codes, continued, unstable)
         if inertial:
             handles += ax.plot(speeds, np.abs(speeds), color="0.6", lw=0.8, label="spin speed")
         ax.set_xlabel("spin speed [Hz]")
@@ -180,6 +188,9 @@ class Campbell(Result):
                 )
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
+        lost = hertz * self.speeds[~np.all(self.continued, axis=1)]
+        if lost.size:
+            lines.append("modes not followed up to [Hz]: " + ", ".join(f"{f:.4g}" for f in lost))
         return "\n".join(lines)
 
 
@@ -216,8 +227,9 @@ def campbell(
     body : RotorBody, optional
         The rotor in a scene.
     modes : int, optional
-        How many of the lowest modes in the rotor frame to keep; all by default, 10 for a large
-        SolidRotor.
+        How many modes to keep: those with the lowest inertial frequencies at the first speed,
+        followed from there. All by default. A large SolidRotor is solved for as many modes, 10 by
+        default, as are lowest in the rotor frame at each speed.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`).
@@ -285,11 +297,13 @@ def campbell(
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:
         space = space.prepared(values)
-    task = _Task(space, count, tolerance, WhirlContent.of(model))
+    computed = model.size if model.gives_all else count
+    task = _Task(space, computed, tolerance, WhirlContent.of(model))
     workers = None if space.is_shared else executor
     solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
-    order = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
-    return _collected(values, solved, order, model.free_motions)
+    tracks = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
+    solved, tracks = _lowest(solved, tracks, count)
+    return _collected(values, solved, tracks, model.free_motions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,8 +336,23 @@ def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count:
     return lowest, *(array[:count] for array in classified)
 
 
+def _lowest(solved: list[Solved], tracks: Tracks, count: int) -> tuple[list[Solved], Tracks]:
+    """Keep the modes that have the lowest inertial frequencies at the first speed."""
+    if count >= tracks.columns.shape[1]:
+        return solved, tracks
+    chosen = np.sort(np.argsort(solved[0][1][tracks.columns[0]], kind="stable")[:count])
+    used = tracks.columns[:, chosen]
+    kept = np.sort(used, axis=1)
+    places = [np.searchsorted(*rows) for rows in zip(kept, used, strict=True)]
+    fewer = [
+        (entry[0].columns(row), *(array[row] for array in entry[1:]))
+        for entry, row in zip(solved, kept, strict=True)
+    ]
+    return fewer, Tracks(np.array(places), tracks.continued[:, chosen])
+
+
 def _collected(
-    speeds: np.ndarray, solved: list[Solved], order: np.ndarray, free: tuple[str, ...]
+    speeds: np.ndarray, solved: list[Solved], tracks: Tracks, free: tuple[str, ...]
 ) -> Campbell:
     modes, inertial, whirl, diameters = zip(*solved, strict=True)
     # adding zero turns −0 into 0
@@ -344,7 +373,8 @@ def _collected(
         whirl_codes=np.array(whirl, dtype=np.int64),
         nodal_diameters=np.array(diameters, dtype=np.int64),
         vectors=np.array([entry.central for entry in modes]),
-        order=order,
+        order=tracks.columns,
+        continued=tracks.continued,
         free_motions=free,
     )
 

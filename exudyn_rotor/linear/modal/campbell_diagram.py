@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -22,7 +24,12 @@ _STYLES = {  # colour, line
 
 
 def draw_campbell(
-    ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray, unstable: np.ndarray
+    ax: Axes,
+    speeds: np.ndarray,
+    values: np.ndarray,
+    codes: np.ndarray,
+    continued: np.ndarray,
+    unstable: np.ndarray,
 ) -> list[Line2D]:
     """Draw modes [Hz] over the spin speed [Hz], coloured by whirl; return what the legend needs.
 
@@ -34,11 +41,17 @@ def draw_campbell(
         Each column one mode.
     codes : ndarray of int, shape (s, k)
         Index into :data:`WHIRLS`.
+    continued : ndarray of bool, shape (s, k)
+        Where a column is the same mode as at the speed before.
     unstable : ndarray of bool, shape (s, k)
         Where a mode is marked by a cross.
     """
     for column in range(values.shape[1]):
-        _draw_mode(ax, speeds, values[:, column], codes[:, column])
+        starts = [0, *np.flatnonzero(~continued[1:, column]) + 1, len(speeds)]
+        for start, stop in itertools.pairwise(starts):
+            _draw_mode(
+                ax, speeds[start:stop], values[start:stop, column], codes[start:stop, column]
+            )
     drawn = codes[1:] if len(speeds) > 1 else codes
     handles = [
         Line2D([], [], color=color, ls=line, label=whirl.WHIRLS[code])

@@ -7,7 +7,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -45,6 +45,10 @@ class FloquetModes:
     def central(self) -> np.ndarray:
         """The harmonic 0 of every mode, shape (c, k)."""
         return self.vectors[np.flatnonzero(self.orders == 0)[0]]
+
+    def columns(self, chosen: np.ndarray) -> FloquetModes:
+        """Return some of the modes."""
+        return replace(self, values=self.values[chosen], vectors=self.vectors[:, :, chosen])
 
 
 def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> FloquetModes:
