@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 import scipy.linalg as la
@@ -39,6 +40,7 @@ _NO_INERTIA = 1e-6
 _QUADRATIC = 1e-6
 _BRACKETS = 200
 _MOST_ROUNDS = 20
+Entry = TypeVar("Entry")
 _MODES = 10  # that the subspace of a full rotor begins with
 
 
@@ -260,7 +262,7 @@ def _bracketed(
         return rest.conj().T @ stiffness(speed) @ rest
 
     branches = np.array([la.eigvalsh(at(speed)) for speed in grid])
-    crossings = []
+    zeros = []
     for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
         for low, high in _sign_changes(branches[:, branch]):
             speed = grid[low]
@@ -272,8 +274,12 @@ def _bracketed(
                     xtol=1e-12 * limit,
                     rtol=1e-13,
                 )
-            _, vector = la.eigh(at(speed), subset_by_index=[branch, branch])
-            crossings.append((float(speed), rest @ vector[:, 0]))
+            zeros.append((float(speed), int(branch)))
+    crossings = []
+    for group in _same_speed(sorted(zeros), lambda zero: zero[0]):
+        # one decomposition for all: the vectors of a repeated zero are orthogonal only within it
+        _, vectors = la.eigh(at(group[0][0]))
+        crossings += [(speed, rest @ vectors[:, branch]) for speed, branch in group]
     return crossings
 
 
@@ -304,7 +310,8 @@ def _turning(
 ) -> list[Resonance]:
     """Keep motions that turn with the excitation; of a motion and its conjugate, one."""
     chosen = []
-    for group in _same_speed(candidates):
+    ascending = sorted(candidates, key=lambda entry: entry.speed)
+    for group in _same_speed(ascending, lambda entry: entry.speed):
         multiples = group[0].multiples
         vectors = np.stack([entry.vectors for entry in group], axis=2)
         vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(group)), axis=0)
@@ -325,10 +332,12 @@ def _turning(
     return chosen
 
 
-def _same_speed(candidates: list[Resonance]) -> list[list[Resonance]]:
-    groups: list[list[Resonance]] = []
-    for entry in sorted(candidates, key=lambda entry: entry.speed):
-        if groups and entry.speed - groups[-1][-1].speed <= _SAME * entry.speed:
+def _same_speed(entries: list[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
+    """Return ascending entries in groups of one speed."""
+    groups: list[list[Entry]] = []
+    for entry in entries:
+        speed = speed_of(entry)
+        if groups and speed - speed_of(groups[-1][-1]) <= _SAME * speed:
             groups[-1].append(entry)
         else:
             groups.append([entry])
