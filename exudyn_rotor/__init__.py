@@ -30,6 +30,7 @@ from exudyn_rotor.linear.stability.stability import (
 from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
+from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
@@ -69,6 +70,7 @@ __all__ = [
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
     "Motion",
+    "ObjectFixedAxisFFRFreducedOrderInterface",
     "PointMass",
     "PrescribedMotion",
     "Prestress",

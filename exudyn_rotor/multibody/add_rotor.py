@@ -237,18 +237,10 @@ def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
 
 
 def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMesh) -> RotorBody:
-    """Add nodes, equations, locks, the marker body, its markers and gravity."""
+    """Add nodes, the marker body, locks, equations, gravity and markers."""
     rigid = mbs.AddNode(_rigid_node(plan))
     modes = mbs.AddNode(_generic_node(plan.setup.name, plan.modal_start, plan.modal_start_rate))
-    guide = guiding_force(plan.locks, plan.layout)
-    constraints = {}
-    if not plan.by_mass:
-        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
-        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
-        guide = monitor or guide
-    physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
-    if plan.motion.is_constant:
-        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
+    # first of all objects, as in scripts that know it by its number
     marker_body = mbs.AddObject(
         marker_body_object(
             plan.setup.name or "",
@@ -260,6 +252,15 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
         )
     )
     condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers)
+    guide = guiding_force(plan.locks, plan.layout)
+    constraints = {}
+    if not plan.by_mass:
+        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
+        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
+        guide = monitor or guide
+    physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
+    if plan.motion.is_constant:
+        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
     load = None
     if np.any(plan.marker_body_gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))

@@ -14,19 +14,17 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
-from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.fem_interface import import_model
-from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import (
-    ConstantSpeed,
-    Formulation,
-    PrescribedMotion,
-    start_values,
+from exudyn_rotor.multibody.later_stress import StressConversion, accept_stress_modes
+from exudyn_rotor.multibody.swapped_body import (
+    Additions,
+    State,
+    add_swapped_body,
+    numbers,
+    solid_rotor,
 )
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
 
 
 @extends(exudyn.MainSystem)
@@ -124,136 +122,33 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     """
     inputs.main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)
-    _check_prestress(checks.choice(stiffening, "stiffening", LEVELS), prestress)
-    rotation = checks.rotation(referenceRotationMatrix, "referenceRotationMatrix")
-    omega = checks.vector(initialAngularVelocity, "initialAngularVelocity", "rad/s")
-    velocity = checks.vector(initialVelocity, "initialVelocity", "m/s")
-    # what add_rotor checks, under the names of this call
-    arguments = {
-        "position": checks.vector(referencePosition, "referencePosition", "m"),
-        "mass_damping": checks.number(
-            massProportionalDamping, "massProportionalDamping", "1/s", least=0.0
-        ),
-        "stiffness_damping": checks.number(
-            stiffnessProportionalDamping, "stiffnessProportionalDamping", "s", least=0.0
-        ),
-        "markers": checks.choice(markers, "markers", inputs.MARKER_KINDS),
-        "show_markers": checks.flag(showMarkers, "showMarkers"),
-        "condense_markers": checks.flag(condense_markers, "condense_markers"),
-    }
+    checks.flag(showMarkers, "showMarkers")
     checks.flag(verbose, "verbose")
-    if axis is None:
-        axis = SpinAxis(rotation.T @ omega) if np.any(omega) else axis_through_seats(femInterface)
-    rotor = SolidRotor.from_fem_interface(femInterface, axis)
-    offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
-    formulation = Formulation(translation, spin)
-    speed = _speed_along(rotation @ rotor.axis.direction, omega)
-    initial_speed = _initial_speed(formulation, speed)
-    reduced = rotor.reduce(femInterface, prestress=prestress)
-    if formulation.translation_count:
-        velocity = velocity + np.cross(omega, rotation @ reduced.center_of_mass)
-    body = add_rotor(
-        mbs,
-        reduced,
-        name=name,
-        translation=translation,
-        spin=spin,
-        stiffening=stiffening,
-        rotation=rotation,
-        initial_velocity=velocity,
-        initial_speed=initial_speed,
-        gravity=gravity,
-        marker_offsets=offsets,
-        locking=locking,
-        color=color,
-        **arguments,
+    checks.choice(markers, "markers", inputs.MARKER_KINDS)
+    more = Additions.checked(
+        translation, spin, stiffening, locking, markers, condense_markers, prestress
     )
+    start = State.checked(
+        position=("referencePosition", referencePosition),
+        rotation=("referenceRotationMatrix", referenceRotationMatrix),
+        velocity=initialVelocity,
+        omega=initialAngularVelocity,
+        mass_damping=massProportionalDamping,
+        stiffness_damping=stiffnessProportionalDamping,
+        gravity=gravity,
+        color=color,
+    )
+    rotor = solid_rotor(femInterface, axis, start)
+    offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
+    reduced = rotor.reduce(femInterface, prestress=prestress)
+    body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
+    accept_stress_modes(body, StressConversion(femInterface.modeBasis["matrix"], reduced))
     if verbose:
         exudyn.Print(body.report())
-    return _dictionary(body)
-
-
-def _check_prestress(stiffening: str, prestress: Prestress | None) -> None:
-    if prestress is not None and not isinstance(prestress, Prestress):
-        raise TypeError(
-            f"prestress: needs a Prestress, got {checks.shown(prestress)}; a FEMinterface has no "
-            "elements "
-            "to compute one on: use SolidRotor.from_ngsolve(…).prestress() with the same mesh, or "
-            "Prestress.from_matrix(…)"
-        )
-    if stiffening == "full" and prestress is None:
-        raise ValueError(
-            "stiffening='full' needs the static stress: give prestress=, made by "
-            "SolidRotor.from_ngsolve(…).prestress() with the same mesh or by "
-            "Prestress.from_matrix(…), or use stiffening='tilt'"
-        )
-
-
-def axis_through_seats(fem: FEMinterface) -> SpinAxis:
-    """Return the line through the centres of the node sets, for a rotor that starts at rest.
-
-    The seats of bearings and couplings lie on the spin axis. A line that is a mesh axis but for the
-    unevenness of the mesh is taken as that axis.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two seats, or their centres are not on one line.
-    """
-    model = import_model(fem)
-    positions = np.asarray(model.nodes)
-    centers = np.array(
-        [
-            np.average(positions[nodes], axis=0, weights=weights)
-            for nodes, weights in model.node_sets.values()
-        ]
-    ).reshape(-1, 3)
-    mean = centers.mean(axis=0) if len(centers) else np.zeros(3)
-    _, spread, lines = np.linalg.svd(centers - mean)
-    if len(centers) < 2 or spread[0] == 0.0 or np.any(spread[1:] > _UNEVEN * spread[0]):
-        raise ValueError(
-            "the spin axis is not known: the rotor starts at rest, and the centres of its "
-            f"{len(centers)} node sets are not on one line; give axis='x', 'y', 'z' or a "
-            "direction in mesh coordinates"
-        )
-    direction = lines[0] * np.sign(lines[0][np.argmax(np.abs(lines[0]))])
-    nearest = np.eye(3)[np.argmax(direction)]
-    offset = mean - nearest * (nearest @ mean)
-    if np.linalg.norm(direction - nearest) < _UNEVEN:
-        direction = nearest
-        if np.linalg.norm(offset) < _UNEVEN * spread[0]:
-            mean = np.zeros(3)
-    return SpinAxis(direction, mean)
-
-
-# share of the length by which an uneven mesh may put the centres of round faces off the axis
-_UNEVEN = 1e-2
-
-
-def _speed_along(direction: np.ndarray, omega: np.ndarray) -> float:
-    """Return the spin speed of an angular velocity that must lie along the axis."""
-    speed = float(direction @ omega)
-    across = np.linalg.norm(omega - speed * direction)
-    if across > 1e-9 * np.linalg.norm(omega):
-        raise ValueError(
-            f"initialAngularVelocity {omega.tolist()} has {across:.3g} rad/s across the spin axis "
-            f"{direction.tolist()}: a fixed-axis rotor cannot tumble; start it with modal "
-            "velocities of its tilt modes (exudyn_rotor.add_rotor), or use the 3D body"
-        )
-    return speed
-
-
-def _initial_speed(formulation: Formulation, speed: float) -> float | None:
-    """Return the initial speed of a free spin; a prescribed one must agree with what is given."""
-    if formulation.has_spin:
-        return speed
-    _, prescribed, _ = start_values(formulation.spin, "spin")
-    if speed and abs(speed - prescribed) > 1e-9 * abs(prescribed):
-        raise ValueError(
-            f"spin given twice: initialAngularVelocity is {speed} rad/s along the axis, "
-            f"the prescribed spin starts with {prescribed} rad/s"
-        )
-    return None
+    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+        inputs.marker_name(body.name, interface): marker
+        for interface, marker in body.markers.items()
+    }
 
 
 def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
@@ -266,22 +161,6 @@ def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.n
             f"interfaces {', '.join(interfaces) or 'none'}, got {checks.shown(offsets)}"
         )
     return dict(zip(interfaces, table, strict=True))
-
-
-def _dictionary(body: RotorBody) -> dict:
-    result = {
-        "FFRFReducedOrderObjectDict": {
-            "nRigidBody": body.nodes["rigid"],
-            "nGenericODE2": body.nodes["modes"],
-            "oFFRFreducedOrder": body.objects["marker_body"],
-            "loadGravity": body.gravity_load,
-            "rotorBody": body,
-        }
-    }
-    return result | {
-        inputs.marker_name(body.name, interface): marker
-        for interface, marker in body.markers.items()
-    }
 
 
 install()

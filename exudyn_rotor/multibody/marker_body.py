@@ -79,7 +79,7 @@ def marker_body_mesh(
         rigid_nodes[name], point_nodes[name] = [count, count + 1, count + 2], [count + 3]
         count += 4
     if reduced.shapes is not None and reduced.shapes.stress is not None:
-        stress = _stress_columns(reduced.shapes.stress @ selection.T, count)
+        stress = stress_columns(reduced.shapes.stress @ selection.T, count)
     return MarkerBodyMesh(
         positions=frame.points(np.vstack(positions)),
         modes=frame.columns(np.vstack(modes)),
@@ -110,7 +110,7 @@ def around(nodes: list[int]) -> list[int]:
     return nodes if len(nodes) == 3 else [nodes[0] - 3, nodes[0] - 2, nodes[0] - 1]
 
 
-def _stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
+def stress_columns(stress: np.ndarray, node_count: int) -> np.ndarray:
     """Return (n, 6, m) stress as Exudyn's (N, 6 m), zero at virtual nodes."""
     full = np.zeros((node_count, 6 * stress.shape[2]))
     full[: len(stress)] = stress.transpose(0, 2, 1).reshape(len(stress), -1)

@@ -65,6 +65,7 @@ class Record:
 
 def add_recording(body: RotorItems) -> None:
     """Add native sensors of all coordinates and of the forces of locking constraints."""
+    body.check_present()
     if body.record_sensors:
         return
     if body.mbs.systemIsConsistent:

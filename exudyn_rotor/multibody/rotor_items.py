@@ -13,6 +13,7 @@ from exudyn_rotor.multibody.equations import Layout
 from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.multibody.inputs import main_system
 from exudyn_rotor.multibody.locking import Locks
+from exudyn_rotor.multibody.mark import Mark, mark_of, set_mark
 from exudyn_rotor.multibody.plan import Plan
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.theory.axis import SpinAxis
@@ -69,6 +70,7 @@ class RotorItems:
     mesh_node_count: int = 0
     mesh_stress: bool = False
     record_sensors: dict = field(default_factory=dict, init=False)
+    mark: Mark | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         main_system(self.mbs)
@@ -82,6 +84,7 @@ class RotorItems:
             checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
         checks.count(self.mesh_node_count, "mesh_node_count")
         checks.flag(self.mesh_stress, "mesh_stress")
+        object.__setattr__(self, "mark", set_mark(self.mbs, self.objects["physics"]))
 
     @property
     def name(self) -> str | None:
@@ -158,8 +161,18 @@ class RotorItems:
             for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
         )
 
+    def check_present(self) -> None:
+        """Raise ValueError where the system no longer holds this rotor."""
+        if self.mark is None or mark_of(self.mbs, self.objects["physics"]) != self.mark:
+            raise ValueError(
+                f"mbs: no longer holds rotor {self.name!r} under its numbers: the system was "
+                "reset, or objects were deleted; use the RotorBody that adding the rotor returned "
+                "last"
+            )
+
     def check_assembled(self) -> None:
-        """Raise ValueError where the system has no state yet."""
+        """Raise ValueError where the system does not hold this rotor, or has no state yet."""
+        self.check_present()
         if not self.mbs.systemIsConsistent:
             raise ValueError(
                 f"mbs: the system of rotor {self.name!r} has no state; call mbs.Assemble() first"
@@ -173,6 +186,7 @@ class RotorItems:
         TypeError, ValueError
             For an interface without a marker; the message lists the known ones.
         """
+        self.check_present()
         if checks.label(interface, "interface") not in self.markers:
             known = ", ".join(self.markers) or "none"
             raise ValueError(

@@ -217,6 +217,7 @@ def _settings(
     body: RotorItems, options: Mapping[str, Any], *, shown: bool = True
 ) -> dict[str, Any]:
     """Return the settings of a sensor, stored internally by default; those `shown` are drawn."""
+    body.check_present()
     known = ("name", "storeInternal", "writeToFile", "fileName", *(["visualization"] * shown))
     for option in options:
         if option not in known:

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import exudyn
 import numpy as np
 from exudyn import OutputVariableType, SystemContainer
 
@@ -36,6 +37,9 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "Invariants": lambda w: w.selection.invariants,
     "ModeBasis": lambda w: er.free_modes(w.solid, 2),
     "Motion": lambda w: w.motion,
+    "ObjectFixedAxisFFRFreducedOrderInterface": lambda w: (
+        er.ObjectFixedAxisFFRFreducedOrderInterface(w.fem, axis="z")
+    ),
     "PointMass": lambda w: w.solid.add_point_mass([0.0, 0.0, 0.1], 0.1).point_masses[0],
     "PrescribedMotion": lambda w: er.PrescribedMotion.run_up(0.0, 10.0, 1.0),
     "Prestress": lambda w: w.prestress,
@@ -72,6 +76,15 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "axis": "z",
         "superElementRigidMarkersOffsets": np.zeros((2, 3)),
     },
+    "ObjectFixedAxisFFRFreducedOrderInterface": lambda w: {"femInterface": w.fem, "axis": "z"},
+    "*.AddObjectFFRFreducedOrder": lambda w: {"mbs": w.mbs, "rotationMatrixRef": np.eye(3)},
+    "*.AddObjectFFRFreducedOrderWithUserFunctions": lambda w: {
+        "exu": exudyn,
+        "mbs": w.mbs,
+        "eulerParametersRef": [1.0, 0.0, 0.0, 0.0],
+    },
+    "*.SaveToFile": lambda w: {"fileName": w.folder / "interface.npz"},
+    "*.LoadFromFile": lambda w: {"fileName": w.stored(w.reduced)},
     "add_rotor": lambda w: {
         "mbs": w.mbs,
         "reduced": w.reduced,

@@ -325,6 +325,7 @@ def _check(mbs: exudyn.MainSystem, body: RotorBody) -> None:
     checks.instance(body, "body", RotorBody, how)
     if body.mbs is not mbs:
         raise ValueError(f"rotor {body.name!r} belongs to another mbs")
+    body.check_present()
     if not mbs.systemIsConsistent:
         raise ValueError("the system is not assembled: call mbs.Assemble() first")
     if mbs.systemData.ODE1Size():

@@ -1,0 +1,98 @@
+"""Stress modes that a script gives a flexible body after it was added.
+
+Scripts set ``outputVariableModeBasis`` of Exudyn's body with one set of six columns for every mode
+of the ``FEMinterface``. The marker body has rigid motions beside these modes, the modes themselves
+mass-orthonormal, and virtual nodes, so such columns are converted to its coordinates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import wraps
+from weakref import WeakKeyDictionary
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.mark import mark_of
+from exudyn_rotor.multibody.marker_body import stress_columns
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+
+_PARAMETER = "outputVariableModeBasis"
+
+
+@dataclass(frozen=True, eq=False)
+class StressConversion:
+    """From stress of a FEMinterface's modes to that of a reduced rotor's columns.
+
+    Attributes
+    ----------
+    modes : ndarray, shape (3n, r)
+        The modes of the FEMinterface.
+    reduced : ReducedRotor
+        Made of these modes, with its shapes.
+    """
+
+    modes: np.ndarray
+    reduced: ReducedRotor
+
+    def columns(self, stress: np.ndarray) -> np.ndarray:
+        """Return the stress (n, 6, k) of the reduced rotor's columns from that of the modes.
+
+        Rigid motions have no stress, so the modes' shares in the elastic columns suffice.
+        """
+        shapes = self.reduced.shapes
+        rigid = len(self.reduced.rigid_kinds)
+        known = np.hstack([shapes.matrix[:, :rigid], self.modes])
+        shares = np.linalg.lstsq(known, shapes.matrix[:, rigid:], rcond=_DEPENDENT)[0]
+        by_mode = stress.reshape(len(shapes.nodes), -1, 6).transpose(0, 2, 1)
+        zero = np.zeros((len(shapes.nodes), 6, rigid))
+        return np.concatenate([zero, by_mode @ shares[rigid:]], axis=2)
+
+
+_DEPENDENT = 1e-10  # singular values below this share of the largest: dependent modes
+
+# for every system: physics object's mark → its marker body, virtual nodes and conversion
+_accepting: WeakKeyDictionary[exudyn.MainSystem, dict] = WeakKeyDictionary()
+
+
+def accept_stress_modes(body: RotorBody, conversion: StressConversion) -> None:
+    """Let ``mbs.SetObjectParameter`` convert stress modes that are set for this body later."""
+    marker_body, T = int(body.objects["marker_body"]), body.selection.T
+    physics = body.objects["physics"]
+    entry = (physics, marker_body, conversion, T)
+    _accepting.setdefault(body.mbs, {})[body.mark] = entry
+
+
+def _converted(mbs: exudyn.MainSystem, number: object, value: object) -> object:
+    """Return stress modes for a marker body; anything else as it was given."""
+    for mark, (physics, marker_body, conversion, T) in _accepting.get(mbs, {}).items():
+        if int(number) != marker_body or mark_of(mbs, physics) != mark:
+            continue
+        node_count, mode_count = len(conversion.reduced.shapes.nodes), conversion.modes.shape[1]
+        there = np.shape(mbs.GetObjectParameter(marker_body, "modeBasis"))
+        if np.shape(value) == (there[0] // 3, 6 * there[1]) or np.size(value) == 0:
+            return value
+        stress = checks.array(
+            value, f"value: {_PARAMETER}", "Pa", shape=(node_count, 6 * mode_count)
+        )
+        return stress_columns(conversion.columns(stress) @ T, there[0] // 3)
+    return value
+
+
+_set_object_parameter = exudyn.MainSystem.SetObjectParameter
+
+
+@wraps(_set_object_parameter)
+def SetObjectParameter(
+    self: exudyn.MainSystem, objectNumber: object, parameterName: str, value: object
+) -> None:
+    """Set a parameter as Exudyn does; stress modes for a fixed-axis rotor are converted."""
+    if parameterName == _PARAMETER and self in _accepting:
+        value = _converted(self, objectNumber, value)
+    _set_object_parameter(self, objectNumber, parameterName, value)
+
+
+exudyn.MainSystem.SetObjectParameter = SetObjectParameter
