@@ -22,6 +22,7 @@ SCRIPTS = {
     "set_up": Script("speed.set_up", "time of the set-up"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
+    "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),

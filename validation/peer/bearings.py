@@ -120,7 +120,8 @@ def squeeze_film(script: Script) -> None:
     body = spinning(script)
 
     def law(mbs, t, item, u, r, v, w, k, d, first, second, offset):
-        force = [1e6 * (1.0 + 1e6 * float(np.dot(u, u))) * x + 1e3 * y for x, y in zip(u, v)]
+        u, v = np.array(u), np.array(v)
+        force = 1e6 * (1.0 + 1e6 * (u @ u)) * u + 1e3 * v
         torque = [1e3 * r[0] + w[0], 1e3 * r[1] + w[1], 0.0]
         return [*force, *torque]
 

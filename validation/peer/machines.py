@@ -19,7 +19,7 @@ from exudyn.itemInterface import (
 from exudyn.rigidBodyUtilities import InertiaCuboid, RotationMatrixY
 
 from validation.peer import parts
-from validation.peer.bearings import SPEED, WEIGHT, on_springs, spinning
+from validation.peer.bearings import WEIGHT, on_springs, spinning
 from validation.peer.scene import Flexible, Scene, Script
 
 COUPLING = "TestModels/superElementRigidJointTest"
@@ -96,14 +96,16 @@ def torsional_coupling(script: Script) -> None:
     second = spinning(script, referencePosition=[0.0, 0.0, 0.6])
     on_springs(script, first, {end: first.rigid_marker(end) for end in parts.ENDS})
     for end in parts.ENDS:
-        seat = parts.mean_position(second.fem, end) + [0.0, 0.0, 0.6]
+        seat = parts.mean_position(second.fem, end) + np.array([0.0, 0.0, 0.6])
         marker = second.rigid_marker(end)
         script.spring(script.ground_marker(seat), marker, [1e6] * 3, [1e3] * 3)
     ends = first.rigid_marker("right"), second.rigid_marker("left")
     script.mbs.AddObject(
         TorsionalSpringDamper(
             markerNumbers=list(ends),
-            nodeNumber=script.mbs.AddNode(NodeGenericData(initialCoordinates=[0.0], numberOfDataCoordinates=1)),
+            nodeNumber=script.mbs.AddNode(
+                NodeGenericData(initialCoordinates=[0.0], numberOfDataCoordinates=1)
+            ),
             stiffness=5e3,
             damping=5.0,
         )

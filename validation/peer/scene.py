@@ -11,10 +11,10 @@ import exudyn
 import numpy as np
 from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import (
+    LoadMassProportional,
     MarkerBodyMass,
     MarkerSuperElementPosition,
     MarkerSuperElementRigid,
-    LoadMassProportional,
     SensorMarker,
     SensorSuperElement,
 )
