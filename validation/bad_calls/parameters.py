@@ -186,6 +186,7 @@ BY_NAME: dict[str, Kind] = {
     "reference": v.VECTOR,
     "referencePosition": v.VECTOR,
     "referenceRotationMatrix": _SQUARE,
+    "refine": v.FLAG,
     "residual": _TOLERANCE,
     "rest": _FIELD,
     "rigidBodyNodeType": v.WORD.but(another_word="NodeType.Rotation"),

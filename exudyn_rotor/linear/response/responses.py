@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,11 +13,14 @@ from matplotlib.axes import Axes
 from exudyn_rotor import checks
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
+from exudyn_rotor.linear.response.refinement import peak_between
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import Result, numbers, storable, words
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
+# neighbours of a peak below this share of it: it may be higher between them
+_RESOLVED = 0.7
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
 HERTZ = 1.0 / (2.0 * np.pi)
 
@@ -107,10 +111,33 @@ class Response(Result, ABC):
         return forward + backward, forward - backward
 
     def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
-        """Return where the major semi-axis is largest [rad/s], and its size [m]."""
+        """Return the highest resonance: where the major semi-axis is largest [rad/s], its size [m].
+
+        Between three points by a parabola of 1/size². A warning tells where they are too far
+        apart to show a resonance; ``refine=True`` of the analysis adds points there.
+
+        Raises
+        ------
+        ValueError
+            If the motion has no maximum between the first and the last point.
+        """
         major, _ = self.semi_axes(place, order)
-        index = int(major.argmax())
-        return float(self.abscissa[index]), float(major[index])
+        inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
+        if inner.size == 0:
+            raise ValueError(
+                f"{self._place(place)}: the motion has no peak between {self.abscissa[0]:g} and "
+                f"{self.abscissa[-1]:g} rad/s; extend the range, or compute with refine=True"
+            )
+        index = int(inner[major[inner].argmax()])
+        near = slice(index - 1, index + 2)
+        if major[near].min() < _RESOLVED * major[index]:
+            warnings.warn(
+                f"{self._place(place)}: the points around the peak at {self.abscissa[index]:g} "
+                "rad/s are too far apart to give its size; compute with refine=True",
+                UserWarning,
+                stacklevel=2,
+            )
+        return peak_between(self.abscissa[near], major[near])
 
     def orbit(
         self, value: float, place: str | None = None, order: int | None = None, points: int = 181
