@@ -182,15 +182,17 @@ class World:
 
     @cached_property
     def unbalance(self) -> er.UnbalanceResponse:
-        """The response to an unbalance over four speeds."""
-        load = er.Unbalance("left", 1e-4)
-        return er.unbalance_response(self.reduced, SPEEDS, [load], supports=self.supports)
+        """The response to an unbalance up to above its first critical speed."""
+        load, speeds = er.Unbalance("left", 1e-4), np.linspace(10.0, 2000.0, 9)
+        given = {"supports": self.supports, "refine": True}
+        return er.unbalance_response(self.reduced, speeds, [load], **given)
 
     @cached_property
     def harmonic(self) -> er.HarmonicResponse:
-        """The response to a force over four frequencies."""
-        load = er.HarmonicForce("left", [1.0, 0.0, 0.0])
-        return er.harmonic_response(self.reduced, SPEEDS, load, supports=self.supports)
+        """The response to a force up to above its first resonance."""
+        load, frequencies = er.HarmonicForce("left", [1.0, 0.0, 0.0]), np.linspace(10.0, 2000.0, 9)
+        given = {"supports": self.supports, "refine": True}
+        return er.harmonic_response(self.reduced, frequencies, load, **given)
 
     @cached_property
     def stability(self) -> er.Stability:
