@@ -41,14 +41,20 @@ FORMULATIONS = {
     "constant speed, shaken": Formulation(SHAKE, ConstantSpeed(1.3, 0.2)),
     "prescribed spin, shaken": Formulation(SHAKE, SWING),
     "free spin, shaken": Formulation(SHAKE, "free"),
-}
-FORCES = {
-    True: "forces_of_free_spin",
-    False: "forces_of_driven_spin",
+    **{
+        f"{spin_name}, {translation}": Formulation(translation, spin)
+        for translation in ("free", "in-plane")
+        for spin_name, spin in (
+            ("free spin", "free"),
+            ("constant speed", ConstantSpeed(1.3, 0.2)),
+            ("prescribed spin", SWING),
+        )
+    },
 }
 
 
 def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
+    """Return a motion whose invariants have no zeros: all its coordinates are coupled."""
     invariants, _, _ = random_invariants(seed, 3)
     terms = stiffening(invariants, "tilt")
     return Motion(
@@ -56,13 +62,12 @@ def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
     )
 
 
-def kernel_forces(kernel: Kernel, motion: Motion, t: float, q: list, q_t: list) -> np.ndarray:
-    form = motion.formulation
-    if form.is_constant_speed:
-        if not motion.has_body_force:
-            return np.zeros(motion.size)
-        return kernel.body_force_at_constant_speed(t, q, q_t)
-    return getattr(kernel, FORCES[form.has_spin])(t, q, q_t)
+def kernel_mass(kernel: Kernel, motion: Motion, t: float, q: list) -> np.ndarray:
+    """Return the mass matrix: what varies by the kernel, the rest as it is at rest."""
+    mass = motion.mass_matrix(0.0, np.zeros(motion.size))
+    values = kernel.mass_entries(t, q)
+    mass[kernel.rows, kernel.columns] = mass[kernel.columns, kernel.rows] = values
+    return mass
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS)
@@ -73,19 +78,40 @@ def kernel_forces(kernel: Kernel, motion: Motion, t: float, q: list, q_t: list) 
 )
 @settings(max_examples=15, deadline=None, derandomize=True)
 def test_kernel_equals_the_plain_equations(formulation, seed, gravity, time):
+    """Sums of the same products in another order: 1e-16 of their largest, some tens of them."""
     motion = motion_of(formulation, seed, gravity)
     kernel = Kernel(motion, range(motion.size), motion.size)
     constant = constant_part(motion)
     for q, q_t in np.random.default_rng(seed).normal(size=(2, 2, motion.size)):
-        forces = kernel_forces(kernel, motion, time, q.tolist(), q_t.tolist())
+        forces = kernel.forces(time, q.tolist(), q_t.tolist())
         total = forces + constant.force - constant.stiffness @ q - constant.damping @ q_t
         expected = motion.forces(time, q, q_t)
         assert total == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
-        if formulation.has_spin:
-            kernel.update(q.tolist())
-            mass = motion.mass_matrix(time, q)
-            assert kernel.spin_inertia == pytest.approx(mass[0, 0], rel=1e-12)
-            assert kernel.spin_coupling == pytest.approx(mass[0, 1:], rel=1e-12, abs=1e-12)
+        mass = motion.mass_matrix(time, q)
+        found = kernel_mass(kernel, motion, time, q.tolist())
+        assert found == pytest.approx(mass, abs=1e-12 * np.abs(mass).max())
+        by_q, by_v = motion.jacobian(time, q, q_t)
+        slopes = -2.0 * (by_q + constant.stiffness) - 3.0 * (by_v + constant.damping)
+        found = kernel.jacobian(time, q.tolist(), q_t.tolist(), 2.0, 3.0)
+        assert found == pytest.approx(slopes, abs=1e-12 * np.abs(slopes).max())
+
+
+@pytest.mark.parametrize("name", ["free spin, free", "prescribed spin, free", "free spin, shaken"])
+def test_kernel_knows_what_it_has_evaluated(name):
+    """Mass matrix and forces share products; in any order they are those of their arguments."""
+    motion = motion_of(FORMULATIONS[name], 5, 1.0)
+    used = Kernel(motion, range(motion.size), motion.size)
+    states = np.random.default_rng(8).normal(size=(4, 2, motion.size)).tolist()
+    for (q, q_t), (other, _), time in zip(states, states[::-1], (0.1, 0.2, 0.2, 0.3), strict=True):
+        used.forces(time, q, q_t)
+        used.mass_entries(0.5 * time, other)
+        used.forces(0.5 * time, other, q_t)
+        used.jacobian(0.5 * time, other, q_t, 1.0, 1.0)
+        fresh = Kernel(motion, range(motion.size), motion.size)
+        mass = used.mass_entries(time, q).copy()
+        forces = used.forces(time, q, q_t).copy()
+        assert mass == pytest.approx(fresh.mass_entries(time, q), rel=1e-14)
+        assert forces == pytest.approx(fresh.forces(time, q, q_t), rel=1e-14)
 
 
 @pytest.mark.parametrize("translation", ["free", "in-plane"])
@@ -104,7 +130,7 @@ def test_unknowns_may_stand_among_others(translation):
     unknowns = np.array([*range(count), 5, 6, 7, 8])
     kernel, constant = Kernel(motion, unknowns, 9), constant_part(motion)
     q, q_t = np.random.default_rng(5).normal(size=(2, 9))
-    forces = kernel.forces_of_free_spin(0.0, q.tolist(), q_t.tolist())
+    forces = kernel.forces(0.0, q.tolist(), q_t.tolist())
     assert not forces[[i for i in range(9) if i not in unknowns]].any()
     own, rate = q[unknowns], q_t[unknowns]
     total = forces[unknowns] + constant.force - constant.stiffness @ own - constant.damping @ rate
@@ -113,7 +139,15 @@ def test_unknowns_may_stand_among_others(translation):
 
 
 @pytest.mark.parametrize(
-    "formulation", [ANGLE, FORMULATIONS["prescribed spin, shaken"], Formulation("free", "free")]
+    "formulation",
+    [
+        ANGLE,
+        FORMULATIONS["prescribed spin, shaken"],
+        FORMULATIONS["constant speed, shaken"],
+        FORMULATIONS["free spin, free"],
+        FORMULATIONS["free spin, in-plane"],
+        FORMULATIONS["prescribed spin, free"],
+    ],
 )
 def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     """Of the forces that Exudyn gets from Python; what is native it knows itself.
@@ -138,6 +172,24 @@ def test_jacobian_for_the_solver_is_the_derivative_of_its_forces(formulation):
     found = scene.jacobianUserFunction(None, time, 0, q, q_t, 2.0, 3.0)
     expected = -2.0 * slopes[:, :size] - 3.0 * slopes[:, size:]
     assert found == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(
+    "name", ["free spin", "free spin, in-plane", "constant speed, free", "prescribed spin, free"]
+)
+def test_mass_matrix_for_the_solver(name):
+    """The whole matrix, among coordinates that are locked by mass."""
+    motion = motion_of(FORMULATIONS[name], 6, 0.0)
+    size = motion.size + 2
+    unknowns = np.array([*range(1, motion.size - 2), *range(size - 3, size)])
+    locked = np.setdiff1d(np.arange(size), unknowns)
+    layout = Layout(size, unknowns, np.isin(np.arange(size), locked) * 1e6, *np.zeros((2, size)))
+    scene = user_function_object(motion, layout, [0], None)
+    for q in np.random.default_rng(3).normal(size=(2, size)):
+        found = scene.massMatrixUserFunction(None, 0.4, 0, q.tolist(), None).Convert2DenseMatrix()
+        expected = layout.spread(motion.mass_matrix(0.4, q[unknowns]), layout.lock_mass)
+        assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected[1:-1, 1:-1]).max())
+        assert np.count_nonzero(found[locked]) == 2
 
 
 def test_recommended_settings_follow_the_accuracy():

@@ -73,19 +73,14 @@ def user_function_object(
     prescribed motion.
     """
     rest = np.zeros(motion.size)
-    functions = {"jacobianUserFunction": _jacobian(motion, layout)}
+    kernel, functions = Kernel(motion, layout.unknowns, layout.size), {}
     mass = layout.spread(motion.mass_matrix(0.0, rest), layout.lock_mass)
-    if motion.is_coupled:
-        functions["massMatrixUserFunction"] = _coupled_mass(motion, layout)
-        forces = _coupled_forces(motion, layout)
-    else:
-        kernel = Kernel(motion, layout.unknowns, layout.size)
-        if motion.formulation.has_spin:
-            mass, functions["massMatrixUserFunction"] = _mass_of_free_spin(mass, kernel, layout)
-        elif motion.formulation.is_constant_speed:
-            del functions["jacobianUserFunction"]
-        forces = _forces(motion, kernel)
-    functions["forceUserFunction"] = _with_guide(forces, locked_force)
+    if kernel.rows.size:
+        mass, functions["massMatrixUserFunction"] = _varying_mass(mass, kernel, layout.size)
+    functions["jacobianUserFunction"] = _jacobian(kernel)
+    functions["forceUserFunction"] = _with_guide(
+        kernel.forces if kernel.has_forces else None, locked_force
+    )
     return ObjectGenericODE2(
         nodeNumbers=nodes,
         massMatrix=mass,
@@ -107,15 +102,6 @@ def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
     }
 
 
-def _forces(motion: Motion, kernel: Kernel) -> StateForce | None:
-    form = motion.formulation
-    if form.has_spin:
-        return kernel.forces_of_free_spin
-    if not form.is_constant_speed:
-        return kernel.forces_of_driven_spin
-    return kernel.body_force_at_constant_speed if motion.has_body_force else None
-
-
 def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callable:
     """Return the user function of the forces, with those on locked coordinates."""
     if guide is None:
@@ -125,78 +111,43 @@ def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callabl
     return lambda mbs, t, item, q, q_t: guide(t) + forces(t, q, q_t)
 
 
-def _mass_of_free_spin(
-    start: np.ndarray, kernel: Kernel, layout: Layout
+def _varying_mass(
+    start: np.ndarray, kernel: Kernel, size: int
 ) -> tuple[exudyn.MatrixContainer, Callable]:
-    """Return the mass matrix and its user function: only row and column of θ vary.
+    """Return the mass matrix and its user function: only some entries vary.
 
     Exudyn takes entries (row, column, value) faster than a matrix.
     """
-    size, first = layout.size, layout.size - kernel.spin_coupling.size
-    spin = kernel.spin
+    above, beside = kernel.rows, kernel.columns
+    off = above != beside
     fixed = start.copy()
-    fixed[spin, :] = fixed[:, spin] = 0.0
+    fixed[above, beside] = fixed[beside, above] = 0.0
     rows, columns = np.nonzero(fixed)
-    modes, count = np.arange(first, size), size - first
-    table = np.zeros((rows.size + 1 + 2 * count, 3))
-    table[:, 0] = np.concatenate([rows, [spin], np.full(count, spin), modes])
-    table[:, 1] = np.concatenate([columns, [spin], modes, np.full(count, spin)])
+    table = np.zeros((rows.size + above.size + np.count_nonzero(off), 3))
+    table[:, 0] = np.concatenate([rows, above, beside[off]])
+    table[:, 1] = np.concatenate([columns, beside, above[off]])
     table[: rows.size, 2] = fixed[rows, columns]
-    across, down = table[-2 * count : -count, 2], table[-count:, 2]
-    spin_entry = rows.size
+    one = table[rows.size : rows.size + above.size, 2]
+    mirrored = table[rows.size + above.size :, 2]
+    skipped = above.size - mirrored.size  # the only diagonal entry is the first
     container = exudyn.MatrixContainer
 
-    def entries() -> exudyn.MatrixContainer:
-        table[spin_entry, 2] = kernel.spin_inertia
-        across[:] = down[:] = kernel.spin_coupling
+    def mass_matrix(mbs, t, item, q, q_t):
+        values = kernel.mass_entries(t, q)
+        one[:], mirrored[:] = values, values[skipped:]
         matrix = container()
         matrix.SetWithSparseMatrixCSR(size, size, table, useDenseMatrix=False)
         return matrix
 
-    def mass_matrix(mbs, t, item, q, q_t):
-        kernel.update(q)
-        return entries()
-
-    kernel.update([0.0] * size)
-    return entries(), mass_matrix
+    return mass_matrix(None, 0.0, None, [0.0] * size, None), mass_matrix
 
 
-def _coupled_mass(motion: Motion, layout: Layout) -> Callable:
-    places = np.ix_(layout.unknowns, layout.unknowns)
-    mass = np.diag(layout.lock_mass)
+def _jacobian(kernel: Kernel) -> Callable:
+    """Return the Jacobian of the user force; Exudyn adds that of its own matrices.
 
-    def mass_matrix(mbs, t, item, q, q_t):
-        mass[places] = motion.mass_matrix(t, np.array(q)[layout.unknowns])
-        return mass
-
-    return mass_matrix
-
-
-def _coupled_forces(motion: Motion, layout: Layout) -> StateForce:
-    """Return the forces of the general equations, less those that Exudyn evaluates itself."""
-    constant = constant_part(motion)
-
-    def forces(t, q, q_t):
-        values, rates = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
-        force = np.zeros(layout.size)
-        by_exudyn = constant.force - constant.stiffness @ values - constant.damping @ rates
-        force[layout.unknowns] = motion.forces(t, values, rates) - by_exudyn
-        return force
-
-    return forces
-
-
-def _jacobian(motion: Motion, layout: Layout) -> Callable:
-    constant = constant_part(motion)
-    places = np.ix_(layout.unknowns, layout.unknowns)
-    matrix = np.zeros((layout.size, layout.size))
-
-    def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
-        values, rates = np.array(q)[layout.unknowns], np.array(q_t)[layout.unknowns]
-        by_q, by_v = motion.jacobian(t, values, rates)
-        by_q += constant.stiffness
-        by_v += constant.damping
-        matrix[places] = -factor_q * by_q - factor_v * by_v
-        return matrix
-
-    return jacobian
+    It is needed even where it is zero: without it, Exudyn differentiates the object numerically
+    with all its matrices, and calls the user force for every coordinate.
+    """
+    return lambda mbs, t, item, q, q_t, factor_q, factor_v: kernel.jacobian(
+        t, q, q_t, factor_q, factor_v
+    )

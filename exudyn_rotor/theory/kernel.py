@@ -1,13 +1,18 @@
 """The equations of :class:`~exudyn_rotor.theory.motion.Motion` in few numpy calls per step.
 
 Motion states every term once and serves every case. A time step of a small system is not made of
-floating-point work but of calls, so this module stacks the invariants: one matrix product gives
+floating-point work but of calls, so this module stacks the invariants. With the deformed rotor's
+unbalance ``u = mχ* + S*ζ`` (65), one matrix product gives the rows
 
-    [h + Ĉζ; g + Wζ] = [[Ĉ, h], [W, g]] [ζ; 1]
+    centrifugal     h + Ĉζ     −ẽu
+    Euler           g + Wζ      u
+    Coriolis        2Gζ̇         2S*ζ̇
 
-for mass matrix and forces at once, into memory that is reused. What is linear with constant
-coefficients is not here at all: :func:`constant_part` hands it to the host as matrices. Tests hold
-both modules together to round-off.
+of mass matrix and forces, and ``(ω², −ω̇, −ω)`` times these rows the inertia forces on the modes
+(87) and, turned by A, on the translations (66). What depends on the angle is linear in
+``(1, cosθ, sinθ)``: one more product. What is linear with constant coefficients is not here at all:
+:func:`constant_part` hands it to the host as matrices. Tests hold both modules together to
+round-off.
 """
 
 from __future__ import annotations
@@ -15,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -57,12 +63,12 @@ def constant_part(motion: Motion) -> ConstantPart:
 
 
 class Kernel:
-    """Mass matrix and forces of a motion without translational coupling, less the constant part.
+    """Mass matrix, forces and Jacobian of a dense motion, less the constant part.
 
     Parameters
     ----------
     motion : Motion
-        Dense, and with ``motion.is_coupled`` False.
+        With dense invariants.
     unknowns : sequence of int
         Places of the motion's unknowns among `size` coordinates; the modes come last, in a row.
     size : int
@@ -74,19 +80,18 @@ class Kernel:
 
     Attributes
     ----------
-    spin : int
-        Place of an unknown θ.
-    spin_inertia : float
-        (85) of the last :meth:`update`.
-    spin_coupling : ndarray, shape (m,)
-        (84) of the last :meth:`update`.
+    rows, columns : ndarray of int
+        Places of the entries of the mass matrix that vary, on or above the diagonal or its mirror
+        image; the inertia about the axis (85), if it is an unknown's, is the first.
+    has_modal_forces, has_forces : bool
+        Whether the constant part leaves out inertia forces on the modes, and any force at all.
     """
 
     def __init__(self, motion: Motion, unknowns: Sequence[int], size: int) -> None:
         checks.instance(motion, "motion", Motion)
         inv, count = motion.invariants, motion.invariants.size
-        if inv.is_sparse or motion.is_coupled:
-            raise ValueError("motion: needs dense invariants and translations without coupling")
+        if inv.is_sparse:
+            raise ValueError("motion: needs dense invariants")
         size = checks.count(size, "size", least=motion.size)
         places = checks.whole_numbers(unknowns, "unknowns", most=size - 1)
         modes = np.arange(size - count, size)
@@ -95,102 +100,267 @@ class Kernel:
                 f"unknowns: need {motion.size} places, the last {count} of {size} for the modes, "
                 f"got {checks.shown(places.tolist())}"
             )
-        self._motion = motion
-        self._first = size - count
-        self.spin = int(unknowns[motion.formulation.translation_count])
-        terms = motion.spin_terms
-        self._table = np.block([[terms.C_hat, inv.h[:, None]], [terms.W, inv.g[:, None]]])
-        self._state = np.ones(count + 1)
-        self._zeta = self._state[:count]
-        self._products = np.empty(2 * count)
-        self._centrifugal, self.spin_coupling = self._products[:count], self._products[count:]
-        self._h = inv.h
-        self._rate = np.empty(count)
-        self._coriolis, self._twice_G = np.empty(count), terms.damping(1.0)
-        self._B = terms.B if np.any(terms.B) else None
-        self._force = np.zeros(size)
+        form = motion.formulation
+        self._motion, self._count, self._first = motion, count, size - count
+        self._translations = np.asarray(places[motion.translations], dtype=int)
+        self._spin = int(places[form.translation_count]) if form.has_spin else None
+        self.has_modal_forces = not form.is_constant_speed
+        self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
+        self._stack(motion)
+        self._turning = _Turning(motion)
+        self._place_mass(modes)
+        self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
         self._modal_force = self._force[self._first :]
+        self._factors = np.zeros(3)
         self._last: list | None = None
-        self._body_force = _BodyForce(motion) if motion.has_body_force else None
-        self.spin_inertia = inv.Theta
+        self._time = math.nan
 
-    def update(self, q: list) -> None:
-        """Evaluate the products of the modal coordinates; free where they are known already."""
-        if q == self._last:
-            return
-        self._last = q
-        self._zeta[:] = q[self._first :]
-        np.dot(self._table, self._state, out=self._products)
-        # (85): Θ + 2hᵀζ + ζᵀĈζ
-        change = self._zeta.dot(self._centrifugal) + self._zeta.dot(self._h)
-        self.spin_inertia = self._motion.invariants.Theta + change
+    def _stack(self, motion: Motion) -> None:
+        """Arrange the invariants in one table for ``(ζ, 1, ζ̇)``, three rows of the docstring."""
+        inv, terms, count = motion.invariants, motion.spin_terms, self._count
+        e, S1, u = skew(inv.direction), motion.S1, motion.static_unbalance[:, None]
+        none, zero = np.zeros((count, count)), np.zeros((count, 1))
+        modal = [
+            np.hstack([terms.C_hat, inv.h[:, None], none]),
+            np.hstack([terms.W, inv.g[:, None], none]),
+            np.hstack([none, zero, 2.0 * terms.G]),
+        ]
+        wide = np.zeros((3, count))
+        unbalance = [
+            np.hstack([-e @ S1, -e @ u, wide]),
+            np.hstack([S1, u, wide]),
+            np.hstack([wide, np.zeros((3, 1)), 2.0 * S1]),
+        ]
+        if not motion.is_coupled:
+            unbalance = [np.zeros((0, 2 * count + 1))] * 3
+        blocks = [np.vstack(pair) for pair in zip(modal, unbalance, strict=True)]
+        width = len(blocks[0])
+        self._table = np.vstack(blocks)
+        self._position_table = np.ascontiguousarray(self._table[: 2 * width, : count + 1])
+        self._products = np.zeros((3, width))
+        self._flat, self._position_part = (
+            self._products.ravel(),
+            self._products.ravel()[: 2 * width],
+        )
+        self._loads = np.zeros(width)
+        self._state = np.zeros(2 * count + 1)
+        self._state[count] = 1.0
+        self._position_state = self._state[: count + 1]
+        self._zeta, self._rate = self._state[:count], self._state[count + 1 :]
+        self._centrifugal, self._spin_coupling = self._products[:2, :count]
+        self._unbalance = self._products[1, count:]
+        self._B = terms.B if np.any(terms.B) else None
+        self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
 
-    def forces_of_free_spin(self, t: float, q: list, q_t: list) -> np.ndarray:
-        """Return (86) and (87) for an unknown θ, shape (size,); valid until the next call."""
-        self.update(q)
-        omega, rate = q_t[self.spin], self._rate
-        rate[:] = q_t[self._first :]
-        np.dot(self._twice_G, rate, out=self._coriolis)
-        torque = -2.0 * omega * self._centrifugal.dot(rate)
+    def _place_mass(self, modes: np.ndarray) -> None:
+        """Say where the entries of the mass matrix stand that vary, and cut their values."""
+        moved, turning = self._translations, self._turning
+        blocks = []
+        if self._spin is not None:
+            blocks += [([self._spin], [self._spin]), ([self._spin], modes)]
+            if self._motion.is_coupled:
+                blocks.append((moved, [self._spin]))
+        if self._motion.is_coupled:
+            blocks.append((moved, modes[turning.coupled]))
+        grids = [[part.ravel() for part in np.meshgrid(*block, indexing="ij")] for block in blocks]
+        empty = np.zeros(0, dtype=int)
+        self.rows, self.columns = (
+            np.concatenate([empty, *(grid[side] for grid in grids)]).astype(int) for side in (0, 1)
+        )
+        self._mass = np.zeros(len(self.rows))
+        ends = np.cumsum([0, *(len(grid[0]) for grid in grids)])
+        self._mass_parts = [self._mass[a:b] for a, b in pairwise(ends)]
+
+    def mass_entries(self, t: float, q: list) -> np.ndarray:
+        """Return the entries at :attr:`rows` and :attr:`columns`; valid until the next call."""
+        self._update(t, q)
+        parts, inv = self._mass_parts, self._motion.invariants
+        if self._spin is not None:
+            # (85): Θ + 2hᵀζ + ζᵀĈζ
+            change = self._zeta.dot(self._centrifugal) + self._zeta.dot(inv.h)
+            parts[0][0] = inv.Theta + change
+            parts[1][:] = self._spin_coupling
+        if self._motion.is_coupled:
+            if self._spin is not None:
+                np.dot(self._turning.A, self._unbalance, out=parts[2])
+            parts[-1][:] = self._turning.coupling
+        return self._mass
+
+    def forces(self, t: float, q: list, q_t: list) -> np.ndarray:
+        """Return what :meth:`Motion.forces` has beside the constant part, shape (size,).
+
+        (66), (86), (87) and the prescribed accelerations of (108); valid until the next call.
+        """
+        omega, loads = self._update_with_rates(t, q, q_t), self._loads
+        if self.has_modal_forces:
+            self._modal_force[:] = loads[: self._count]
+        turning, torque = self._turning, 0.0
+        if self._spin is not None:
+            torque = -2.0 * omega * float(self._centrifugal.dot(self._rate))
+            if self._B is not None:
+                torque -= self._rate.dot(self._B.dot(self._rate))
+        if turning.has_body_force:
+            if self.has_modal_forces:
+                self._modal_force += turning.modal
+            else:
+                self._modal_force[:] = turning.modal
+            if self._spin is not None:
+                torque += turning.torque + self._zeta.dot(turning.by_deflection)
+        if self._motion.is_coupled:
+            self._force[self._translations] = turning.A.dot(loads[self._count :])
+        if self._spin is not None:
+            self._force[self._spin] = torque
+        return self._force
+
+    def jacobian(
+        self, t: float, q: list, q_t: list, factor_q: float, factor_v: float
+    ) -> np.ndarray:
+        """Return ``−factor_q ∂f/∂q − factor_v ∂f/∂q̇`` of :meth:`forces`, shape (size, size).
+
+        Valid until the next call.
+        """
+        omega = self._update_with_rates(t, q, q_t)
+        matrix, first = self._jacobian, self._first
+        if self.has_modal_forces:
+            squared, euler, _ = self._factors  # ω², −ω̇
+            by = (-factor_q * squared, -factor_q * euler, factor_v * omega)
+            block = np.dot(by, self._by_state)
+            matrix[first:, first:] = block.reshape(self._count, self._count)
+        if self._spin is not None:
+            self._add_spin_columns(omega, factor_q, factor_v)
+        if self._motion.is_coupled:
+            self._add_translations(omega, factor_q, factor_v)
+        return matrix
+
+    def _add_spin_columns(self, omega: float, factor_q: float, factor_v: float) -> None:
+        terms, turning = self._motion.spin_terms, self._turning
+        matrix, spin, first = self._jacobian, self._spin, self._first
+        centrifugal, rate = self._centrifugal, self._rate
+        column = factor_v * (self._products[2, : self._count] - 2.0 * omega * centrifugal)
+        row = (2.0 * omega * factor_q) * terms.C_hat.dot(rate)
+        row += (2.0 * omega * factor_v) * centrifugal
         if self._B is not None:
-            torque -= rate.dot(self._B.dot(rate))
-        np.multiply(self._centrifugal, omega * omega, out=self._modal_force)
-        self._coriolis *= omega
-        self._modal_force -= self._coriolis
-        if self._body_force is not None:
-            modal, by_deflection = self._body_force.at(t, q[self.spin])
-            self._modal_force += modal
-            torque += self._body_force.torque + self._zeta.dot(by_deflection)
-        self._force[self.spin] = torque
-        return self._force
+            row += (2.0 * factor_v) * self._B.dot(rate)
+        corner = 2.0 * factor_v * centrifugal.dot(rate)
+        if turning.has_body_force:
+            modal, by_deflection, torque = turning.slope()
+            column -= factor_q * modal
+            row -= factor_q * turning.by_deflection
+            corner -= factor_q * (torque + self._zeta.dot(by_deflection))
+        matrix[first:, spin], matrix[spin, first:], matrix[spin, spin] = column, row, corner
 
-    def forces_of_driven_spin(self, t: float, q: list, q_t: list) -> np.ndarray:
-        """Return (108) for a prescribed θ(t), shape (size,); valid until the next call."""
-        self.update(q)
-        spin = self._motion.formulation.spin
-        omega, acceleration = spin.rate(t), spin.acceleration(t)
-        self._rate[:] = q_t[self._first :]
-        np.dot(self._twice_G, self._rate, out=self._coriolis)
-        np.multiply(self._centrifugal, omega * omega, out=self._modal_force)
-        self._coriolis *= omega
-        self._modal_force -= self._coriolis
-        self._modal_force -= acceleration * self.spin_coupling
-        if self._body_force is not None:
-            self._modal_force += self._body_force.at(t, spin.value(t))[0]
-        return self._force
+    def _add_translations(self, omega: float, factor_q: float, factor_v: float) -> None:
+        squared, euler, _ = self._factors
+        count, turning, matrix = self._count, self._turning, self._jacobian
+        # rows of the unbalance in the table: −ẽS*, S*, 2S*
+        blocks = self._table.reshape(3, -1, 2 * count + 1)[:, count:]
+        by_zeta = (-factor_q * squared) * blocks[0, :, :count]
+        by_zeta -= (factor_q * euler) * blocks[1, :, :count]
+        by_zeta += (factor_v * omega) * blocks[2, :, count + 1 :]
+        matrix[self._translations, self._first :] = turning.A.dot(by_zeta)
+        if self._spin is not None:
+            loads = self._loads[count:]
+            by_rate = self._products[2, count:] - 2.0 * omega * self._products[0, count:]
+            by_angle = turning.e.dot(loads)
+            column = turning.A.dot(factor_v * by_rate - factor_q * by_angle)
+            matrix[self._translations, self._spin] = column
 
-    def body_force_at_constant_speed(self, t: float, q: list, q_t: list) -> np.ndarray:
-        """Return gravity and the frame's acceleration of (108), shape (size,), as above."""
-        self._modal_force[:] = self._body_force.at(t, self._motion.formulation.spin.value(t))[0]
-        return self._force
+    def _update(self, t: float, q: list) -> None:
+        """Evaluate what depends on q and t; free where that is known already."""
+        if q == self._last and t == self._time:
+            return
+        self._last, self._time = q, t
+        self._zeta[:] = q[self._first :]
+        np.dot(self._position_table, self._position_state, out=self._position_part)
+        if self._turning.is_needed:
+            spin = self._motion.formulation.spin
+            self._turning.turn(t, spin.value(t) if self._spin is None else q[self._spin])
+
+    def _update_with_rates(self, t: float, q: list, q_t: list) -> float:
+        """Evaluate everything, and return ω."""
+        form = self._motion.formulation
+        if self._turning.is_needed and (q != self._last or t != self._time):
+            self._turning.turn(t, form.spin.value(t) if self._spin is None else q[self._spin])
+        self._last, self._time = q, t
+        self._zeta[:], self._rate[:] = q[self._first :], q_t[self._first :]
+        np.dot(self._table, self._state, out=self._flat)
+        factors = self._factors
+        if self._spin is not None:
+            omega = q_t[self._spin]
+        else:
+            omega = form.spin.rate(t)
+            factors[1] = -form.spin.acceleration(t)
+        factors[0], factors[2] = omega * omega, -omega
+        np.dot(factors, self._products, out=self._loads)
+        return omega
 
 
-class _BodyForce:
-    """Gravity less the frame's acceleration on the modes and, by their deflection, on the spin.
+class _Turning:
+    """What depends on the angle: NᵀA, NᵀAS, and gravity less the frame's acceleration.
 
-    With ``Aᵀv = (e·v)e + cosθ (v − (e·v)e) − sinθ ẽv`` (55), all of it is linear in
-    ``(1, cosθ, sinθ)``.
+    With ``A = eeᵀ + cosθ (I − eeᵀ) + sinθ ẽ`` (55), all of it is linear in ``(1, cosθ, sinθ)``.
+
+    Attributes
+    ----------
+    is_needed, has_body_force : bool
+    e : ndarray, shape (3, 3)
+        ``ẽ``.
+    coupled : ndarray of int
+        Modes that translations are coupled with.
+    A : ndarray, shape (translations, 3)
+        ``NᵀA``, rotor axes to unknown translations.
+    coupling : ndarray
+        ``NᵀAS`` of the coupled modes, row by row.
+    modal, by_deflection, torque
+        ``Sᵀa``, ``S*ᵀa`` and ``(mχ*)ᵀa`` of the body acceleration a in rotor axes.
     """
 
     def __init__(self, motion: Motion) -> None:
-        inv = motion.invariants
-        e = inv.direction
-        along = np.outer(e, e)
-        turns = np.stack([along, np.eye(3) - along, -skew(e)], axis=1) @ motion.orientation.T
-        rows = np.vstack([inv.S.T, motion.S1.T, motion.static_unbalance[None, :]])
-        self._table = np.einsum("ra,akv->rkv", rows, turns)
-        self._gravity = motion.gravity
-        form = motion.formulation
+        inv, form = motion.invariants, motion.formulation
+        self.e, self._count = skew(inv.direction), inv.size
+        self.has_body_force = motion.has_body_force
+        self.is_needed = motion.has_body_force or motion.is_coupled
+        along = np.outer(inv.direction, inv.direction)
+        # A, with the coefficients of 1, cosθ and sinθ last
+        turns = np.stack([along, np.eye(3) - along, self.e], axis=2)
+        N = motion.free_directions.T @ motion.orientation
+        A = np.einsum("ab,bcv->acv", N, turns)
+        coupling = np.einsum("abv,bk->akv", A, inv.S)
+        self.coupled = np.flatnonzero(np.any(coupling, axis=(0, 2)))
+        coupling = coupling[:, self.coupled]
+        self._angles = np.ones(3)
+        self._table = np.vstack([A.reshape(-1, 3), coupling.reshape(-1, 3)])
+        self._flat = np.zeros(len(self._table))
+        self.A = self._flat[: A.shape[0] * 3].reshape(-1, 3)
+        self.coupling = self._flat[A.shape[0] * 3 :]
+        self._is_coupled = motion.is_coupled
         self._acceleration = form.translation.acceleration if form.moves_origin else None
-        self._constant = self._table @ motion.gravity
-        self._count = inv.size
-        self.torque = 0.0  # on the undeformed rotor's static unbalance
+        self._gravity = motion.gravity
+        rows = np.vstack([inv.S.T, motion.S1.T, motion.static_unbalance[None, :]])
+        # rows · Aᵀ · orientationᵀ · a
+        self._rows = np.einsum("rb,abv,ca->rcv", rows, turns, motion.orientation)
+        self._loads = np.einsum("rcv,c->rv", self._rows, motion.gravity)
+        self._body = np.zeros(len(rows))
+        self.modal, self.by_deflection = self._body[: inv.size], self._body[inv.size : -1]
 
-    def at(self, t: float, theta: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return ``Sᵀ a`` and ``S*ᵀ a`` of the body acceleration a in rotor axes, each (m,)."""
-        table = self._constant
-        if self._acceleration is not None:
-            table = self._table @ (self._gravity - np.asarray(self._acceleration(t), dtype=float))
-        products = table @ (1.0, math.cos(theta), math.sin(theta))
-        self.torque = products[-1]
-        return products[: self._count], products[self._count : -1]
+    @property
+    def torque(self) -> float:
+        """On the undeformed rotor's static unbalance, about the axis."""
+        return self._body[-1]
+
+    def turn(self, t: float, theta: float) -> None:
+        """Evaluate everything at an angle, and at a time where the frame is accelerated."""
+        self._angles[1], self._angles[2] = math.cos(theta), math.sin(theta)
+        if self._is_coupled:
+            np.dot(self._table, self._angles, out=self._flat)
+        if self.has_body_force:
+            if self._acceleration is not None:
+                body = self._gravity - np.asarray(self._acceleration(t), dtype=float)
+                self._loads = np.einsum("rcv,c->rv", self._rows, body)
+            np.dot(self._loads, self._angles, out=self._body)
+
+    def slope(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return the derivatives of modal, by_deflection and torque by the angle."""
+        _, cosine, sine = self._angles
+        slopes = self._loads.dot((0.0, -sine, cosine))
+        return slopes[: self._count], slopes[self._count : -1], slopes[-1]

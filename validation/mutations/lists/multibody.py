@@ -29,23 +29,18 @@ MULTIBODY = [
         "multibody/equations.py",
         "test_kernel.py::test_jacobian_for_the_solver_is_the_derivative_of_its_forces",
         (
-            "native damping with the wrong sign in the Jacobian",
-            "by_v += constant.damping",
-            "by_v -= constant.damping",
-        ),
-        (
-            "Jacobian by velocities without its factor",
-            "-factor_q * by_q - factor_v * by_v",
-            "-factor_q * by_q - by_v",
+            "Jacobian with its factors exchanged",
+            "t, q, q_t, factor_q, factor_v\n",
+            "t, q, q_t, factor_v, factor_q\n",
         ),
     ),
     *mutations(
         "multibody/equations.py",
-        _SCENES,
+        "test_kernel.py::test_mass_matrix_for_the_solver",
         (
-            "Exudyn's part counted twice",
-            "motion.forces(t, values, rates) - by_exudyn",
-            "motion.forces(t, values, rates)",
+            "one triangle of the mass matrix left at its start",
+            "one[:], mirrored[:] = values, values[skipped:]",
+            "one[:] = values",
         ),
     ),
     *mutations(
