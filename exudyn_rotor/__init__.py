@@ -4,8 +4,9 @@ Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exud
 ``mbs.Assemble()`` make the markers of a script on this package's rotors cheap.
 """
 
+from exudyn_rotor.advice.check_result import RunCheck
 from exudyn_rotor.advice.proposal import Proposal, propose
-from exudyn_rotor.advice.run_check import RunCheck, check_run
+from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speeds import (

@@ -203,6 +203,21 @@ def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
             call(rotor, supports=short, **given)
 
 
+@pytest.mark.parametrize("small", [True, False], ids=["reduced", "full"])
+@pytest.mark.parametrize("name", ["tilt_stiffness", "tilt_damping"])
+def test_a_single_node_takes_no_moment(name, small):
+    """Its interface has no rotation, so the coefficient would have no effect."""
+    rotor = ROTOR.with_interface("point", [3])
+    rotor = rotor.reduce(0) if small else rotor
+    values = (5.0, np.diag([5.0, 0.0]), ([0.0, 9.0], [0.0, 5.0]), lambda speed: 5.0)
+    for value in values:
+        supports = [*SUPPORTS, Support("point", 1e5, **{name: value})]
+        with pytest.raises(ValueError, match=f"support at 'point': {name} would act on nothing"):
+            campbell(rotor, [1.0], supports=supports)
+    for value in (0.0, np.zeros((3, 3)), ([0.0, 9.0], [0.0, 0.0])):
+        campbell(rotor, [1.0], supports=[*SUPPORTS, Support("point", 1e5, **{name: value})])
+
+
 def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
     monkeypatch.setattr(source, "DENSE_SIZE", 0)
     monkeypatch.setattr(source.FullRotor, "of", None)

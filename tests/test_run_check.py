@@ -12,6 +12,7 @@ from exudyn_rotor import (
     AssumptionWarning,
     PrescribedMotion,
     SolidRotor,
+    SpinAxis,
     add_rotor,
     check_run,
     craig_bampton_modes,
@@ -141,6 +142,27 @@ def test_tilt_is_the_angle_of_the_axis(reduced):
     assert check["tilt"].value == pytest.approx(0.05 / np.sqrt(inertia), rel=1e-3)
     assert [row.name for row in check.failed] == ["tilt"]
     assert check_run(body, limits={"tilt": 0.2}).ok
+
+
+def test_a_rotor_that_nothing_holds_is_told():
+    """Its centre of mass is 50 mm off the axis about which the speed is kept: it is flung away."""
+    ring = ring_rotor(0.1, 0.1, 2.0)
+    axis = SpinAxis([0.0, 0.0, 1.0], [0.05, 0.0, 0.0])
+    rotor = SolidRotor.from_matrices(ring.mass, ring.stiffness, ring.nodes, axis)
+    for translation, away in (("none", True), ("free", False)):
+        mbs = exu.SystemContainer().AddSystem()
+        body = add_rotor(mbs, rotor.reduce(0), translation=translation, spin=100.0)
+        body.start_recording()
+        mbs.Assemble()
+        solve(mbs, 200, 0.05)
+        check = check_run(body, warn=False)
+        assert ("adrift" in {row.name for row in check.failed}) == away
+        if away:
+            moved = np.linalg.norm(body.motion.invariants.S @ body.coordinates()[0]) / 2.0
+            assert check["adrift"].value == pytest.approx(
+                moved / np.sqrt(0.1**2 + 0.1**2), rel=1e-9
+            )
+            assert "translation='free'" in check["adrift"].advice
 
 
 def test_travel_is_that_of_the_centre_of_mass(reduced):

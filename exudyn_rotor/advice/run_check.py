@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.advice.check_result import CheckRow, RunCheck
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.residual import residual_deflection
@@ -19,106 +19,7 @@ from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises
 
-_ENOUGH = 20  # instants
 _SAME = 1e-6  # relative difference of masses and moments of one rotor
-
-
-@dataclass(frozen=True)
-class CheckRow:
-    """One assumption.
-
-    Attributes
-    ----------
-    name : str
-        Key of its limit.
-    meaning : str
-        What the number is, with its unit.
-    value, limit : float
-    advice : str
-        What to do where the limit is exceeded.
-    """
-
-    name: str
-    meaning: str
-    value: float
-    limit: float
-    advice: str
-
-    def __post_init__(self) -> None:
-        for name in ("name", "meaning", "advice"):
-            checks.label(getattr(self, name), name)
-        # a run that failed has no finite value
-        for name in ("value", "limit"):
-            checks.array(getattr(self, name), name, shape=(), finite=False)
-
-    @property
-    def ok(self) -> bool:
-        """True if the value is finite and not above the limit."""
-        return bool(np.isfinite(self.value) and self.value <= self.limit)
-
-    def __str__(self) -> str:
-        verdict = "ok" if self.ok else "FAILS"
-        return f"{self.name:15s} {self.value:9.2e}  {self.limit:9.2e}  {verdict:5s}  {self.meaning}"
-
-
-@dataclass(frozen=True)
-class RunCheck:
-    """What held in a run; made by :func:`check_run`.
-
-    Attributes
-    ----------
-    rows : tuple of CheckRow
-    instants : int
-        How many instants were looked at; 1 if ``body.start_recording()`` was not called before the
-        run, so that only the end state is known.
-    """
-
-    rows: tuple[CheckRow, ...]
-    instants: int
-
-    def __post_init__(self) -> None:
-        rows = checks.instances(self.rows, "rows", CheckRow, "check_run makes them")
-        object.__setattr__(self, "rows", rows)
-        checks.count(self.instants, "instants", least=1)
-
-    @property
-    def complete(self) -> bool:
-        """True if enough instants are known to see the largest motion of a run."""
-        return self.instants >= _ENOUGH
-
-    @property
-    def ok(self) -> bool:
-        """True if no row fails."""
-        return all(row.ok for row in self.rows)
-
-    @property
-    def failed(self) -> tuple[CheckRow, ...]:
-        """Rows that fail."""
-        return tuple(row for row in self.rows if not row.ok)
-
-    def __getitem__(self, name: str) -> CheckRow:
-        """Return a row by its name."""
-        for row in self.rows:
-            if row.name == name:
-                return row
-        raise KeyError(f"no check {name!r} here; there are: {', '.join(r.name for r in self.rows)}")
-
-    def gap(self) -> str:
-        """Return what a record of few instants lacks."""
-        if self.instants == 1:
-            return "only the end state is known: call body.start_recording() before mbs.Assemble()"
-        return (
-            f"only {self.instants} instants are known: lower solution.sensors.writePeriod of the "
-            "simulation settings"
-        )
-
-    def __str__(self) -> str:
-        lines = ["check               value      limit  verdict"]
-        lines += [str(row) for row in self.rows]
-        lines += [f"  {row.name}: {row.advice}" for row in self.failed]
-        if not self.complete:
-            lines.append(f"  {self.gap()}")
-        return "\n".join(lines)
 
 
 def default_limits(accuracy: float) -> dict[str, float]:
@@ -129,6 +30,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "tilt": root,
         "deflection": root,
         "travel": 0.1,
+        "adrift": 1.0,
         "locked": 1e-6,
         "unresisted load": 0.01,
         "top modes": 0.01,
@@ -194,6 +96,8 @@ def check_run(
     ``travel``           0.1      the centre of mass off a frame that does not follow, over the
                                   size; exact, but with a free spin the mass matrix then changes
                                   much in every step
+    ``adrift``           1        the same distance where the spin is prescribed, too: nothing holds
+                                  the rotor in its place
     ``locked``           1e-6     locked coordinates off their place [rad], [size]
     ``unresisted load``  0.01     load on the frame's node, or moment by a second-order arm, that no
                                   equation resists, over the largest load
@@ -307,6 +211,13 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         Measures.travel,
         "centre of mass off the frame, over the size",
         "let the frame follow: translation='free'",
+    ),
+    (
+        "adrift",
+        Measures.adrift,
+        "centre of mass off its place in the frame, over the size",
+        "support the rotor against the centrifugal force of its eccentricity, or let the frame "
+        "follow: translation='free'",
     ),
     (
         "locked",

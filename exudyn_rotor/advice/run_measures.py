@@ -93,8 +93,10 @@ class Measures:
 
         Zero where the spin is prescribed: the mass matrix is constant there.
         """
-        if not self.body.formulation.has_spin:
-            return 0.0
+        return self.adrift() if self.body.formulation.has_spin else 0.0
+
+    def adrift(self) -> float:
+        """Return how far the centre of mass leaves its place in the frame, over the size."""
         moved = np.linalg.norm(self.zeta @ self.invariants.S.T, axis=1) / self.invariants.mass
         return float(moved.max() / self.size)
 

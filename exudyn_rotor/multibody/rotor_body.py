@@ -91,6 +91,16 @@ class RotorBody(RotorItems):
         """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
         return sensors.add_drive_torque_sensor(self, **options)
 
+    def add_energy_sensor(self, **options):
+        """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J].
+
+        The kinetic energy is that in the inertial frame, with the spin. The weight's potential is
+        zero where the rotor stands at the start, undeformed and at θ = 0. The sum changes by the
+        work of all other loads and of a prescribed motion (``add_drive_torque_sensor`` gives its
+        torque), less what damping takes; a drift without these is the integrator's error.
+        """
+        return sensors.add_energy_sensor(self, **options)
+
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.
 

@@ -1,4 +1,4 @@
-"""Sensors of a rotor body: native ones by mesh node and interface, spin, and drive torque."""
+"""Sensors of a rotor body: native ones by mesh node and interface, spin, torque and energy."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.locking import SPIN, guiding_force
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
 _KINDS = exudyn.OutputVariableType
@@ -184,6 +185,24 @@ def _external_moment(body: RotorItems):
         return reaction
 
     return moment
+
+
+def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
+    """Add a sensor of the rotor's kinetic and elastic energy and the potential of its weight [J].
+
+    Their sum changes by the work of all other loads and of a prescribed motion, less what damping
+    takes.
+    """
+
+    def energy(mbs, t, sensors, factors, configuration):
+        q, q_t, _ = body.coordinates(configuration)
+        gravity = body.plan.setup.gravity
+        if body.gravity_load is not None:  # a script may change it
+            gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
+        found = energy_of(body.motion, t, q, q_t, gravity)
+        return [found.kinetic, found.elastic, found.weight]
+
+    return _add_function_sensor(body, energy, options)
 
 
 def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:

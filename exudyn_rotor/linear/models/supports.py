@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, turned_harmonics
+from exudyn_rotor.reduction.fields import ReducedInterface
+from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.theory.nodal import skew
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
@@ -209,8 +211,10 @@ def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ..
     return checks.instances(supports, "supports", Support)
 
 
-def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
-    """Refuse a support at an interface that the rotor does not have.
+def check_interfaces(
+    supports: Iterable[Support], known: Mapping[str, Interface | ReducedInterface]
+) -> None:
+    """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
 
     Raises
     ------
@@ -222,6 +226,21 @@ def check_interfaces(supports: Iterable[Support], known: Iterable[str]) -> None:
                 f"support at {support.interface!r}: no such interface; the rotor has: "
                 f"{', '.join(known) or 'none'}"
             )
+        for name in _TILTING if known[support.interface].radius == 0.0 else ():
+            if _acts(getattr(support, name)):
+                raise ValueError(
+                    f"support at {support.interface!r}: {name} would act on nothing, since the "
+                    "interface is a single node, which has no rotation; make the interface of "
+                    "three nodes or more, or leave this out"
+                )
+
+
+_TILTING = ("tilt_stiffness", "tilt_damping")
+
+
+def _acts(value: Coefficient) -> bool:
+    """Return whether a coefficient is not zero; a function is taken for one that is not."""
+    return callable(value) or bool(np.any(value[1] if isinstance(value, tuple) else value))
 
 
 def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.ndarray:
