@@ -249,6 +249,7 @@ OPTIONS: dict[str, Callable] = {
     "stability_threshold": er.stability,
     "unstable_ranges": er.stability,
     "*.add_drive_torque_sensor": _sensor_options,
+    "*.add_energy_sensor": _sensor_options,
     "*.add_interface_sensor": _sensor_options,
     "*.add_node_sensor": _sensor_options,
     "*.add_spin_sensor": _sensor_options,
