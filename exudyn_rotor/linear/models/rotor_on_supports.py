@@ -263,5 +263,14 @@ class LinearRotor:
 
 def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
     for n, X in harmonics.items():
-        block = U.T @ X @ U
-        terms[n] = terms.get(n, 0.0) + (block.real if n == 0 else block)
+        block = _congruent(X.real, U) if n == 0 else U.T @ X @ U
+        terms[n] = terms.get(n, 0.0) + block
+
+
+def _congruent(X: np.ndarray, U: np.ndarray) -> np.ndarray:
+    """Return ``UᵀXU`` with exactly symmetric and skew parts.
+
+    The rounding of a stiff support would else be a circulatory force.
+    """
+    blocks = [U.T @ (0.5 * (X + sign * X.T)) @ U for sign in (1.0, -1.0)]
+    return sum(0.5 * (B + sign * B.T) for B, sign in zip(blocks, (1.0, -1.0), strict=True))

@@ -26,8 +26,9 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.exponents import METHODS
+from exudyn_rotor.linear.periodic.exponents import METHODS, in_order
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.verified import verified
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero, sweep
@@ -214,6 +215,9 @@ class _Task:
 
     def __call__(self, speed: float) -> tuple[np.ndarray, float, float]:
         values, system = self.space.exponents(speed, self.method, self.tolerance)
+        limits = _growth_limits(values, system, self.tolerance)
+        if system.is_constant:
+            values = in_order(verified(values, limits, system), speed)
         return values, abs(system.base), excess_growth(values, system, self.tolerance)
 
 
@@ -240,9 +244,12 @@ def held_space(model: LinearModel, fastest: float, modes: int | None, residual: 
 
 def excess_growth(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> float:
     """Return the largest real part above what round-off and truncation can feign."""
+    return float(np.max(values.real - _growth_limits(values, system, tolerance)))
+
+
+def _growth_limits(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> np.ndarray:
     fastest = np.sqrt(np.abs(np.diag(system.K[0]) / np.diag(system.M[0])).max())
-    margin = tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest
-    return float(np.max(values.real - margin))
+    return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest
 
 
 def stability_threshold(target: Target, low: float, high: float, **given) -> float:

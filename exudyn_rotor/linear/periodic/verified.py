@@ -1,0 +1,77 @@
+"""Exponents whose growth is rounding, found out by their own motion.
+
+Beside stiff supports, rounding of ``ε ω_max`` and more gives eigenvalues of slow motions a real
+part. An eigenvector x turns ``λ²M + λD + K`` into the scalar equation
+
+    a λ² + (d + i g) λ + (k + i s) = 0,    a = xᴴMx,
+    d = xᴴD₊x,  g = Im xᴴD₋x,  k = xᴴK₊x,  s = Im xᴴK₋x,
+
+with the symmetric (+) and skew (−) parts of D and K. Without damping (d = 0) and circulatory forces
+(s = 0) its roots are imaginary to the last digit while ``g² + 4ak ≥ 0``, however wrong x is. Only k
+suffers from rounding next to stiff supports, by ``n ε |x|ᵀ|K₊||x|`` at most.
+"""
+
+from __future__ import annotations
+
+import cmath
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+
+_OFF_ROOT = 1e-9  # relative distance from an exponent that keeps its matrix invertible
+_ITERATIONS = 3
+
+
+def verified(values: np.ndarray, limits: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+    """Return exponents; where growth above the limit is rounding, that of the scalar equation.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Exponents of a system with constant coefficients [1/s].
+    limits : ndarray, shape (n,)
+        Growth that is not looked at [1/s].
+    system : PeriodicSystem
+    """
+    growing = np.flatnonzero(values.real > limits)
+    if growing.size == 0:
+        return values
+    matrices = system.matrices(0.0)
+    result = values.astype(complex)
+    for index in growing:
+        checked = _by_its_motion(values[index], *matrices)
+        if checked.real <= limits[index]:
+            result[index] = checked
+    return result
+
+
+def _by_its_motion(value: complex, M: np.ndarray, D: np.ndarray, K: np.ndarray) -> complex:
+    """Return the root next to `value` of the scalar equation, with the most favourable rounding."""
+    x = _vector(value, M, D, K)
+    stiff = 0.5 * (K + K.T)
+    a = np.vdot(x, M @ x).real
+    b = np.vdot(x, 0.5 * (D + D.T) @ x).real + 1j * np.vdot(x, 0.5 * (D - D.T) @ x).imag
+    k = np.vdot(x, stiff @ x).real
+    rounding = len(x) * np.finfo(float).eps * float(np.abs(x) @ np.abs(stiff) @ np.abs(x))
+    c = k + 1j * np.vdot(x, 0.5 * (K - K.T) @ x).imag
+    roots = [_nearest_root(a, b, c + shift, value) for shift in (0.0, rounding)]
+    return min(roots, key=lambda root: root.real)
+
+
+def _nearest_root(a: float, b: complex, c: complex, value: complex) -> complex:
+    """Return the root of ``aλ² + bλ + c`` next to `value`."""
+    width = cmath.sqrt(b * b - 4.0 * a * c)
+    return min(((-b + sign * width) / (2.0 * a) for sign in (1, -1)), key=lambda x: abs(x - value))
+
+
+def _vector(value: complex, M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return the motion of an exponent by inverse iteration."""
+    shifted = value * (1.0 + _OFF_ROOT)
+    factors = la.lu_factor(shifted**2 * M + shifted * D + K, check_finite=False)
+    x = np.ones(len(M), dtype=complex)
+    for _ in range(_ITERATIONS):
+        x = la.lu_solve(factors, M @ x, check_finite=False)
+        x /= np.linalg.norm(x)
+    return x
