@@ -151,6 +151,7 @@ def references(reduced):
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 def test_directions_of_mesh_and_scene_change_nothing_else(
     reduced, turned, references, formulation, direction
 ):

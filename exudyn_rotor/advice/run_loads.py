@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.multibody.locking import SPIN
 from exudyn_rotor.multibody.record import Record
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.axis import SpinAxis
@@ -29,7 +28,7 @@ def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarr
 def turned(body: RotorBody, q: np.ndarray) -> np.ndarray:
     """Return the orientation (3, 3) of the rotor frame for coordinates of the body's nodes."""
     motion = body.motion
-    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[SPIN])
+    return motion.orientation @ SpinAxis(motion.invariants.direction).rotation(q[body.locks.spin])
 
 
 def weight(body: RotorBody) -> np.ndarray:

@@ -9,14 +9,14 @@ moves nothing: a load on the frame's node, or the moment arm that a load gets by
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
-from exudyn_rotor.multibody.locking import SPIN, TILTS
 from exudyn_rotor.multibody.record import Record, newton_tolerance
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
 
-_SINGULAR = 1e-3  # of the node's axes, where its second angle is near a right one
+_SINGULAR = 0.1  # singular value of the node's axes below which they do not show a direction
 
 
 def unresisted_load(body: RotorBody, record: Record, size: float) -> float:
@@ -64,14 +64,18 @@ def _balance(
         if number < 3:
             missing[number] = load[number] - modal_force[number]
     force = motion.free_directions @ external[motion.translations] + modal_force
-    moment, unresisted = _moments(body, load, turn @ _angular_momenta(body) @ on_modes)
+    modal_moment = turn @ _angular_momenta(body) @ on_modes
+    known, seen = _moment_on_node(body, q, load)
+    e = motion.orientation @ motion.invariants.direction
+    tilting = (np.eye(3) - np.outer(e, e)) @ seen
+    unresisted = tilting @ (known - modal_moment)
     # tilts are resisted about the centre of mass, also where that has left the frame's node
     zeta = q[place.unknowns][motion.modes]
     arm = turn @ motion.invariants.S @ zeta / motion.invariants.mass
-    e = motion.orientation @ motion.invariants.direction
     by_arm = np.cross(arm, force - weight(body))  # Exudyn's gravity gets no arm
     # position markers exert it on the node, rigid ones do not
-    missing[3:] = min(unresisted, unresisted - (by_arm - e * (e @ by_arm)), key=np.linalg.norm)
+    missing[3:] = min(unresisted, unresisted - tilting @ by_arm, key=np.linalg.norm)
+    moment = modal_moment + seen @ (known - modal_moment)
     residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
     return force, moment, missing, float(residual * np.sqrt(motion.invariants.mass))
 
@@ -82,16 +86,23 @@ def _angular_momenta(body: RotorBody) -> np.ndarray:
     return np.einsum("aib,abk->ik", epsilon, body.motion.invariants.P)
 
 
-def _moments(
-    body: RotorBody, load: np.ndarray, modal_moment: np.ndarray
+def _moment_on_node(
+    body: RotorBody, q: np.ndarray, load: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the moment on the node in inertial axes, and what of it tilts and is unresisted."""
-    first = body.frame.angles[0]
-    e = body.motion.orientation @ body.motion.invariants.direction
-    second_axis = np.array([0.0, np.cos(first), np.sin(first)])
-    axes = np.array([[1.0, 0.0, 0.0], second_axis, e])
-    if abs(np.linalg.det(axes)) < _SINGULAR:
-        return modal_moment, np.zeros(3)
-    moment = np.linalg.solve(axes, load[[*TILTS, SPIN]])
-    missing = moment - modal_moment
-    return moment, missing - e * (e @ missing)
+    """Return the moment on the node in inertial axes, and the projector (3, 3) on what it shows.
+
+    The node's generalised moments are components along its axes of rotation. Two of these coincide
+    where the second angle is a right one, and say nothing of the direction across all of them.
+    """
+    left, sizes, right = np.linalg.svd(_axes_of_rotation(body, q))
+    shown = sizes > _SINGULAR
+    moment = right[shown].T @ ((left[:, shown].T @ load[3:6]) / sizes[shown])
+    return moment, right[shown].T @ right[shown]
+
+
+def _axes_of_rotation(body: RotorBody, q: np.ndarray) -> np.ndarray:
+    """Return the inertial axes (3, 3), in rows, that the node's angles turn about, θ about e."""
+    a, b, _ = body.frame.angles + (body.layout.signs * q)[3:6]
+    Rx, Ry = Rotation.from_euler("x", a).as_matrix(), Rotation.from_euler("y", b).as_matrix()
+    axes = np.array([[1.0, 0.0, 0.0], Rx[:, 1], Rx @ Ry[:, 2]])
+    return body.layout.signs[3:6, None] * axes

@@ -24,7 +24,6 @@ from exudyn_rotor.multibody import condensed_markers, inputs
 from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
-    SPIN,
     ConstraintMonitor,
     add_constraints,
     add_spin_guide,
@@ -39,6 +38,13 @@ from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.theory.stiffening import LEVELS
 
+TURNED_AXES = (
+    "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
+    "the mesh. Its flexible body and node have the mesh axes turned by body.frame.B, z along the "
+    "spin axis; so have a script's own MarkerSuperElementRigid with its offset, connectors in its "
+    "axes, bodyFixed loads and MarkerNodeRotationCoordinate on the node, and sensors in local "
+    "axes. body.add_marker(nodes or interface, offset) and the interfaces' markers have mesh axes"
+)
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 
 
@@ -136,8 +142,19 @@ def add_rotor(
     ValueError, TypeError
         For bad input; nothing has been added then.
 
+    Warns
+    -----
+    UserWarning
+        Where the flexible body cannot have the axes of the mesh; see the notes.
+
     Notes
     -----
+    What a script attaches to the flexible body or its node by itself has mesh axes, as with
+    Exudyn's own body, if the spin axis is mesh z (any mounting), is mounted along inertial x (any
+    mesh axis), or lies across mesh z and is mounted across inertial x: all coordinate axes mounted
+    along coordinate axes are among these. For any other axis a warning says what is turned;
+    ``body.add_marker`` and ``body.marker`` give mesh axes always.
+
     Locking and solvers:
 
     ============================  =======================  =====================================
@@ -215,9 +232,17 @@ def add_rotor(
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
     if not marker_body:
         return _add_bare(mbs, plan)
+    if not plan.frame.has_mesh_axes:
+        warnings.warn(TURNED_AXES.format(name, *_axes(plan)), UserWarning, stacklevel=2)
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
     return _add_with_marker_body(mbs, plan, mesh)
+
+
+def _axes(plan: Plan) -> tuple[list[float], list[float]]:
+    """Return the spin axis in mesh and in inertial axes, for a message."""
+    e = plan.motion.invariants.direction
+    return np.round(e, 3).tolist(), np.round(plan.motion.orientation @ e, 3).tolist()
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
@@ -281,16 +306,17 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
 
 
 def _physics(plan: Plan, nodes: list, guide: LockedForce | None) -> ObjectGenericODE2:
-    if plan.motion.is_constant:
-        return constant_object(plan.motion, plan.layout, nodes)
-    return user_function_object(plan.motion, plan.layout, nodes, guide)
+    if plan.node_motion.is_constant:
+        return constant_object(plan.node_motion, plan.layout, nodes)
+    return user_function_object(plan.node_motion, plan.layout, nodes, guide)
 
 
 def _rigid_node(plan: Plan) -> NodeRigidBodyRxyz:
     values, rates = np.zeros(6), np.zeros(6)
     start = plan.setup.placement
     values[:3], rates[:3] = start.translation, start.velocity
-    values[SPIN], rates[SPIN] = start.angle, start.speed
+    spin, sign = plan.locks.spin, plan.locks.sign
+    values[spin], rates[spin] = sign * start.angle, sign * start.speed
     return NodeRigidBodyRxyz(
         name=inputs.item_name("NodeRigidBody:", plan.setup.name),
         referenceCoordinates=[*plan.frame.position, *plan.frame.angles],

@@ -33,6 +33,8 @@ class Layout:
         Coordinate of every unknown of the :class:`Motion`.
     lock_mass, lock_stiffness, lock_damping : ndarray, shape (size,)
         Diagonals added for locked coordinates; zero for unknowns.
+    signs : ndarray, shape (size,), optional
+        1, and −1 for a spin angle that the node counts the other way than θ; all 1 by default.
     """
 
     size: int
@@ -40,6 +42,11 @@ class Layout:
     lock_mass: np.ndarray
     lock_stiffness: np.ndarray
     lock_damping: np.ndarray
+    signs: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        if self.signs is None:
+            object.__setattr__(self, "signs", np.ones(self.size))
 
     @classmethod
     def unlocked(cls, size: int) -> Layout:

@@ -98,8 +98,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
     Note:
         The node 'nRigidBody' sits in the centre of mass (translation free) or on the spin axis,
-        and carries only spin and translation: apply loads at the boundary markers. Sensor output
-        in local axes (DisplacementLocal) has z along the spin axis; stress is in mesh axes.
+        and carries only spin and translation: apply loads at the boundary markers. It has
+        mesh axes but for skew spin axes, for which a warning says what is turned. In local output
+        (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
 
     Example:
         >>> import exudyn

@@ -1,8 +1,15 @@
-"""Placing a rotor in its marker body, whose node spins about local z, whatever the mesh does.
+"""Placing a rotor in its marker body: which angle of the body's node is the spin angle.
 
-``NodeRigidBodyRxyz`` has the orientation ``Rx(a) Ry(b) Rz(c)``. With a and b locked, the third
-angle turns the body about the fixed axis ``Rx(a) Ry(b) e_z``, for every a and b. So the axes of the
-marker body are the mesh axes turned by B, with ``B e = e_z``.
+``NodeRigidBodyRxyz`` has the orientation ``Rx(a) Ry(b) Rz(c)``, and any one of the three angles may
+turn without bound while the other two stand still. With n the spin axis in inertial axes and e in
+mesh axes, the body can have the axes of the mesh where
+
+- e is along mesh z: c turns, however the rotor is mounted;
+- n is along inertial x: a turns, whatever e is;
+- n is across inertial x and e across mesh z: b turns.
+
+So every coordinate axis mounted along a coordinate axis is among them. Elsewhere the axes of the
+marker body are the mesh axes turned by B, with ``B e = e_z``, and c turns.
 """
 
 from __future__ import annotations
@@ -12,6 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+
+FIRST, SECOND, THIRD = 3, 4, 5  # the angles among the coordinates of the node
+_ALONG = 1e-8  # sine of the angle up to which an axis counts as a coordinate axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,17 +33,26 @@ class BodyFrame:
     origin : ndarray, shape (3,)
         Frame origin, mesh coordinates [m].
     B : ndarray, shape (3, 3)
-        Mesh axes → axes of the marker body.
+        Mesh axes → axes of the marker body; the identity where the body can have the mesh axes.
     orientation : ndarray, shape (3, 3)
         Mesh axes → inertial axes at θ = 0.
     position : ndarray, shape (3,)
         Frame origin in inertial coordinates at rest [m].
+    angles : ndarray, shape (3,)
+        Reference Tait–Bryan angles (a, b, c) of the marker body's node [rad].
+    spin : {3, 4, 5}
+        The node's coordinate that is the spin angle.
+    sign : {1, -1}
+        −1 where that coordinate is −θ.
     """
 
     origin: np.ndarray
     B: np.ndarray
     orientation: np.ndarray
     position: np.ndarray
+    angles: np.ndarray
+    spin: int
+    sign: int
 
     @classmethod
     def of(
@@ -44,20 +63,17 @@ class BodyFrame:
         orientation: np.ndarray,
     ) -> BodyFrame:
         """Place a rotor whose mesh origin lies at `mesh_position` with `orientation`."""
-        return cls(
-            origin=origin,
-            B=_turn_to_z(direction),
-            orientation=orientation,
-            position=mesh_position + orientation @ origin,
-        )
+        B = np.eye(3)
+        found = _with_mesh_axes(direction, orientation)
+        if found is None:
+            B = _turn_to_z(direction)
+            found = _tait_bryan(orientation @ B.T), THIRD, 1
+        return cls(origin, B, orientation, mesh_position + orientation @ origin, *found)
 
     @property
-    def angles(self) -> np.ndarray:
-        """Reference Tait–Bryan angles (a, b, c) of the marker body's node [rad]."""
-        with warnings.catch_warnings():
-            # at b = ±90° the split of a and c is free, and any serves: a and b stay locked
-            warnings.simplefilter("ignore", UserWarning)
-            return Rotation.from_matrix(self.orientation @ self.B.T).as_euler("XYZ")
+    def has_mesh_axes(self) -> bool:
+        """True where the axes of the marker body are those of the mesh."""
+        return np.array_equal(self.B, np.eye(3))
 
     def points(self, mesh_points: np.ndarray) -> np.ndarray:
         """Return mesh points (…, 3) in coordinates of the marker body."""
@@ -69,11 +85,44 @@ class BodyFrame:
         return np.einsum("ab,nbk->nak", self.B, nodal).reshape(displacements.shape)
 
 
+def _with_mesh_axes(
+    direction: np.ndarray, orientation: np.ndarray
+) -> tuple[np.ndarray, int, int] | None:
+    """Return angles, spin coordinate and sign for a body with mesh axes; None if there is none."""
+    e, n = direction, orientation @ direction
+    if np.hypot(e[0], e[1]) < _ALONG:
+        return _tait_bryan(orientation), THIRD, int(np.sign(e[2]))
+    if np.hypot(n[1], n[2]) < _ALONG:
+        return _tait_bryan(orientation), FIRST, int(np.sign(n[0]))
+    if abs(n[0]) < _ALONG and abs(e[2]) < _ALONG:
+        return _second_angle(e, n, orientation)
+    return None
+
+
+def _second_angle(
+    e: np.ndarray, n: np.ndarray, orientation: np.ndarray
+) -> tuple[np.ndarray, int, int]:
+    """Return the angles with ``Rx(a) e_y = ±n`` and ``Rz(−c) e_y = ±e``, and |b| ≤ 90°."""
+    # of the two solutions, one for each sign, the usual one has |b| ≤ 90°
+    for sign in (1, -1):
+        a, c = np.arctan2(sign * n[2], sign * n[1]), np.arctan2(sign * e[0], sign * e[1])
+        Ry = Rotation.from_euler("x", -a).as_matrix() @ orientation
+        Ry = Ry @ Rotation.from_euler("z", -c).as_matrix()
+        b = np.arctan2(Ry[0, 2], Ry[0, 0])
+        if abs(b) <= 0.5 * np.pi:
+            break
+    return np.array([a, b, c]), SECOND, sign
+
+
+def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
+    with warnings.catch_warnings():
+        # at b = ±90° the split of a and c is free, and any serves: one of them turns by θ
+        warnings.simplefilter("ignore", UserWarning)
+        return Rotation.from_matrix(orientation).as_euler("XYZ")
+
+
 def _turn_to_z(direction: np.ndarray) -> np.ndarray:
     """Return the smallest rotation that takes `direction` to e_z."""
-    z = np.array([0.0, 0.0, 1.0])
-    across = np.cross(direction, z)
-    if not np.any(across):
-        return np.eye(3) if direction[2] > 0 else np.diag([1.0, -1.0, -1.0])
+    across = np.cross(direction, [0.0, 0.0, 1.0])
     angle = np.arctan2(np.linalg.norm(across), direction[2])
     return Rotation.from_rotvec(angle * across / np.linalg.norm(across)).as_matrix()

@@ -29,12 +29,12 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor.multibody.equations import Layout, LockedForce
+from exudyn_rotor.multibody.frame import THIRD
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 
 LOCKINGS = ("auto", "mass", "constraints")
 _PATIENCE = 4  # times that forces may be evaluated at while no constraint is
-COORDINATE_NAMES = ("x", "y", "z", "tilt a", "tilt b", "spin")
-TILTS, SPIN, MODES = (3, 4), 5, 6
+MODES = 6  # the first coordinate after those of the rigid-body node
 
 LOCK_RATIO = 1e18  # of the rotor's own inertia
 SERVO_RATIO = 1e9
@@ -54,7 +54,11 @@ class Locks:
         Rigid coordinates that are unknowns of the formulation.
     fixed : tuple of int
     prescribed : dict of int to PrescribedMotion or ConstantSpeed
-        Scalar motion of every prescribed coordinate.
+        Scalar motion of every prescribed coordinate; that of the spin is θ, whatever its sign.
+    spin : {3, 4, 5}
+        The coordinate that is the spin angle; the other two rotations are tilts.
+    sign : {1, -1}
+        −1 where that coordinate is −θ.
     plane : ndarray or None
         Inertial directions of in-plane unknowns, shape (3, 2).
     normal : ndarray or None
@@ -65,11 +69,15 @@ class Locks:
     unknown: tuple[int, ...]
     fixed: tuple[int, ...]
     prescribed: dict[int, PrescribedMotion | ConstantSpeed]
+    spin: int = THIRD
+    sign: int = 1
     plane: np.ndarray | None = None
     normal: np.ndarray | None = None
 
     @classmethod
-    def of(cls, formulation: Formulation, spin_direction: np.ndarray) -> Locks:
+    def of(
+        cls, formulation: Formulation, spin_direction: np.ndarray, spin: int, sign: int
+    ) -> Locks:
         """Sort the coordinates for a spin axis along `spin_direction` in inertial axes."""
         translations, plane, normal = _unknown_translations(formulation, spin_direction)
         rest = [i for i in range(3) if i not in translations]
@@ -77,10 +85,25 @@ class Locks:
         if formulation.moves_origin:
             prescribed = {i: _component(formulation.translation, i) for i in rest}
             rest = []
+        unknown = tuple(translations)
         if formulation.has_spin:
-            return cls((*translations, SPIN), (*rest, *TILTS), prescribed, plane, normal)
-        prescribed[SPIN] = formulation.spin
-        return cls(tuple(translations), (*rest, *TILTS), prescribed, plane, normal)
+            unknown = (*unknown, spin)
+        else:
+            prescribed[spin] = formulation.spin
+        tilts = _tilts(spin)
+        return cls(unknown, (*rest, *tilts), prescribed, spin, sign, plane, normal)
+
+    @property
+    def tilts(self) -> tuple[int, int]:
+        """The two coordinates that tilt the frame, always locked."""
+        return _tilts(self.spin)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the six coordinates."""
+        names = dict(enumerate(("x", "y", "z"))) | {self.spin: "spin"}
+        names |= dict(zip(self.tilts, ("tilt a", "tilt b"), strict=True))
+        return tuple(names[i] for i in range(MODES))
 
     @property
     def varying(self) -> dict[int, PrescribedMotion]:
@@ -90,7 +113,11 @@ class Locks:
     @property
     def locked_names(self) -> tuple[str, ...]:
         """Names of the coordinates that exist only for the marker body."""
-        return tuple(COORDINATE_NAMES[i] for i in (*self.fixed, *self.prescribed))
+        return tuple(self.names[i] for i in (*self.fixed, *self.prescribed))
+
+
+def _tilts(spin: int) -> tuple[int, int]:
+    return tuple(i for i in range(3, MODES) if i != spin)
 
 
 def _unknown_translations(
@@ -132,15 +159,20 @@ def layout(locks: Locks, mode_count: int, inertia: np.ndarray, by_mass: bool) ->
         damping[varying] = 2.0 * SERVO_RATE * mass[varying]
     else:
         mass[fixed + varying] = inertia[fixed + varying]
-    if isinstance(locks.prescribed.get(SPIN), ConstantSpeed):
-        mass[SPIN] = LOCK_RATIO * inertia[SPIN]
-        stiffness[SPIN] = SPIN_HOLD_RATE**2 * inertia[SPIN]
+    spin = locks.spin
+    if isinstance(locks.prescribed.get(spin), ConstantSpeed):
+        mass[spin] = LOCK_RATIO * inertia[spin]
+        stiffness[spin] = SPIN_HOLD_RATE**2 * inertia[spin]
     unknowns = np.array([*locks.unknown, *range(MODES, size)])
-    return Layout(size, unknowns, mass, stiffness, damping)
+    signs = np.ones(size)
+    signs[spin] = locks.sign
+    return Layout(size, unknowns, mass, stiffness, damping, signs)
 
 
 def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
     """Return the forces, shape (size,), that belong to the prescribed motion of locked coordinates.
+
+    They act on the node's coordinates, with the sign in which these count.
 
     None where constraints do all of this, or nothing is prescribed.
     """
@@ -157,7 +189,7 @@ def guiding_force(locks: Locks, place: Layout) -> LockedForce | None:
                 + place.lock_damping[index] * motion.rate(t)
                 + place.lock_stiffness[index] * motion.value(t)
             )
-        return total
+        return place.signs * total
 
     return force
 
@@ -170,11 +202,12 @@ def add_spin_guide(
     A locked spin needs a stiffness for static solvers, and this load takes it along with the
     angle.
     """
-    motion, stiffness = locks.prescribed[SPIN], place.lock_stiffness[SPIN]
+    spin = locks.spin
+    motion, stiffness = locks.prescribed[spin], locks.sign * place.lock_stiffness[spin]
     if not (motion.speed or motion.angle):
         return
     start, slope = stiffness * motion.angle, stiffness * motion.speed
-    marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=SPIN))
+    marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=spin))
     load = mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=0.0))
     guide = CreateSymbolicUserFunction(
         mbs, lambda mbs, t, load: start + slope * t, "loadUserFunction", load
@@ -225,8 +258,9 @@ def add_constraints(
     constraints = {}
     for index in (*locks.fixed, *locks.varying):
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
-        offset = _offset(locks.varying[index], monitor) if index in locks.varying else {}
-        constraints[COORDINATE_NAMES[index]] = mbs.AddObject(
+        sign = locks.sign if index == locks.spin else 1
+        offset = _offset(locks.varying[index], sign, monitor) if index in locks.varying else {}
+        constraints[locks.names[index]] = mbs.AddObject(
             CoordinateConstraint(markerNumbers=[origin, marker], **offset)
         )
     if locks.normal is not None:
@@ -234,16 +268,16 @@ def add_constraints(
     return constraints
 
 
-def _offset(motion: PrescribedMotion, monitor: ConstraintMonitor) -> dict:
+def _offset(motion: PrescribedMotion, sign: int, monitor: ConstraintMonitor) -> dict:
     """Return the constraint's settings; index-2 solvers need the velocity beside the position."""
 
     def value(mbs, t, item, offset):
         monitor.seen()
-        return motion.value(t)
+        return sign * motion.value(t)
 
     def rate(mbs, t, item, offset):
         monitor.seen()
-        return motion.rate(t)
+        return sign * motion.rate(t)
 
     return {"offsetUserFunction": value, "offsetUserFunction_t": rate}
 

@@ -12,6 +12,8 @@ from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.multibody.locking import Locks, layout
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
@@ -30,6 +32,9 @@ class Plan:
     layout : Layout
         Where the unknowns stand among the coordinates of the nodes.
     motion : Motion
+        Equations for θ about the spin axis.
+    node_motion : Motion
+        The same for the spin coordinate of the node, which may be −θ.
     by_mass : bool
         Whether locked coordinates are held by mass, not by constraints.
     marker_body_gravity : ndarray, shape (3,)
@@ -44,6 +49,7 @@ class Plan:
     locks: Locks
     layout: Layout
     motion: Motion
+    node_motion: Motion
     by_mass: bool
     marker_body_gravity: np.ndarray
     modal_start: np.ndarray
@@ -58,7 +64,8 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     invariants = selection.invariants
     direction = reduced.axis.direction
     frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
-    locks = Locks.of(formulation, place.rotation @ direction)
+    sign = frame.sign if setup.marker_body else 1
+    locks = Locks.of(formulation, place.rotation @ direction, frame.spin, sign)
     skew = setup.marker_body and locks.normal is not None
     if setup.locking == "mass" and skew:
         raise ValueError(
@@ -75,15 +82,14 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
     inertia = np.repeat([invariants.mass, spin_inertia], 3)
-    motion = Motion(
-        invariants,
-        # a skew plane of rotation keeps all three translations and adds a linear constraint
-        replace(formulation, translation="free") if skew else formulation,
-        second_order(invariants, setup.stiffening),
-        orientation=place.rotation,
-        plane=locks.plane,
-        gravity=setup.gravity if in_equations else None,
-    )
+    # a skew plane of rotation keeps all three translations and adds a linear constraint
+    form = replace(formulation, translation="free") if skew else formulation
+    gravity = setup.gravity if in_equations else None
+    motion = _motion(invariants, form, setup, locks.plane, gravity)
+    node_motion = motion
+    if sign < 0:
+        plane = motion.free_directions
+        node_motion = _motion(invariants.reversed(), form.reversed(), setup, plane, gravity)
     return Plan(
         setup=setup,
         selection=selection,
@@ -95,6 +101,7 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
             else Layout.unlocked(motion.size)
         ),
         motion=motion,
+        node_motion=node_motion,
         by_mass=by_mass,
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
         modal_start=inputs.modal_values(
@@ -103,4 +110,21 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
         modal_start_rate=inputs.modal_values(
             setup.modal_velocities, "modal_velocities", selection.labels
         ),
+    )
+
+
+def _motion(
+    invariants: Invariants,
+    formulation: Formulation,
+    setup: inputs.Setup,
+    plane: np.ndarray | None,
+    gravity: np.ndarray | None,
+) -> Motion:
+    return Motion(
+        invariants,
+        formulation,
+        second_order(invariants, setup.stiffening),
+        orientation=setup.placement.rotation,
+        plane=plane,
+        gravity=gravity,
     )

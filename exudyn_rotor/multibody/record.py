@@ -8,7 +8,6 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import SensorNode, SensorObject
 
-from exudyn_rotor.multibody.locking import COORDINATE_NAMES, SPIN
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
@@ -45,7 +44,8 @@ class Record:
     time : ndarray, shape (s,)
         [s]
     q, q_t, q_tt : ndarray, shape (s, n)
-        Coordinates of the body's nodes, those that are locked included.
+        Coordinates of the body's nodes, those that are locked included; the spin angle is θ, also
+        where the node's coordinate is −θ.
     held : ndarray, shape (s, n)
         Forces of locking constraints on these coordinates.
     speed : ndarray, shape (s,)
@@ -99,13 +99,15 @@ def read_record(body: RotorItems) -> Record:
         read = _current
     parts = [
         np.hstack([read(body, name, node, kind) for name, node in body.nodes.items()])
+        * body.layout.signs
         for kind in _RATES
     ]
     held = np.zeros_like(parts[0])
     for name, constraint in body.constraints.items():
-        if name in COORDINATE_NAMES:
+        if name in body.locks.names:
             force = read(body, name, constraint, _KINDS.Force)
-            held[:, COORDINATE_NAMES.index(name)] = force[:, 0]
+            held[:, body.locks.names.index(name)] = force[:, 0]
+    held *= body.layout.signs
     return Record(time, *parts, held, _speed(body, time, parts[1]), complete)
 
 
@@ -144,4 +146,4 @@ def _current(body: RotorItems, name: str, item: int, kind) -> np.ndarray:
 def _speed(body: RotorItems, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
     if not body.formulation.has_spin:
         return np.array([float(body.formulation.spin.rate(t)) for t in time])
-    return q_t[:, SPIN if "rigid" in body.nodes else body.formulation.translation_count]
+    return q_t[:, body.locks.spin if "rigid" in body.nodes else body.formulation.translation_count]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import exudyn
+from numpy.typing import ArrayLike
 
-from exudyn_rotor.multibody import sensors
+from exudyn_rotor.multibody import more_markers, sensors
 from exudyn_rotor.multibody.record import Record, add_recording, read_record
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
@@ -69,6 +71,44 @@ class RotorBody(RotorItems):
             f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
         return "\n".join(lines)
+
+    def add_marker(
+        self,
+        where: str | Sequence[int],
+        offset: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        weights: ArrayLike | None = None,
+        kind: str = "rigid",
+        name: str | None = None,
+        show: bool = True,
+    ) -> exudyn.MarkerIndex:
+        """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes.
+
+        Its axes are those of the mesh, for every spin axis; forces at an offset have their whole
+        lever, which they lack at the offset of a ``MarkerSuperElementRigid``; and its cost does not
+        depend on the number of nodes.
+
+        Parameters
+        ----------
+        where : str or sequence of int
+            Interface, with or without a marker yet, or mesh nodes.
+        offset : array_like, shape (3,)
+            From the interface's reference point or the mean of the nodes, mesh axes [m].
+        weights : array_like, optional
+            Of the nodes, as Exudyn's `weightingFactors`; equal by default.
+        kind : {'rigid', 'position'}
+        name : str, optional
+        show : bool
+            Whether it is drawn.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, e.g. nodes on a line for a rigid marker; nothing has been added then.
+        """
+        return more_markers.add_marker(
+            self, where, offset, weights=weights, kind=kind, name=name, show=show
+        )
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.

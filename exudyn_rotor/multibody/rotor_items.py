@@ -151,15 +151,14 @@ class RotorItems:
             raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
         self.check_assembled()
         kinds = exudyn.OutputVariableType
-        return tuple(
-            np.concatenate(
-                [
-                    np.atleast_1d(self.mbs.GetNodeOutput(node, kind, configuration))
-                    for node in self.nodes.values()
-                ]
-            )[self.layout.unknowns]
-            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
-        )
+        place = self.layout
+
+        def values(kind: exudyn.OutputVariableType) -> np.ndarray:
+            nodes = self.nodes.values()
+            parts = [self.mbs.GetNodeOutput(node, kind, configuration) for node in nodes]
+            return (place.signs * np.hstack(parts))[place.unknowns]
+
+        return tuple(map(values, (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)))
 
     def check_present(self) -> None:
         """Raise ValueError where the system no longer holds this rotor."""

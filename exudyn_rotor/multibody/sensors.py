@@ -12,7 +12,7 @@ import numpy as np
 from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.locking import SPIN, guiding_force
+from exudyn_rotor.multibody.locking import guiding_force
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.energy import energy_of
@@ -110,7 +110,7 @@ def add_interface_sensor(
 def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
     """Add a sensor of θ [rad] and ω [rad/s]."""
     if "rigid" in body.nodes:
-        node, index = body.nodes["rigid"], SPIN
+        node, index = body.nodes["rigid"], body.locks.spin
     elif body.formulation.has_spin:
         node, index = body.nodes["coordinates"], body.formulation.translation_count
     else:
@@ -118,10 +118,12 @@ def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
             f"rotor {body.name!r}: without the marker body a prescribed spin has no node"
         )
 
+    sign = float(body.layout.signs[index])
+
     def spin(mbs, t, sensors, factors, configuration):
         angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
         speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
-        return [float(angle), float(speed)]
+        return [sign * float(angle), sign * float(speed)]
 
     return _add_function_sensor(body, spin, options)
 
@@ -167,22 +169,23 @@ def _external_moment(body: RotorItems):
     place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
     guide = guiding_force(body.locks, place)
     constraint = body.constraints.get("spin")
+    spin, sign = body.locks.spin, body.locks.sign
 
     def moment(t, configuration) -> float:
         kinds = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
-        theta, omega, omega_t = (
-            float(mbs.GetNodeOutput(node, kind, configuration)[SPIN]) for kind in kinds
+        angle, rate, acceleration = (
+            float(mbs.GetNodeOutput(node, kind, configuration)[spin]) for kind in kinds
         )
         reaction = (
-            place.lock_mass[SPIN] * omega_t
-            + place.lock_damping[SPIN] * omega
-            + place.lock_stiffness[SPIN] * theta
+            place.lock_mass[spin] * acceleration
+            + place.lock_damping[spin] * rate
+            + place.lock_stiffness[spin] * angle
         )
         if guide is not None:
-            reaction -= guide(t)[SPIN]
+            reaction -= guide(t)[spin]
         if constraint is not None:
             reaction += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
-        return reaction
+        return sign * reaction
 
     return moment
 

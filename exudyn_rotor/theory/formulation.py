@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -206,6 +206,20 @@ class Formulation:
             raise ValueError(
                 "drive='elastic' needs a prescribed spin; with spin='free' leave it out"
             )
+
+    def reversed(self) -> Formulation:
+        """Return the formulation with the spin angle counted about the opposite axis, −θ."""
+        if self.has_spin:
+            return self
+        if self.is_constant_speed:
+            return replace(self, spin=ConstantSpeed(-self.spin.speed, -self.spin.angle))
+        forward = self.spin
+        backward = PrescribedMotion(
+            lambda t: -forward.value(t),
+            lambda t: -forward.rate(t),
+            lambda t: -forward.acceleration(t),
+        )
+        return replace(self, spin=backward)
 
     @property
     def has_spin(self) -> bool:

@@ -208,6 +208,11 @@ class Invariants:
             P=self.P - shift[:, None, None] * self.S[None, :, :],
         )
 
+    def reversed(self) -> Invariants:
+        """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""
+        B = None if self.B is None else -self.B
+        return replace(self, direction=-self.direction, G=-self.G, B=B)
+
     def in_basis(self, T: np.ndarray) -> Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))

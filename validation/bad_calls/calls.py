@@ -183,6 +183,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "ReducedRotor.static_displacement": lambda w: {"speed": 10.0},
     "ReducedRotor.static_stress": lambda w: {"speed": 10.0},
     "RotorBody.add_interface_sensor": lambda w: _sensor(interface="left"),
+    "RotorBody.add_marker": lambda w: {"where": [0, 1, 2, 3], "weights": [1.0, 1.0, 1.0, 2.0]},
     "RotorBody.add_node_sensor": lambda w: _sensor(node=0),
     "RotorBody.marker": lambda w: {"interface": "left"},
     "SolidRotor.add_point_mass": lambda w: {"position": [0.0, 0.0, 0.1], "mass": 0.1},

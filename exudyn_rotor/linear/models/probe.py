@@ -10,7 +10,6 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.locking import SPIN
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
@@ -44,12 +43,10 @@ class Probe:
         self.rotor = np.arange(scene.modal.stop)
         self.step = None
         self.constant = None
-        if body.motion.is_constant:
-            zero = np.zeros(body.motion.size)
-            self.constant = (
-                body.motion.forces(0.0, zero, zero),
-                *body.motion.jacobian(0.0, zero, zero),
-            )
+        motion = body.plan.node_motion
+        if motion.is_constant:
+            zero = np.zeros(motion.size)
+            self.constant = motion.forces(0.0, zero, zero), *motion.jacobian(0.0, zero, zero)
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
@@ -109,7 +106,7 @@ class Probe:
             force[unknowns] = rest + by_q @ q[unknowns] + by_v @ q_t[unknowns]
             return force
         t = self.mbs.systemData.GetTime()
-        force[unknowns] = body.motion.forces(t, q[unknowns], q_t[unknowns])
+        force[unknowns] = body.plan.node_motion.forces(t, q[unknowns], q_t[unknowns])
         return force
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -119,7 +116,8 @@ class Probe:
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
-            q[self.spin], q_t[self.spin] = theta, self.speed
+            sign = self.scene.body.locks.sign if "marker_body" in self.scene.body.objects else 1
+            q[self.spin], q_t[self.spin] = sign * theta, sign * self.speed
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
         data.SetTime(theta / self.speed if self.speed else 0.0)
@@ -207,5 +205,5 @@ def _spin_coordinate(body: RotorBody) -> int | None:
     """Return the scene's coordinate θ; None for a prescribed spin without the marker body."""
     places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
     if "marker_body" in body.objects:
-        return places[SPIN]
+        return places[body.locks.spin]
     return places[body.formulation.translation_count] if body.formulation.has_spin else None

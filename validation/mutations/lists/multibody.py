@@ -96,7 +96,11 @@ MULTIBODY = [
     *mutations(
         "multibody/record.py",
         "test_measures.py::test_recorded_speed_of_a_free_spin",
-        ("spin of the first translation's rate", "return q_t[:, SPIN if", "return q_t[:, 0 if"),
+        (
+            "spin of the first translation's rate",
+            "return q_t[:, body.locks.spin if",
+            "return q_t[:, 0 if",
+        ),
     ),
     *mutations(
         "multibody/sensors.py",

@@ -1,0 +1,129 @@
+"""More markers of a rotor in a scene, at interfaces or mesh nodes, with the axes of the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementRigid
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.inputs import MARKER_KINDS
+from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.theory.nodal import skew
+
+_FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
+
+
+def add_marker(
+    body: RotorItems,
+    where: str | Sequence[int],
+    offset: ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    weights: ArrayLike | None = None,
+    kind: str = "rigid",
+    name: str | None = None,
+    show: bool = True,
+) -> exudyn.MarkerIndex:
+    """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes."""
+    if "marker_body" not in body.objects:
+        raise ValueError(
+            f"rotor {body.name!r} was added with marker_body=False; markers need the marker body"
+        )
+    shift = body.frame.B @ checks.vector(offset, "offset", "m")
+    checks.choice(kind, "kind", MARKER_KINDS)
+    common = {
+        "bodyNumber": body.objects["marker_body"],
+        "visualization": {"show": checks.flag(show, "show"), "showMarkerNodes": False},
+    }
+    if name is not None:
+        common["name"] = checks.label(name, "name")
+        if int(body.mbs.GetMarkerNumber(name)) != -1:
+            raise ValueError(f"name: this system already has a marker {name!r}; choose another")
+    if isinstance(where, str):
+        point, motion, radius = _of_interface(body, where)
+        if weights is not None:
+            raise ValueError("weights: are for mesh nodes; an interface has its own")
+    else:
+        point, motion, radius = _of_nodes(body, where, weights, kind)
+    if kind == "position":
+        arms = shift[None, :]
+    else:
+        angles = 2.0 * np.pi / 3.0 * np.arange(3)
+        circle = np.column_stack([np.cos(angles), np.sin(angles)]) @ body.axis.plane.T
+        arms = shift + (radius or 1.0) * circle @ body.frame.B.T
+    columns = [motion[:3] - skew(arm) @ motion[3:] for arm in arms]
+    nodes = _append_nodes(body, point + arms, np.vstack(columns))
+    if kind == "position":
+        item = MarkerSuperElementPosition(meshNodeNumbers=nodes, weightingFactors=[1.0], **common)
+        return body.mbs.AddMarker(item)
+    turn = np.eye(4)
+    turn[:3, :3] = body.frame.B
+    item = MarkerSuperElementRigid(
+        meshNodeNumbers=nodes, weightingFactors=[1.0 / 3.0] * 3, localHT=turn, **common
+    )
+    return body.mbs.AddMarker(item)
+
+
+def _of_interface(body: RotorItems, name: str) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return reference point, motion (6, m) and radius of an interface, axes of the body."""
+    known = body.selection.source.interfaces
+    interface = known[checks.choice(name, "where: interface", tuple(known))]
+    motion = np.kron(np.eye(2), body.frame.B) @ interface.motion @ body.selection.T
+    return body.frame.points(interface.reference), motion, interface.radius
+
+
+def _of_nodes(
+    body: RotorItems, where: Sequence[int], weights: ArrayLike | None, kind: str
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return the same for mesh nodes: weighted means, as Exudyn's marker takes them."""
+    described = "where: an interface, or mesh nodes"
+    if not body.mesh_node_count:
+        raise ValueError(
+            f"{described}: rotor {body.name!r} was reduced without shapes (keep_shapes=False) and "
+            f"has no mesh nodes here; name an interface, got {checks.shown(where)}"
+        )
+    nodes = checks.whole_numbers(where, described, most=body.mesh_node_count - 1)
+    if len(nodes) == 0 or len(set(nodes.tolist())) != len(nodes):
+        raise ValueError(f"{described}: needs different nodes, got {checks.shown(where)}")
+    share = np.ones(len(nodes))
+    if weights is not None:
+        share = checks.vector(weights, "weights", size=len(nodes))
+        if np.any(share < 0.0) or not np.any(share):
+            raise ValueError(f"weights: needs numbers above zero, got {checks.shown(weights)}")
+    share = share / share.sum()
+    item = body.mbs.GetObject(body.objects["marker_body"])
+    places = np.reshape(item["referencePositions"], (-1, 3))[nodes]
+    columns = np.asarray(item["modeBasis"])
+    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
+    point, mean = share @ places, np.tensordot(share, columns, 1)
+    arms = np.array([skew(place - point) for place in places])
+    moments = np.einsum("n,nba,nbc->ac", share, arms, arms)
+    sizes = np.linalg.eigvalsh(moments)
+    motion = np.vstack([mean, np.zeros_like(mean)])
+    if sizes[0] > _FLAT * sizes[-1]:
+        # mean rotation of u = ū + φ × a, weighted: Σ w ãᵀã φ = Σ w ã (u − ū)
+        motion[3:] = np.linalg.solve(moments, np.einsum("n,nab,nbm->am", share, arms, columns))
+    elif kind == "rigid":
+        raise ValueError(
+            f"where: the nodes {checks.shown(nodes.tolist())} lie on a line or in a point and show "
+            "no rotation; give more nodes, an interface, or kind='position'"
+        )
+    return point, motion, float(np.sqrt(0.5 * np.trace(moments)))
+
+
+def _append_nodes(body: RotorItems, places: np.ndarray, columns: np.ndarray) -> list[int]:
+    """Add virtual nodes (k, 3) with mode columns (3k, m) to the marker body; return them."""
+    mbs, number = body.mbs, body.objects["marker_body"]
+    item = mbs.GetObject(number)
+    before = np.asarray(item["referencePositions"])
+    mbs.SetObjectParameter(number, "referencePositions", np.r_[before, places.ravel()])
+    mbs.SetObjectParameter(number, "modeBasis", np.vstack([item["modeBasis"], columns]))
+    stress = np.asarray(item["outputVariableModeBasis"])
+    if stress.size:
+        rows = np.zeros((len(places), stress.shape[1]))
+        mbs.SetObjectParameter(number, "outputVariableModeBasis", np.vstack([stress, rows]))
+    first = len(before) // 3
+    return list(range(first, first + len(places)))
