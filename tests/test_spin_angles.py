@@ -211,14 +211,14 @@ def test_force_at_an_added_marker_has_its_lever(skew_scene):
         ("a", OFFSET, "rigid"),
         ([0, 1, 2, 3], OFFSET, "rigid"),
         ("a", OFFSET, "position"),
-        ("a", np.zeros(3), "rigid"),
+        (None, np.zeros(3), "rigid"),
     ):
         solid, _, _ = skew_scene
         mbs = exu.SystemContainer().AddSystem()
         body = add_rotor(mbs, solid.reduce(3), spin=0.0, translation="none")
-        marker = body.add_marker(where, offset, kind=kind)
+        marker = body.add_marker(where, offset, kind=kind) if where else body.marker("a")
         mbs.CreateForce(itemNumber=marker, loadVector=force.tolist())
-        if not np.any(offset):
+        if not where:
             mbs.CreateTorque(itemNumber=marker, loadVector=np.cross(OFFSET, force).tolist())
         mbs.Assemble()
         settings = recommended_settings(end_time=1e-3, step=1e-4)

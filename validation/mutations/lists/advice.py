@@ -57,13 +57,13 @@ ADVICE = [
         "test_run_check.py::test_loads_that_the_frame_does_not_take_are_found",
         (
             "second-order moment with the wrong sign",
-            "unresisted - (by_arm - e * (e @ by_arm))",
-            "unresisted + (by_arm - e * (e @ by_arm))",
+            "unresisted - tilting @ by_arm",
+            "unresisted + tilting @ by_arm",
         ),
         (
             "moments that tilt not compared with the modes'",
-            "missing = moment - modal_moment",
-            "missing = 0.0 * (moment - modal_moment)",
+            "unresisted = tilting @ (known - modal_moment)",
+            "unresisted = 0.0 * tilting @ (known - modal_moment)",
         ),
     ),
     *mutations(

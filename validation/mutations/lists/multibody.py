@@ -11,8 +11,8 @@ MULTIBODY = [
         _SCENES,
         (
             "origin of the mesh not turned",
-            "position=mesh_position + orientation @ origin",
-            "position=mesh_position + origin",
+            "mesh_position + orientation @ origin",
+            "mesh_position + origin",
         ),
         (
             "mesh turned the wrong way into the frame",
@@ -23,6 +23,29 @@ MULTIBODY = [
             "modes turned the wrong way into the frame",
             'np.einsum("ab,nbk->nak", self.B',
             'np.einsum("ba,nbk->nak", self.B',
+        ),
+    ),
+    *mutations(
+        "multibody/frame.py",
+        "test_spin_angles.py",
+        (
+            "second angle with the wrong sign of the mesh axis",
+            "np.arctan2(sign * e[0], sign * e[1])",
+            "np.arctan2(-sign * e[0], sign * e[1])",
+        ),
+        (
+            "first angle counted the wrong way",
+            "FIRST, int(np.sign(n[0]))",
+            "FIRST, -int(np.sign(n[0]))",
+        ),
+    ),
+    *mutations(
+        "multibody/more_markers.py",
+        "test_spin_angles.py",
+        (
+            "lever of an added marker with the wrong sign",
+            "motion[:3] - skew(arm)",
+            "motion[:3] + skew(arm)",
         ),
     ),
     *mutations(
