@@ -111,11 +111,12 @@ def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:
 
 def _with_guide(forces: StateForce | None, guide: LockedForce | None) -> Callable:
     """Return the user function of the forces, with those on locked coordinates."""
+    # Exudyn takes a list faster than an array
     if guide is None:
-        return lambda mbs, t, item, q, q_t: forces(t, q, q_t)
+        return lambda mbs, t, item, q, q_t: forces(t, q, q_t).tolist()
     if forces is None:
-        return lambda mbs, t, item, q, q_t: guide(t)
-    return lambda mbs, t, item, q, q_t: guide(t) + forces(t, q, q_t)
+        return lambda mbs, t, item, q, q_t: guide(t).tolist()
+    return lambda mbs, t, item, q, q_t: (guide(t) + forces(t, q, q_t)).tolist()
 
 
 def _varying_mass(

@@ -116,41 +116,34 @@ class Kernel:
         self._time = math.nan
 
     def _stack(self, motion: Motion) -> None:
-        """Arrange the invariants in one table for ``(ζ, 1, ζ̇)``, three rows of the docstring."""
+        """Arrange the invariants for the three rows of the docstring."""
         inv, terms, count = motion.invariants, motion.spin_terms, self._count
         e, S1, u = skew(inv.direction), motion.S1, motion.static_unbalance[:, None]
-        none, zero = np.zeros((count, count)), np.zeros((count, 1))
-        modal = [
-            np.hstack([terms.C_hat, inv.h[:, None], none]),
-            np.hstack([terms.W, inv.g[:, None], none]),
-            np.hstack([none, zero, 2.0 * terms.G]),
-        ]
-        wide = np.zeros((3, count))
-        unbalance = [
-            np.hstack([-e @ S1, -e @ u, wide]),
-            np.hstack([S1, u, wide]),
-            np.hstack([wide, np.zeros((3, 1)), 2.0 * S1]),
-        ]
-        if not motion.is_coupled:
-            unbalance = [np.zeros((0, 2 * count + 1))] * 3
-        blocks = [np.vstack(pair) for pair in zip(modal, unbalance, strict=True)]
-        width = len(blocks[0])
-        self._table = np.vstack(blocks)
-        self._position_table = np.ascontiguousarray(self._table[: 2 * width, : count + 1])
+        h, g = inv.h[:, None], inv.g[:, None]
+        # the last column of (85) makes Θ + hᵀζ, so that (ζ, 1) times this row is (85)
+        centrifugal = [np.hstack([terms.C_hat, h]), np.hstack([h.T, [[inv.Theta]]])]
+        euler = [np.hstack([terms.W, g]), np.zeros((1, count + 1))]
+        coriolis = [2.0 * terms.G, np.zeros((1, count))]
+        if motion.is_coupled:
+            centrifugal.append(np.hstack([-e @ S1, -e @ u]))
+            euler.append(np.hstack([S1, u]))
+            coriolis.append(2.0 * S1)
+        self._by_position = np.vstack([*centrifugal, *euler])
+        self._by_rate = np.vstack(coriolis)
+        width = len(self._by_rate)
         self._products = np.zeros((3, width))
-        self._flat, self._position_part = (
-            self._products.ravel(),
-            self._products.ravel()[: 2 * width],
-        )
+        self._of_position = self._products[:2].reshape(-1)
+        self._of_rate = self._products[2]
         self._loads = np.zeros(width)
-        self._state = np.zeros(2 * count + 1)
-        self._state[count] = 1.0
-        self._position_state = self._state[: count + 1]
-        self._zeta, self._rate = self._state[:count], self._state[count + 1 :]
+        self._state = np.ones(count + 1)
+        self._zeta, self._rate = self._state[:count], np.zeros(count)
+        self._spin_inertia_row = self._products[0, : count + 1]
         self._centrifugal, self._spin_coupling = self._products[:2, :count]
-        self._unbalance = self._products[1, count:]
+        self._unbalance = self._products[1, count + 1 :]
         self._B = terms.B if np.any(terms.B) else None
         self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
+        # −ẽS*, S* and 2S*
+        self._frame_by_state = -e @ S1, S1, 2.0 * S1
 
     def _place_mass(self, modes: np.ndarray) -> None:
         """Say where the entries of the mass matrix stand that vary, and cut their values."""
@@ -174,11 +167,9 @@ class Kernel:
     def mass_entries(self, t: float, q: list) -> np.ndarray:
         """Return the entries at :attr:`rows` and :attr:`columns`; valid until the next call."""
         self._update(t, q)
-        parts, inv = self._mass_parts, self._motion.invariants
+        parts = self._mass_parts
         if self._spin is not None:
-            # (85): Θ + 2hᵀζ + ζᵀĈζ
-            change = self._zeta.dot(self._centrifugal) + self._zeta.dot(inv.h)
-            parts[0][0] = inv.Theta + change
+            parts[0][0] = self._state.dot(self._spin_inertia_row)
             parts[1][:] = self._spin_coupling
         if self._motion.is_coupled:
             if self._spin is not None:
@@ -207,7 +198,7 @@ class Kernel:
             if self._spin is not None:
                 torque += turning.torque + self._zeta.dot(turning.by_deflection)
         if self._motion.is_coupled:
-            self._force[self._translations] = turning.A.dot(loads[self._count :])
+            self._force[self._translations] = turning.A.dot(loads[self._count + 1 :])
         if self._spin is not None:
             self._force[self._spin] = torque
         return self._force
@@ -251,16 +242,15 @@ class Kernel:
 
     def _add_translations(self, omega: float, factor_q: float, factor_v: float) -> None:
         squared, euler, _ = self._factors
-        count, turning, matrix = self._count, self._turning, self._jacobian
-        # rows of the unbalance in the table: −ẽS*, S*, 2S*
-        blocks = self._table.reshape(3, -1, 2 * count + 1)[:, count:]
-        by_zeta = (-factor_q * squared) * blocks[0, :, :count]
-        by_zeta -= (factor_q * euler) * blocks[1, :, :count]
-        by_zeta += (factor_v * omega) * blocks[2, :, count + 1 :]
+        turning, matrix = self._turning, self._jacobian
+        turned_twice, turned, twice = self._frame_by_state
+        by_zeta = (-factor_q * squared) * turned_twice
+        by_zeta -= (factor_q * euler) * turned
+        by_zeta += (factor_v * omega) * twice
         matrix[self._translations, self._first :] = turning.A.dot(by_zeta)
         if self._spin is not None:
-            loads = self._loads[count:]
-            by_rate = self._products[2, count:] - 2.0 * omega * self._products[0, count:]
+            loads, products = self._loads[self._count + 1 :], self._products[:, self._count + 1 :]
+            by_rate = products[2] - 2.0 * omega * products[0]
             by_angle = turning.e.dot(loads)
             column = turning.A.dot(factor_v * by_rate - factor_q * by_angle)
             matrix[self._translations, self._spin] = column
@@ -271,25 +261,23 @@ class Kernel:
             return
         self._last, self._time = q, t
         self._zeta[:] = q[self._first :]
-        np.dot(self._position_table, self._position_state, out=self._position_part)
+        np.dot(self._by_position, self._state, out=self._of_position)
         if self._turning.is_needed:
             spin = self._motion.formulation.spin
             self._turning.turn(t, spin.value(t) if self._spin is None else q[self._spin])
 
     def _update_with_rates(self, t: float, q: list, q_t: list) -> float:
         """Evaluate everything, and return ω."""
-        form = self._motion.formulation
-        if self._turning.is_needed and (q != self._last or t != self._time):
-            self._turning.turn(t, form.spin.value(t) if self._spin is None else q[self._spin])
-        self._last, self._time = q, t
-        self._zeta[:], self._rate[:] = q[self._first :], q_t[self._first :]
-        np.dot(self._table, self._state, out=self._flat)
+        self._update(t, q)
+        self._rate[:] = q_t[self._first :]
+        np.dot(self._by_rate, self._rate, out=self._of_rate)
         factors = self._factors
         if self._spin is not None:
             omega = q_t[self._spin]
         else:
-            omega = form.spin.rate(t)
-            factors[1] = -form.spin.acceleration(t)
+            spin = self._motion.formulation.spin
+            omega = spin.rate(t)
+            factors[1] = -spin.acceleration(t)
         factors[0], factors[2] = omega * omega, -omega
         np.dot(factors, self._products, out=self._loads)
         return omega
