@@ -10,7 +10,7 @@ import exudyn_rotor
 shaft = occ.Cylinder(occ.Pnt(0, 0, -0.3), occ.Z, 0.015, 0.6)
 solid = shaft + occ.Cylinder(occ.Pnt(0, 0, -0.02), occ.Z, 0.12, 0.04)
 solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
-mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.03))
+mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.05))
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 rotor = exudyn_rotor.SolidRotor.from_ngsolve(mesh, steel, axis="z").center_interfaces()
 reduced = rotor.add_point_mass([0.12, 0, 0], 0.005).reduce(12)

@@ -18,7 +18,7 @@ def write_model(folder: Path) -> SolidRotor:
     """Write nodes, mass and stiffness of a stepped shaft to `folder`; return the original."""
     solid = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 0.02, 0.3)
     solid += occ.Cylinder(occ.Pnt(0, 0, 0.1), occ.Z, 0.05, 0.05)
-    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04))
+    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.08, curvaturesafety=1.0))
     steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
     rotor = SolidRotor.from_ngsolve(mesh, steel, axis="z")
     np.savetxt(folder / "nodes.txt", rotor.nodes, fmt="%.17g")

@@ -29,10 +29,10 @@ shaft = occ.Cylinder(occ.Pnt(0, 0, -0.3), occ.Z, 0.02, 0.6)
 shaft = shaft * occ.Box(occ.Pnt(-0.02, -0.0185, -0.3), occ.Pnt(0.02, 0.0185, 0.3))
 solid = shaft + occ.Cylinder(occ.Pnt(0, 0, -0.015), occ.Z, 0.12, 0.03)
 solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
-mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04, curvaturesafety=1.0))
+mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.06, curvaturesafety=1.0))
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 rotor = SolidRotor.from_ngsolve(mesh, steel, axis="z").center_interfaces()
-reduced = rotor.reduce(4).without_shapes()
+reduced = rotor.reduce(2).without_shapes()
 
 
 def bearings(sideways: float, upright: float, damping: float) -> list[Support]:
@@ -46,7 +46,7 @@ def damped(speed: float, damping: float) -> tuple[LinearModel, float]:
     return linear_model(reduced, supports=bearings(SIDEWAYS, UPRIGHT, damping)), speed
 
 
-speeds = np.linspace(440.0, 580.0, 57)
+speeds = np.linspace(440.0, 580.0, 41)
 isotropic = bearings(UPRIGHT, UPRIGHT, 0.0)
 found = unstable_ranges(reduced, speeds, supports=isotropic)
 keep = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
@@ -57,7 +57,7 @@ expected = np.sqrt(np.sort(squares[squares > 0.0])[:2])
 print(f"isotropic bearings: unstable from {found[0, 0]:.4f} to {found[0, 1]:.4f} rad/s")
 print(f"  stiffness singular at {expected[0]:.4f} and {expected[1]:.4f} rad/s")
 
-for damping in (0.0, 200.0, 400.0):
+for damping in (0.0, 400.0):
     ranges = unstable_ranges(reduced, speeds, supports=bearings(SIDEWAYS, UPRIGHT, damping))
     listed = ", ".join(f"{low:.2f} to {high:.2f}" for low, high in ranges) or "nowhere"
     print(f"softer sideways, {damping:3.0f} N s/m: unstable {listed} rad/s")
@@ -65,7 +65,7 @@ for damping in (0.0, 200.0, 400.0):
 result = stability_map(
     damped,
     speeds[::2],
-    np.linspace(0.0, 400.0, 6),
+    np.linspace(0.0, 400.0, 5),
     labels=("spin speed [rad/s]", "damping of a bearing [N s/m]"),
     tolerance=1e-6,
 )

@@ -56,8 +56,8 @@ def test_overhung_disc_needs_the_full_level():
 def test_spun_up_blade_stays_with_the_nonlinear_solid_at_the_full_level():
     """The deflection is 2.6 % of the length: its square, 7e-4, is what linear theory leaves out."""
     solid = nonlinear.ClampedSolid.of(spun_up_blade.thin_blade(0.1), "root")
-    tracks = spun_up_blade.compare(solid, 5e-3)
+    tracks = spun_up_blade.compare(solid, 1e-2)
     assert np.abs(tracks["nonlinear solid"]).max() > 5e-3
-    found = {row["level"]: row for row in spun_up_blade.summary(tracks, 5e-3)}
+    found = {row["level"]: row for row in spun_up_blade.summary(tracks, 1e-2)}
     assert found["full"]["deviation"] < 7e-4
     assert found["none"]["lost_at"] < found["tilt"]["lost_at"] < spun_up_blade.SPIN_UP

@@ -12,7 +12,7 @@ STEPS = 20
 
 @pytest.fixture(scope="module")
 def model() -> speed_scenes.Model:
-    return speed_scenes.Model.of(0.1, 8)
+    return speed_scenes.Model.of(0.1, 8, safety=1.0)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_ratios_stand_beside_their_targets():
 
 
 def test_every_ablation_runs_and_changes_one_thing():
-    rotors = ablation.Rotors(0.1)
+    rotors = ablation.Rotors(0.1, safety=1.0)
     for (base, change), (before, after) in ablation.VARIANTS.items():
         assert ablation.cost(rotors, after, STEPS) > 0.0, (base, change)
         fields = [f.name for f in dataclasses.fields(ablation.Variant)]

@@ -11,7 +11,7 @@ from validation.references.timoshenko import compare_all
 
 @pytest.fixture(scope="module")
 def results():
-    return compare_all(0.04)[1]
+    return compare_all(0.04, safety=1.5)[1]
 
 
 def array(result: dict) -> np.ndarray:

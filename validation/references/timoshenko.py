@@ -33,7 +33,9 @@ REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")
 
 
-def solid_shaft(shaft: dict, material: dict, element_size: float) -> ReducedRotor:
+def solid_shaft(
+    shaft: dict, material: dict, element_size: float, safety: float = 2.0
+) -> ReducedRotor:
     """Return the solid rotor of a beam description, along z, reduced."""
     radius, length = 0.5 * shaft["diameter"], shaft["length"]
     solid = occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, radius, length)
@@ -42,7 +44,8 @@ def solid_shaft(shaft: dict, material: dict, element_size: float) -> ReducedRoto
         corner = occ.Pnt(0, 0, z - 0.5 * disc["width"])
         solid += occ.Cylinder(corner, occ.Z, 0.5 * disc["diameter"], disc["width"])
     solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
-    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=element_size))
+    geometry = occ.OCCGeometry(solid)
+    mesh = ngsolve.Mesh(geometry.GenerateMesh(maxh=element_size, curvaturesafety=safety))
     rotor = SolidRotor.from_ngsolve(mesh, material, axis="z").center_interfaces()
     return rotor.reduce(craig_bampton_modes(rotor, 12, coupling="RBE3"), prestress=True)
 
@@ -82,14 +85,16 @@ def compare(system: LinearRotor, beam: dict, speeds: list[float]) -> dict:
     }
 
 
-def compare_all(element_size: float) -> tuple[dict, dict]:
-    """Return the beam data and the deviations of all solid rotors."""
+def compare_all(element_size: float, safety: float = 2.0) -> tuple[dict, dict]:
+    """Return the beam data and the deviations of all solid rotors.
+
+    `safety` is the radius of the discs over the length of the elements there.
+    """
     data = json.loads(REFERENCE.read_text())
     uniform, discs = data["uniform"], data["two discs, points"]
     hubs, speeds = data["two discs, rigid hubs"], data["speeds"]
-    plain, with_discs = (
-        solid_shaft(one["shaft"], data["material"], element_size) for one in (uniform, discs)
-    )
+    plain = solid_shaft(uniform["shaft"], data["material"], element_size)
+    with_discs = solid_shaft(discs["shaft"], data["material"], element_size, safety)
     results = {}
     for level in ("tilt", "full"):
         for name, rotor, beam in (

@@ -23,6 +23,7 @@ from exudyn_rotor import (
     RotorBody,
     SolidRotor,
     add_rotor,
+    keep_modes,
     recommended_settings,
 )
 from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
@@ -176,22 +177,24 @@ VARIANTS: dict[tuple[str, str], tuple[Variant, Variant]] = {
 
 
 class Rotors:
-    """Reduced rotors of one mesh, made when they are first asked for."""
+    """Reduced rotors of one mesh: the lowest of the same modes.
 
-    def __init__(self, element_size: float) -> None:
-        mesh = disc_on_shaft(element_size)
+    `safety` is the radius of the curves over the length of the elements there.
+    """
+
+    def __init__(self, element_size: float, safety: float = 2.0) -> None:
+        mesh = disc_on_shaft(element_size, safety)
         rotor = SolidRotor.from_ngsolve(mesh, STEEL, axis="x").center_interfaces()
-        self._rotor = rotor.add_point_mass([0.05, 0.0, 0.12], 0.008)
-        self._made: dict[tuple[int, bool], ReducedRotor] = {}
+        rotor = rotor.add_point_mass([0.05, 0.0, 0.12], 0.008)
+        self._most = rotor.reduce(max(MORE_MODES), prestress=True)
+        self._with_stress = rotor.reduce(MODES, stress=True, prestress=True)
 
     def get(self, variant: Variant) -> ReducedRotor:
         """Return the rotor with the variant's modes."""
-        key = variant.modes, variant.stress
-        if key not in self._made:
-            self._made[key] = self._rotor.reduce(
-                variant.modes, stress=variant.stress, prestress=True
-            )
-        reduced = self._made[key]
+        if variant.stress:
+            reduced = self._with_stress
+        else:
+            reduced = keep_modes(self._most, range(variant.modes))
         return reduced if variant.shapes else reduced.without_shapes()
 
 

@@ -38,10 +38,10 @@ class Model:
     node_count: int
 
     @classmethod
-    def of(cls, element_size: float, mode_count: int) -> Model:
+    def of(cls, element_size: float, mode_count: int, safety: float = 2.0) -> Model:
         """Mesh the rotor, put an unbalance on its rim, and compute free modes."""
         fem = FEMinterface()
-        mesh = disc_on_shaft(element_size)
+        mesh = disc_on_shaft(element_size, safety)
         fem.ImportMeshFromNGsolve(
             mesh, materials=STEEL, boundaryNamesList=list(BEARINGS), meshOrder=2
         )

@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 
+from exudyn_rotor.checks import read_only
 from exudyn_rotor.theory.axis import SpinAxis
 
 FRAMES = ("inertial", "rotor")
@@ -20,6 +21,7 @@ def axes_of(axis: SpinAxis) -> np.ndarray:
     return np.column_stack([axis.plane, axis.direction])
 
 
+@cache
 def turning_harmonics(size: int) -> dict[int, np.ndarray]:
     """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, (3, 3) or twice that, axes (n1, n2, e).
 
@@ -27,7 +29,7 @@ def turning_harmonics(size: int) -> dict[int, np.ndarray]:
     """
     forward = 0.5 * np.array([[1.0, 1j, 0.0], [-1j, 1.0, 0.0], [0.0, 0.0, 0.0]])
     terms = {-1: forward.conj(), 0: np.diag([0.0, 0.0, 1.0]).astype(complex), 1: forward}
-    return {n: np.kron(np.eye(size // 3), term) for n, term in terms.items()}
+    return {n: read_only(np.kron(np.eye(size // 3), term), complex) for n, term in terms.items()}
 
 
 def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
