@@ -15,7 +15,7 @@ def main(arguments: list[str] | None = None) -> None:
     demo.add_argument(
         "--output", default="exudyn-rotor-demo", help="folder for the pictures (%(default)s)"
     )
-    demo.add_argument("--quick", action="store_true", help="coarse mesh, a fifth of the time")
+    demo.add_argument("--quick", action="store_true", help="coarse mesh, a tenth of the time")
     options = parser.parse_args(arguments)
     run_demo(options.output, quick=options.quick)
 

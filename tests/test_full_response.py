@@ -50,7 +50,9 @@ def complete(beam):
 
 @pytest.fixture(scope="module")
 def disc() -> SolidRotor:
-    """Return a disc on a shaft with 15 000 degrees of freedom."""
+    """Return a disc on a shaft with 15 000 degrees of freedom.
+
+    An uneven mesh would be off balance."""
     return disc_rotor(safety=2.0).center_interfaces()
 
 
@@ -132,8 +134,9 @@ def test_mesh_against_one_sparse_solution_at_each_speed(disc):
         np.testing.assert_allclose(forward, amplitudes, rtol=1e-6)
 
 
-def test_reduced_rotor_converges_to_the_full_one(disc):
+def test_reduced_rotor_converges_to_the_full_one():
     """Craig–Bampton with mean interface motions: Craig, Bampton, AIAA J. 6 (1968)."""
+    disc = disc_rotor().center_interfaces()
     speeds = np.array([200.0, 700.0, 1500.0])
     exact = unbalance_response(disc, speeds, DISC_UNBALANCES, supports=DISC_SUPPORTS)
     errors = []

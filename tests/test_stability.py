@@ -199,9 +199,9 @@ def test_asymmetric_shaft_on_anisotropic_supports(method):
 
 
 def test_limits_of_an_asymmetric_shaft_on_anisotropic_supports():
-    speeds = np.linspace(100.0, 220.0, 25)
+    speeds = [100.0, 140.0, 160.0, 164.5, 175.0, 220.0]  # there are two ranges, close together
     found = unstable_ranges(asymmetric_shaft(), speeds, supports=anisotropic())
-    assert len(found) >= 1
+    assert len(found) == 2
 
     def excess(speed: float) -> float:
         return np.log(np.abs(inertial_multipliers(speed)).max())

@@ -25,7 +25,7 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     folder : path-like
         Made if it does not exist; pictures of the same name are replaced.
     quick : bool
-        A coarse mesh and a fifth of the time, to see that everything works.
+        A coarse mesh and a tenth of the time, to see that everything works.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def run_demo(folder: str | Path, *, quick: bool = False) -> list[Run]:
     print("meshing with NGSolve, computing modes with FEMinterface …", flush=True)
     fem = scene.unbalanced_model(MODES, *(QUICK_MESH if quick else FINE_MESH))
     print(f"{len(fem.GetNodePositionsAsArray())} nodes, {MODES} modes")
-    end_time = END_TIME / 5.0 if quick else END_TIME
+    end_time = END_TIME / 10.0 if quick else END_TIME
     variants = {
         "3D body, markers on all nodes": scene.add_3d_rotor,
         "3D body, virtual interface nodes": scene.add_3d_rotor_with_virtual_nodes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from functools import cache
 
 import netgen.occ as occ
 import ngsolve as ngs
@@ -17,12 +18,13 @@ from validation.extremes.rows import EPS, Row, message
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 
 
+@cache
 def small_mesh_rotor() -> SolidRotor:
     """Return a steel disc on a shaft with some hundred nodes."""
     shaft = occ.Cylinder((0, 0, 0), occ.Z, 0.02, 0.5)
     solid = shaft + occ.Cylinder((0, 0, 0.2), occ.Z, 0.15, 0.03)
     solid.mat("steel")
-    mesh = ngs.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.1))
+    mesh = ngs.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.1, curvaturesafety=1.5))
     return SolidRotor.from_ngsolve(mesh, {"steel": STEEL}, "z", order=1)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
@@ -24,6 +26,7 @@ def block(scale: float = 1.0) -> ngs.Mesh:
     return ngs.Mesh(netgen_mesh)
 
 
+@cache
 def dimensionless(length: float, stress: float = 1.0, density: float = 1.0) -> np.ndarray:
     """Return the frequencies of a turning block, in units of ``√(E/ρ) / L``.
 
