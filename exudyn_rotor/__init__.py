@@ -21,6 +21,7 @@ from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
+from exudyn_rotor.linear.response.steady_state import SteadyState, steady_state
 from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
 from exudyn_rotor.linear.stability.stability import (
     Stability,
@@ -34,6 +35,7 @@ from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFRedu
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
+from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -84,6 +86,8 @@ __all__ = [
     "SpinAxis",
     "Stability",
     "StabilityMap",
+    "StartState",
+    "SteadyState",
     "Stiffening",
     "StressField",
     "StressHistory",
@@ -109,6 +113,7 @@ __all__ = [
     "stability",
     "stability_map",
     "stability_threshold",
+    "steady_state",
     "stress_history",
     "unbalance_response",
     "unstable_ranges",

@@ -32,6 +32,7 @@ from exudyn_rotor.multibody.locking import (
 from exudyn_rotor.multibody.marker_body import MarkerBodyMesh, marker_body_mesh, marker_body_object
 from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.static_check import watched
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
@@ -169,9 +170,11 @@ def add_rotor(
     ============================  =======================  =====================================
 
     The static solver keeps the initial velocities, so the rotor spins in it. With a constant spin
-    and translation ``'none'`` its solution is the steady state in the rotating frame; a translation
-    that is an unknown stands still in the inertial frame instead. θ is that of the solver's load
-    time (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
+    and translation ``'none'`` its solution is the steady state in the rotating frame, where nothing
+    that stands still in space acts across the axis: no gravity there, and supports that are alike
+    in all directions. Else ``mbs.SolveStatic()`` raises an error, and
+    :func:`exudyn_rotor.steady_state` gives the motion instead. θ is that of the solver's load time
+    (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
 
     Examples
     --------
@@ -231,12 +234,12 @@ def add_rotor(
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
     if not marker_body:
-        return _add_bare(mbs, plan)
+        return watched(_add_bare(mbs, plan))
     if not plan.frame.has_mesh_axes:
         warnings.warn(TURNED_AXES.format(name, *_axes(plan)), UserWarning, stacklevel=2)
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
-    return _add_with_marker_body(mbs, plan, mesh)
+    return watched(_add_with_marker_body(mbs, plan, mesh))
 
 
 def _axes(plan: Plan) -> tuple[list[float], list[float]]:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor.multibody import more_markers, sensors
 from exudyn_rotor.multibody.record import Record, add_recording, read_record
 from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.start_state import StartState, start_from
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -140,6 +141,25 @@ class RotorBody(RotorItems):
         torque), less what damping takes; a drift without these is the integrator's error.
         """
         return sensors.add_energy_sensor(self, **options)
+
+    def start_from(self, state: StartState) -> None:
+        """Make a state of the whole scene the initial state of the coming runs.
+
+        Coordinates and velocities of all bodies are set, in the assembled system and in its nodes,
+        so that they outlive another ``mbs.Assemble()``.
+
+        Parameters
+        ----------
+        state : StartState
+            Of this system: ``steady_state(body).state()``.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a system without a state yet, a state of another system, or one that does not agree
+            with the rotor's prescribed spin.
+        """
+        start_from(self, state)
 
     def start_recording(self) -> None:
         """Record all coordinates of the coming run, for :func:`exudyn_rotor.check_run`.

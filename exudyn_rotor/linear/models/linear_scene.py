@@ -38,6 +38,9 @@ _MOST_ITERATIONS = 25
 _NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
 _AT_REST = 1e-3  # share of a motion, or of a difference step, that does not matter
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
+_PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
+_FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
+_SMALLEST = 1e-9  # m: a motion below is rounding of Exudyn's positions
 _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
 
 
@@ -165,18 +168,34 @@ class LinearScene(SceneCoordinates):
         UnconvergedError
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
-        speed = checks.number(speed, "speed", "rad/s")
-        samples = _FIRST_SAMPLES
-        with probing(self, speed) as probe:
-            while samples <= _MOST_SAMPLES:
-                system = _about_steady_motion(self, probe, samples)
-                if system is not None:
-                    return system
-                samples *= 2
-        raise UnconvergedError(
-            f"linear scene at {speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
-            "resolve the coefficients; is there a stop, contact or friction?"
-        )
+        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
+            return _resolved(self, probe, _AT_REST)[0]
+
+    def steady_motion(self, speed: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
+
+        Parameters
+        ----------
+        speed : float
+        tolerance : float
+            Largest last change of Newton's method, and largest share of the highest harmonics,
+            relative to the motion.
+
+        Returns
+        -------
+        orders : ndarray of int, shape (h,)
+        harmonics : ndarray of complex, shape (h, k)
+            ``y(θ) = Re Σ y_n exp(inθ)``, as deviations from :attr:`rest`.
+
+        Raises
+        ------
+        UnconvergedError
+            As :meth:`at`, and where loads do not repeat with every revolution.
+        """
+        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
+            _check_period(self, probe)
+            _, orders, harmonics = _resolved(self, probe, tolerance)
+        return orders, harmonics
 
     def undamped(self) -> LinearScene:
         """Return the scene itself: its damping does not enter the Hermitian part of equations."""
@@ -205,10 +224,45 @@ class LinearScene(SceneCoordinates):
         return WholeSpace(self, can_be_sent=False)
 
 
-def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> PeriodicSystem | None:
+def _resolved(
+    scene: LinearScene, probe: Probe, tolerance: float
+) -> tuple[PeriodicSystem, np.ndarray, np.ndarray]:
+    """Return equations, orders and harmonics of the steady motion, at as many angles as needed."""
+    samples = _FIRST_SAMPLES
+    while samples <= _MOST_SAMPLES:
+        found = _about_steady_motion(scene, probe, samples, tolerance)
+        if found is not None:
+            return found
+        samples *= 2
+    raise UnconvergedError(
+        f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
+        "resolve the coefficients; is there a stop, contact or friction?"
+    )
+
+
+def _check_period(scene: LinearScene, probe: Probe) -> None:
+    """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
+    still = np.zeros(len(scene.free))
+    for theta in (0.5, 2.5, 4.5):
+        first = probe.force(theta, still, still)
+        loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
+        for turns in (1.0, 2.0):
+            later = probe.force(theta + 2.0 * np.pi * turns, still, still)
+            if np.abs(later - first).max() > _PERIODIC * loads + _UNHELD * scene.mass:
+                raise UnconvergedError(
+                    f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
+                    "revolution of the rotor, so there is no steady motion; leave out loads and "
+                    "motions that vary in time"
+                )
+
+
+def _about_steady_motion(
+    scene: LinearScene, probe: Probe, samples: int, tolerance: float
+) -> tuple[PeriodicSystem, np.ndarray, np.ndarray] | None:
     """Linearise about the steady motion, found by Newton's method on its harmonics.
 
-    None where more samples are needed.
+    Returned are the equations, the orders and the harmonics; None where more samples are needed.
+    `tolerance` counts relative to the motion, but for a step of differences in the equations.
     """
     speed = probe.speed
     angles = 2.0 * np.pi * np.arange(samples) / samples
@@ -223,7 +277,7 @@ def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> Peri
             return None
         system = PeriodicSystem(speed, *terms, scene.structural_damping)
         if scene.about == "given":
-            return system
+            return system, orders, Y
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples
         change, left = _solved(hill_matrices(system, orders)[2], -residual.ravel())
         change = change.reshape(Y.shape)
@@ -232,10 +286,14 @@ def _about_steady_motion(scene: LinearScene, probe: Probe, samples: int) -> Peri
         if np.abs(left.reshape(Y.shape) / metres).max() > _UNHELD * scene.mass:
             break
         moved = np.abs(change * metres)
-        if moved.max() < _AT_REST * probe.step:
-            sizes = np.abs(Y * metres).max(axis=1)
-            limit = _AT_REST * max(sizes.max(), probe.step)
-            return system if sizes[[0, 1, -2, -1]].max() <= limit else None
+        sizes = np.abs(Y * metres).max(axis=1)
+        if sizes.max() > _FAR * scene.length:
+            break
+        # what the equations need is the motion to a share of their step of differences
+        counts = probe.step if tolerance == _AT_REST else max(sizes.max(), _SMALLEST)
+        if moved.max() < tolerance * counts:
+            limit = tolerance * max(sizes.max(), counts)
+            return (system, orders, Y) if sizes[[0, 1, -2, -1]].max() <= limit else None
     raise UnconvergedError(
         f"linear scene at {speed:g} rad/s: no steady motion found; is there a load that nothing "
         "holds, or a resonance without damping? about='given' needs no steady motion"

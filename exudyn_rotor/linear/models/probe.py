@@ -10,7 +10,6 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
@@ -39,7 +38,7 @@ class Probe:
         self.mbs = scene.body.mbs
         body = scene.body
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
-        self.spin = _spin_coordinate(body)
+        self.spin = scene.spin_coordinate
         self.rotor = np.arange(scene.modal.stop)
         self.step = None
         self.constant = None
@@ -199,11 +198,3 @@ def _chosen_step(function: Callable, moves: np.ndarray) -> float:
         if _differences(function, step * moves)[1] < _CURVATURE:
             return step
     return _STEPS[-1]
-
-
-def _spin_coordinate(body: RotorBody) -> int | None:
-    """Return the scene's coordinate θ; None for a prescribed spin without the marker body."""
-    places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
-    if "marker_body" in body.objects:
-        return places[body.locks.spin]
-    return places[body.formulation.translation_count] if body.formulation.has_spin else None

@@ -44,6 +44,12 @@ class SceneCoordinates:
         return self.body.motion.invariants.mass
 
     @property
+    def length(self) -> float:
+        """Size of the rotor: √(tr J / m) about the origin of its frame [m]."""
+        inertia = self.body.motion.invariants
+        return float(np.sqrt(np.trace(inertia.J) / inertia.mass))
+
+    @property
     def modal(self) -> slice:
         """Where the rotor's modal coordinates stand among the free ones."""
         return slice(self.count, self.count + self.body.motion.invariants.size)
@@ -52,6 +58,15 @@ class SceneCoordinates:
     def count(self) -> int:
         """Number of the rotor's translations."""
         return self.body.motion.formulation.translation_count
+
+    @property
+    def spin_coordinate(self) -> int | None:
+        """The scene's coordinate θ; None for a prescribed spin without the marker body."""
+        body = self.body
+        places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
+        if "marker_body" in body.objects:
+            return int(places[body.locks.spin])
+        return int(places[self.count]) if body.formulation.has_spin else None
 
     @cached_property
     def axes(self) -> np.ndarray:

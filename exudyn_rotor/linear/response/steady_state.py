@@ -1,0 +1,176 @@
+"""The steady motion of a scene under its own loads, from which a run can start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import StartState, spin_at_start
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """Periodic motion of a scene at a constant spin speed, made by :func:`steady_state`.
+
+    Attributes
+    ----------
+    scene : LinearScene
+        The scene, its unknowns y: the rotor's in axes that turn with it, all others as they are.
+    speed : float
+        Spin speed Ω [rad/s].
+    orders : ndarray of int, shape (h,)
+    harmonics : ndarray of complex, shape (h, k)
+        ``y = Re Σ y_n exp(inΩt)``.
+    """
+
+    scene: LinearScene
+    speed: float
+    orders: np.ndarray
+    harmonics: np.ndarray
+
+    def __post_init__(self) -> None:
+        checks.instance(self.scene, "scene", LinearScene, "steady_state(body) makes one")
+        object.__setattr__(self, "speed", checks.number(self.speed, "speed", "rad/s"))
+        orders = checks.array(self.orders, "orders", shape=(None,), dtype=int)
+        object.__setattr__(self, "orders", orders)
+        shape = (len(orders), self.scene.size)
+        harmonics = checks.array(self.harmonics, "harmonics", shape=shape, dtype=complex)
+        object.__setattr__(self, "harmonics", harmonics)
+
+    def __repr__(self) -> str:
+        """Return one line."""
+        return f"SteadyState({self.scene.body.name!r} at {self.speed:g} rad/s)"
+
+    def state(self, angle: float | None = None) -> StartState:
+        """Return the state of the whole scene at an angle of the spin.
+
+        Parameters
+        ----------
+        angle : float, optional
+            Spin angle θ [rad]; the one with which the rotor starts by default.
+        """
+        scene, body = self.scene, self.scene.body
+        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        turned = np.exp(1j * self.orders * angle)
+        y = (turned @ self.harmonics).real
+        y_t = (turned @ (1j * self.orders[:, None] * self.speed * self.harmonics)).real
+        T, T1, _ = scene.turn(angle)
+        q, q_t = scene.rest.copy(), np.zeros(len(scene.rest))
+        q[scene.free] += T @ y
+        q_t[scene.free] = T @ y_t + self.speed * T1 @ y
+        spin = scene.spin_coordinate
+        if spin is not None:
+            q[spin], q_t[spin] = angle, self.speed
+        return StartState(q, q_t, angle, self.speed)
+
+    def interface_motion(self, interface: str, angle: float | None = None) -> np.ndarray:
+        """Return displacement [m] and rotation [rad] of an interface, shape (6,).
+
+        Along and about (n1, n2, e) of :attr:`SpinAxis.plane`, which stand still in space: the
+        rotor's mesh axes at θ = 0.
+
+        Parameters
+        ----------
+        interface : str
+        angle : float, optional
+            Spin angle [rad]; the mean over a revolution by default.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an interface without a marker, or an angle that is no number.
+        """
+        scene, body = self.scene, self.scene.body
+        body.marker(interface)
+        angles = 2.0 * np.pi * np.arange(4 * len(self.orders)) / (4 * len(self.orders))
+        if angle is not None:
+            angles = np.array([checks.number(angle, "angle", "rad")])
+        rows = scene.interface_motion(interface)
+        seen = (np.exp(1j * np.outer(angles, self.orders)) @ self.harmonics).real @ rows.T
+        # a frame that moves starts in its origin, which may be off the axis
+        start = np.zeros(2)
+        if scene.count:
+            start = (scene.axes.T @ body.axis.radial(body.frame.origin))[:2]
+        for motion, theta in zip(seen, angles, strict=True):
+            turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
+            motion[:2] = turn @ (motion[:2] - start) + start
+            motion[3:5] = turn @ motion[3:5]
+        return seen.mean(axis=0)
+
+
+def steady_state(
+    body: RotorBody, speed: float | None = None, *, tolerance: float = 1e-8
+) -> SteadyState:
+    """Find the periodic motion of a scene at a constant spin speed, under the loads that it has.
+
+    Gravity, constant forces, the rotor's own unbalance, and the static deformation of supports and
+    foundations. The equations are solved for the harmonics of a revolution by Newton's method, so
+    that supports may be anisotropic and nonlinear. A run that starts from it stays on it.
+
+    Parameters
+    ----------
+    body : RotorBody
+        The rotor, in an assembled system.
+    speed : float, optional
+        Spin speed [rad/s]; the one with which the rotor starts by default.
+    tolerance : float, optional
+        Largest change in the last iteration, relative to the motion.
+
+    Returns
+    -------
+    SteadyState
+        Its ``state()`` goes into :meth:`RotorBody.start_from`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a system that is not assembled, a second rotor in it, constraints that turn with the
+        rotor, or a rotor whose prescribed motion is not at constant speed.
+    UnconvergedError
+        Where there is no steady motion: a load that nothing holds, a resonance without damping,
+        a load that does not repeat with every revolution, a support with a stop or friction.
+
+    Notes
+    -----
+    The spin is prescribed, θ = Ωt. A run with a free spin departs by what unbalance and supports
+    exert as torque: nothing for a balanced rotor, and of second order in the eccentricity.
+
+    Examples
+    --------
+    Two masses of 2 kg on one axis, each on a spring of 2e4 N/m, sag by mg/k = 0.98 mm, whatever
+    the speed:
+
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor, steady_state
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(
+    ...     mbs, rotor.reduce(1), spin=50.0, translation="none", gravity=[0.0, -9.81, 0.0],
+    ...     markers="position",
+    ... )
+    >>> for name, z in (("left", -0.1), ("right", 0.1)):
+    ...     spring = mbs.CreateCartesianSpringDamper(
+    ...         itemNumbers=[mbs.CreateGround(), body.marker(name)], localPosition0=[0, 0, z],
+    ...         stiffness=[2e4] * 3, damping=[10.0] * 3,
+    ...     )
+    >>> mbs.Assemble()
+    >>> steady = steady_state(body)
+    >>> steady.interface_motion("left")[:2].round(6)
+    array([ 0.      , -0.000981])
+    >>> body.start_from(steady.state())
+    """
+    checks.instance(body, "body", RotorBody, "add_rotor returned it")
+    tolerance = options.accuracy(tolerance, "tolerance")
+    body.check_assembled()
+    scene = LinearScene.of(body.mbs, body)
+    speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
+    return SteadyState(scene, speed, *scene.steady_motion(speed, tolerance))

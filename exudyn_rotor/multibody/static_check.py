@@ -1,0 +1,199 @@
+"""Static solutions of scenes with a spinning rotor, which may mean nothing.
+
+In the rotating frame, gravity and what else stands still in space turns, so that a static solution
+answers it at one angle of the spin only, and without the inertia of the motion that it causes.
+Whether that is so shows in the solution itself: at another angle the same state is no equilibrium.
+Importing this module lets ``mbs.SolveStatic()`` look, for the rotors of this package in the
+``mbs``; a static solution that holds at every angle (centrifugal load, a force along the axis,
+supports that are alike in all directions) is left as it is.
+"""
+
+from __future__ import annotations
+
+import functools
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TypeVar
+
+import exudyn
+import numpy as np
+from exudyn.misc.extensionRegistry import extends, install
+
+from exudyn_rotor.multibody.mark import Mark, mark_of
+from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.theory.formulation import start_values
+
+Body = TypeVar("Body", bound=RotorItems)
+
+_ROTORS = "exudyn_rotor: rotors whose static solutions are checked"  # key in mbs.sys
+_TURNS = (1.0, 2.5)  # rad by which the rotor is turned
+_SHARE = 1e-3  # of the loads by which forces may change with the angle
+_CONFIGURATIONS = exudyn.ConfigurationType
+_STATES = (
+    _CONFIGURATIONS.Initial,
+    _CONFIGURATIONS.Current,
+    _CONFIGURATIONS.StartOfStep,
+    _CONFIGURATIONS.Visualization,
+)
+
+
+@dataclass(frozen=True)
+class _Spinning:
+    """What the check needs of a rotor, as numbers: the ``mbs`` must not hold a body that holds it.
+
+    Attributes
+    ----------
+    name : str or None
+    mark : tuple or None
+        By which the rotor is known again.
+    spin : int or None
+        θ among the coordinates of the rotor's object, None where it is none.
+    unknowns : tuple of int
+        The formulation's unknowns among these coordinates, but for θ.
+    speed : float or None
+        Prescribed speed at the start [rad/s]; None for a free spin.
+    """
+
+    name: str | None
+    mark: Mark | None
+    spin: int | None
+    unknowns: tuple[int, ...]
+    speed: float | None
+
+
+def watched(body: Body) -> Body:
+    """Let ``mbs.SolveStatic()`` check this rotor, and return it."""
+    form, unknowns = body.formulation, list(body.layout.unknowns)
+    spin = body.locks.spin if "marker_body" in body.objects else None
+    if form.has_spin:
+        spin = unknowns.pop(body.motion.formulation.translation_count)
+    speed = None if form.has_spin else start_values(form.spin, "spin")[1]
+    known = body.mbs.sys.setdefault(_ROTORS, {})
+    known[int(body.objects["physics"])] = _Spinning(
+        body.name, body.mark, spin, tuple(int(i) for i in unknowns), speed
+    )
+    return body
+
+
+def check_static(mbs: exudyn.MainSystem) -> None:
+    """Raise ValueError where the current state is in equilibrium at one angle of a rotor only."""
+    for number, rotor in mbs.sys.get(_ROTORS, {}).items():
+        if rotor.mark is None or mark_of(mbs, exudyn.ObjectIndex(number)) != rotor.mark:
+            continue
+        share = _change_with_angle(mbs, number, rotor)
+        if share > _SHARE:
+            raise ValueError(
+                f"mbs.SolveStatic: rotor {rotor.name!r} spins, and {100.0 * share:.2g} % of the "
+                "loads on it change with its angle (gravity across the axis, forces that stand "
+                "still, supports that are not alike in all directions), so that this static "
+                "solution would hold at one angle only. steady_state(body) finds the motion, "
+                "body.start_from(steady.state()) starts a run from it; for the rotor at rest, "
+                "use spin=0"
+            )
+
+
+def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) -> float:
+    """Return the largest change of the forces with the angle over the largest load."""
+    data = mbs.systemData
+    q, q_t = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
+    start = np.array(data.GetODE2Coordinates(_CONFIGURATIONS.Initial))
+    places = np.asarray(data.GetObjectLTGODE2(number), dtype=int)
+    spin = None if rotor.spin is None else places[rotor.spin]
+    speed = q_t[spin] if rotor.speed is None else rotor.speed
+    if speed == 0.0:
+        return 0.0
+    kept = np.setdiff1d(np.arange(len(q)), np.setdiff1d(places, places[list(rotor.unknowns)]))
+    time = data.GetTime()
+    with _solver(mbs) as solver:
+
+        def forces(state: np.ndarray, turn: float) -> np.ndarray:
+            moved = state.copy()
+            if spin is not None:
+                moved[spin] = q[spin] + turn
+            data.SetODE2Coordinates(moved)
+            data.SetODE2Coordinates_t(q_t)
+            data.SetTime(time + turn / speed)
+            if solver.GetAEsize():
+                solver.ComputeAlgebraicEquations(mbs, False)
+            solver.ComputeODE2RHS(mbs)
+            return np.array(solver.GetSystemResidual())[: len(q)][kept]
+
+        held = forces(q, 0.0)
+        loads = max(np.abs(forces(start, 0.0)).max(), np.abs(held).max())
+        changes = [_unheld(mbs, solver, forces(q, turn) - held, kept, len(q)) for turn in _TURNS]
+    return max(np.abs(change).max() for change in changes) / max(loads, 1e-300)
+
+
+def _unheld(
+    mbs: exudyn.MainSystem,
+    solver: exudyn.MainSolverStatic,
+    force: np.ndarray,
+    kept: np.ndarray,
+    size: int,
+) -> np.ndarray:
+    """Return a force less what the scene's constraints take up."""
+    if not solver.GetAEsize():
+        return force
+    # the first call clears the matrix that the second one fills
+    solver.ComputeJacobianODE2RHS(mbs, 0.0, 0.0, 0.0)
+    solver.ComputeJacobianAE(mbs, 1.0, 0.0, 0.0, False)
+    directions = np.array(solver.GetSystemJacobian())[size:, kept].T
+    return force - directions @ np.linalg.lstsq(directions, force, rcond=1e-12)[0]
+
+
+@contextmanager
+def _solver(mbs: exudyn.MainSystem):
+    """Open the system for evaluations and leave it as it was."""
+    settings = exudyn.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.active = False
+    saved, solver = _saved(mbs), exudyn.MainSolverStatic()
+    try:
+        solver.InitializeSolver(mbs, settings)
+        yield solver
+    finally:
+        solver.FinalizeSolver(mbs, settings)
+        _restore(mbs, saved)
+
+
+def _saved(mbs: exudyn.MainSystem) -> list[tuple]:
+    data = mbs.systemData
+    return [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
+
+
+def _restore(mbs: exudyn.MainSystem, saved: list[tuple]) -> None:
+    for state, values, time in saved:
+        mbs.systemData.SetSystemState(values, state)
+        mbs.systemData.SetTime(time, state)
+
+
+def _install() -> None:
+    """Put the check behind ``MainSystem.SolveStatic``, once."""
+    solve = exudyn.MainSystem.SolveStatic
+    if getattr(solve, "checks_rotors", False):
+        return
+
+    @functools.wraps(solve)
+    def SolveStatic(mbs: exudyn.MainSystem, *given: object, **options: object) -> bool:
+        if _ROTORS not in mbs.sys:
+            return solve(mbs, *given, **options)
+        if not mbs.systemIsConsistent and options.get("autoAssemble", True):
+            mbs.Assemble()
+        saved = _saved(mbs)
+        solved = solve(mbs, *given, **options)
+        try:
+            if solved:
+                check_static(mbs)
+        except ValueError:
+            _restore(mbs, saved)
+            raise
+        return solved
+
+    SolveStatic.checks_rotors = True
+    # registered, or Exudyn's own would be put back with the next extension
+    extends(exudyn.MainSystem, "SolveStatic")(SolveStatic)
+    install()
+
+
+_install()

@@ -1,0 +1,247 @@
+"""The steady motion of a scene: closed forms, runs that start from it, and static solutions."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadForceVector
+from point_rotors import ring_rotor
+
+from exudyn_rotor import StartState, add_rotor, recommended_settings, steady_state
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+
+RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
+TOTAL = MASS + 2 * ADDED  # kg
+UNBALANCE = 2 * ADDED * RADIUS  # kg m
+STIFFNESS, DAMPING = 2e4, 40.0  # N/m, N s/m, of each of the two bearings
+GRAVITY = 9.81
+CRITICAL = np.sqrt(2 * STIFFNESS / TOTAL)  # rad/s
+DISPLACEMENT = exu.OutputVariableType.Displacement
+ENDS = {"left": -LENGTH, "right": LENGTH}
+
+
+@pytest.fixture(scope="module")
+def reduced():
+    """Return two rings, each with the same excess mass, so that the rotor whirls without tilt.
+
+    The elastic modes do not move the mean of a ring but by differences of the two rings.
+    """
+    rotor = ring_rotor(RADIUS, LENGTH, MASS)
+    for name, z in ENDS.items():
+        rotor = rotor.add_point_mass([RADIUS, 0.0, z], ADDED)
+        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
+    return rotor.reduce(2)
+
+
+def build(reduced, spin, translation="none", stiffness=(STIFFNESS,) * 3, **options):
+    """Return the rotor on two bearings, not assembled."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, reduced, spin=spin, translation=translation, markers="position", **options
+    )
+    for name, z in ENDS.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[mbs.CreateGround(), body.marker(name)],
+            localPosition0=[0.0, 0.0, z],
+            stiffness=list(stiffness),
+            damping=[DAMPING] * 3,
+        )
+    return mbs, body
+
+
+def simulated(mbs, end, step):
+    settings = recommended_settings(end, step, accuracy=1e-7)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
+@pytest.mark.parametrize("ratio", [0.5, 0.9, 1.5])
+def test_whirl_of_a_jeffcott_rotor(reduced, translation, ratio):
+    """The whirl is ``m e Ω²/(k − mΩ² + icΩ)``, and lags by its phase.
+
+    The mean of a ring is the shaft's centre but for the elastic modes, which supports move by
+    their stiffness over that of the rings, 1e8 N/m: 2e-4.
+    """
+    speed = ratio * CRITICAL
+    mbs, body = build(reduced, speed, translation)
+    mbs.Assemble()
+    steady = steady_state(body)
+    phasor = UNBALANCE * speed**2 / (2 * STIFFNESS - TOTAL * speed**2 + 2j * DAMPING * speed)
+    for angle in (0.0, 1.0):
+        motion = steady.interface_motion("left", angle)
+        expected = phasor * np.exp(1j * angle)
+        assert motion[0] + 1j * motion[1] == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("translation", ["none", "free"])
+@pytest.mark.parametrize("spin", [0.0, 30.0, "free"])
+def test_sag_under_gravity(reduced, translation, spin):
+    """``m g/k`` whatever the speed, in the mean of a revolution, and m g/k along the axis, too."""
+    mbs, body = build(reduced, spin, translation, gravity=[0.0, -GRAVITY, 0.5 * GRAVITY])
+    mbs.Assemble()
+    motion = steady_state(body, 45.0 if spin == "free" else None).interface_motion("left")
+    sag = TOTAL * GRAVITY / (2 * STIFFNESS)
+    assert motion[:3] == pytest.approx([0.0, -sag, 0.5 * sag], rel=1e-3, abs=1e-3 * sag)
+
+
+# ------------------------------------------------------------------ runs from there
+
+
+@pytest.mark.parametrize("translation", ["none", "free"])
+def test_run_from_the_steady_state_stays_on_it(reduced, translation):
+    """Gravity, unbalance, supports that differ: the error is that of the step, of second order."""
+    speed, turns = 0.7 * CRITICAL, 0.75
+
+    def distance(steps):
+        mbs, body = build(
+            reduced,
+            speed,
+            translation,
+            (STIFFNESS, 1.3 * STIFFNESS, STIFFNESS),
+            gravity=[0.0, -GRAVITY, 0.0],
+        )
+        mbs.Assemble()
+        steady = steady_state(body)
+        body.start_from(steady.state())
+        mbs.Assemble()  # the nodes keep it
+        end = turns * 2 * np.pi / speed
+        simulated(mbs, end, end / steps)
+        found = mbs.GetMarkerOutput(body.marker("right"), DISPLACEMENT)
+        expected = steady.interface_motion("right", speed * end)
+        return np.abs(found - expected[:3]).max() / np.abs(expected[:3]).max()
+
+    coarse, fine = distance(50), distance(100)
+    # (Ωh)²/12 of the phase per radian, over 4.7 rad, in the oscillating part
+    assert coarse < 4.7 * (4.7 / 50) ** 2 / 12
+    assert fine == pytest.approx(coarse / 4.0, rel=0.2)
+
+
+def test_long_damped_run_ends_in_the_steady_state(reduced):
+    """Transients decay by exp(−ct/m) with c/m = 10 1/s: to 1e-6 in 1.4 s."""
+    speed = 1.2 * CRITICAL
+    mbs, body = build(reduced, speed, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.Assemble()
+    steady = steady_state(body)
+    simulated(mbs, 1.4, 5e-4)
+    found = mbs.GetMarkerOutput(body.marker("left"), DISPLACEMENT)
+    expected = steady.interface_motion("left", 1.4 * speed)[:3]
+    # the step errs by (Ωh)²/6 of the inertia, which is 3.3 times what is left of the stiffness
+    assert found == pytest.approx(expected, abs=0.55 * (5e-4 * speed) ** 2 * abs(expected[1]))
+
+
+def test_other_bodies_start_from_the_steady_state_too(reduced):
+    """A foundation of 20 kg on springs carries the bearings."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(
+        mbs, reduced, spin=40.0, translation="none", markers="position", gravity=[0, -GRAVITY, 0]
+    )
+    base = mbs.CreateMassPoint(mass=20.0, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.CreateCartesianSpringDamper(
+        itemNumbers=[mbs.CreateGround(), base], stiffness=[1e6] * 3, damping=[100.0] * 3
+    )
+    for name, z in ENDS.items():
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[base, body.marker(name)],
+            offset=[0.0, 0.0, z],
+            stiffness=[STIFFNESS] * 3,
+            damping=[DAMPING] * 3,
+        )
+    mbs.Assemble()
+    body.start_from(steady_state(body).state())
+    node = mbs.GetObject(base)["nodeNumber"]
+    start = mbs.GetNodeOutput(node, DISPLACEMENT)
+    # k/(k − 20 Ω²) bounds how much its own whirl may differ from a rigid base: below 4 % of 25 µm
+    assert start[1] == pytest.approx(-(TOTAL + 20.0) * GRAVITY / 1e6, abs=1e-5)
+    simulated(mbs, 2 * np.pi / 40.0, 2 * np.pi / 40.0 / 400)
+    assert mbs.GetNodeOutput(node, DISPLACEMENT) == pytest.approx(start, abs=1e-3 * abs(start[1]))
+
+
+# ------------------------------------------------------------------ refusals
+
+
+def test_load_that_varies_by_itself_is_refused(reduced):
+    mbs, body = build(reduced, 40.0)
+    mbs.AddLoad(
+        LoadForceVector(
+            markerNumber=body.marker("left"),
+            loadVectorUserFunction=lambda mbs, t, load: [np.sin(55.0 * t), 0.0, 0.0],
+        )
+    )
+    mbs.Assemble()
+    with pytest.raises(UnconvergedError, match="does not repeat with every revolution"):
+        steady_state(body)
+
+
+def test_load_that_nothing_holds_is_refused(reduced):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=40.0, translation="none", gravity=[0.0, -GRAVITY, 0.0])
+    mbs.Assemble()
+    with pytest.raises(UnconvergedError, match="nothing holds"):
+        steady_state(body)
+
+
+def test_states_that_do_not_belong_are_refused(reduced):
+    mbs, body = build(reduced, 40.0)
+    mbs.Assemble()
+    steady = steady_state(body)
+    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
+        body.start_from(steady.state(0.3))
+    with pytest.raises(ValueError, match="spin starts at 0 rad and 40 rad/s"):
+        body.start_from(steady_state(body, 41.0).state())
+    with pytest.raises(ValueError, match="has 2 coordinates"):
+        body.start_from(StartState([0.0, 0.0], [0.0, 0.0], 0.0, 40.0))
+    with pytest.raises(TypeError, match="state: needs"):
+        body.start_from(steady)
+    with pytest.raises(ValueError, match="one velocity for each"):
+        StartState([0.0, 0.0], [0.0], 0.0, 40.0)
+
+
+# ------------------------------------------------------------------ static solutions
+
+
+def static(mbs):
+    settings = exu.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    settings.solution.file.write = False
+    return mbs.SolveStatic(settings)
+
+
+@pytest.mark.parametrize("translation", ["none", "free", "in-plane"])
+def test_static_solution_under_gravity_across_the_axis_is_refused(reduced, translation):
+    mbs, _ = build(reduced, 40.0, translation, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.Assemble()
+    before = np.array(mbs.systemData.GetODE2Coordinates())
+    with pytest.raises(ValueError, match=r"steady_state\(body\) finds the motion"):
+        static(mbs)
+    assert np.array_equal(mbs.systemData.GetODE2Coordinates(), before)
+
+
+def test_static_solution_on_supports_that_differ_is_refused(reduced):
+    mbs, _ = build(reduced, 40.0, "none", (STIFFNESS, 2 * STIFFNESS, STIFFNESS))
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="loads on it change with its angle"):
+        static(mbs)
+
+
+def test_static_solution_that_holds_at_every_angle_stays(reduced):
+    """Gravity along the axis: m g/k there, and the whirl of a Jeffcott rotor across it."""
+    mbs, body = build(reduced, 40.0, gravity=[0.0, 0.0, -GRAVITY])
+    mbs.Assemble()
+    assert static(mbs)
+    whirl = UNBALANCE * 40.0**2 / (2 * STIFFNESS - TOTAL * 40.0**2 + 80.0j * DAMPING)
+    # the weight of the masses at the rim tilts the rotor: their mean is the middle
+    found = np.mean([mbs.GetMarkerOutput(body.marker(name), DISPLACEMENT) for name in ENDS], axis=0)
+    assert np.hypot(*found[:2]) == pytest.approx(abs(whirl), rel=1e-3)
+    assert found[2] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
+
+
+def test_static_solution_at_rest_is_that_of_gravity(reduced):
+    mbs, body = build(reduced, 0.0, gravity=[0.0, -GRAVITY, 0.0])
+    mbs.Assemble()
+    assert static(mbs)
+    found = mbs.GetMarkerOutput(body.marker("left"), DISPLACEMENT)
+    assert found[1] == pytest.approx(-TOTAL * GRAVITY / (2 * STIFFNESS), rel=1e-3)
