@@ -32,6 +32,7 @@ _FIELD = v.ARRAY
 
 BY_NAME: dict[str, Kind] = {
     "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "H": _FIELD, "J": _FIELD, "K": _FIELD,
+    "harmonics": _FIELD,
     "K2": _FIELD, "M": _FIELD, "P": _FIELD, "S": _FIELD, "T": _FIELD,
     "about": v.WORD.but(another_word="rest"),
     "accuracy": v.SHARE,
@@ -200,6 +201,7 @@ BY_NAME: dict[str, Kind] = {
     "roundStiffnessMatrix": v.NOT_NEGATIVE,
     "rotor": v.OBJECT,
     "rows": v.OBJECTS,
+    "scene": v.OBJECT,
     "second_order": v.OBJECT,
     "selection": v.OBJECT,
     "settings": Kind(frozenset({"settings"})),
@@ -213,6 +215,7 @@ BY_NAME: dict[str, Kind] = {
     "spin": _SPIN,
     "stable": _FIELD,
     "start_speed": v.SIGNED,
+    "state": v.OBJECT,
     "step": v.POSITIVE,
     "stiffening": v.WORD.but(another_word="half"),
     "stiffness": _FIELD,

@@ -141,9 +141,14 @@ class World:
         _ = self.assembled
         return self._body
 
+    @cached_property
+    def steady(self) -> er.SteadyState:
+        """The steady state of `assembled`."""
+        return er.steady_state(self.body)
+
     def renew(self) -> None:
         """Forget scenes and mesh, after a call that should have been refused has changed them."""
-        for name in ("mbs", "assembled", "motion", "run_check", "mesh"):
+        for name in ("mbs", "assembled", "steady", "motion", "run_check", "mesh"):
             self.__dict__.pop(name, None)
 
     # -------------------------------------------------------------- results

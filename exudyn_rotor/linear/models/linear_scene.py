@@ -40,7 +40,7 @@ _AT_REST = 1e-3  # share of a motion, or of a difference step, that does not mat
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
 _FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
-_SMALLEST = 1e-9  # m: a motion below is rounding of Exudyn's positions
+_SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
 _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
 
 
