@@ -28,6 +28,7 @@ Body = TypeVar("Body", bound=RotorItems)
 _ROTORS = "exudyn_rotor: rotors whose static solutions are checked"  # key in mbs.sys
 _TURNS = (1.0, 2.5)  # rad by which the rotor is turned
 _SHARE = 1e-3  # of the loads by which forces may change with the angle
+_NO_LOAD = 1e-6  # N, N m or N/√kg: below is round-off
 _CONFIGURATIONS = exudyn.ConfigurationType
 _STATES = (
     _CONFIGURATIONS.Initial,
@@ -51,7 +52,7 @@ class _Spinning:
     unknowns : tuple of int
         The formulation's unknowns among these coordinates, but for θ.
     speed : float or None
-        Prescribed speed at the start [rad/s]; None for a free spin.
+        Prescribed rate of the coordinate of θ at the start [rad/s]; None for a free spin.
     """
 
     name: str | None
@@ -67,7 +68,8 @@ def watched(body: Body) -> Body:
     spin = body.locks.spin if "marker_body" in body.objects else None
     if form.has_spin:
         spin = unknowns.pop(body.motion.formulation.translation_count)
-    speed = None if form.has_spin else start_values(form.spin, "spin")[1]
+    sign = 1 if spin is None else body.locks.sign
+    speed = None if form.has_spin else sign * start_values(form.spin, "spin")[1]
     known = body.mbs.sys.setdefault(_ROTORS, {})
     known[int(body.objects["physics"])] = _Spinning(
         body.name, body.mark, spin, tuple(int(i) for i in unknowns), speed
@@ -96,12 +98,13 @@ def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) ->
     """Return the largest change of the forces with the angle over the largest load."""
     data = mbs.systemData
     q, q_t = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
-    start = np.array(data.GetODE2Coordinates(_CONFIGURATIONS.Initial))
     places = np.asarray(data.GetObjectLTGODE2(number), dtype=int)
     spin = None if rotor.spin is None else places[rotor.spin]
     speed = q_t[spin] if rotor.speed is None else rotor.speed
     if speed == 0.0:
         return 0.0
+    undeformed = q.copy()
+    undeformed[places[list(rotor.unknowns)]] = 0.0
     kept = np.setdiff1d(np.arange(len(q)), np.setdiff1d(places, places[list(rotor.unknowns)]))
     time = data.GetTime()
     with _solver(mbs) as solver:
@@ -119,9 +122,9 @@ def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) ->
             return np.array(solver.GetSystemResidual())[: len(q)][kept]
 
         held = forces(q, 0.0)
-        loads = max(np.abs(forces(start, 0.0)).max(), np.abs(held).max())
+        loads = max(np.abs(forces(undeformed, 0.0)).max(), _NO_LOAD)
         changes = [_unheld(mbs, solver, forces(q, turn) - held, kept, len(q)) for turn in _TURNS]
-    return max(np.abs(change).max() for change in changes) / max(loads, 1e-300)
+    return max(np.abs(change).max() for change in changes) / loads
 
 
 def _unheld(

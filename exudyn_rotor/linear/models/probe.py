@@ -115,7 +115,7 @@ class Probe:
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
-            sign = self.scene.body.locks.sign if "marker_body" in self.scene.body.objects else 1
+            sign = self.scene.spin_sign
             q[self.spin], q_t[self.spin] = sign * theta, sign * self.speed
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)

@@ -68,6 +68,11 @@ class SceneCoordinates:
             return int(places[body.locks.spin])
         return int(places[self.count]) if body.formulation.has_spin else None
 
+    @property
+    def spin_sign(self) -> int:
+        """1, or −1 where the node's coordinate counts −θ."""
+        return self.body.locks.sign if "marker_body" in self.body.objects else 1
+
     @cached_property
     def axes(self) -> np.ndarray:
         """``(n1, n2, e)`` in mesh axes."""

@@ -65,7 +65,7 @@ class SteadyState:
         q_t[scene.free] = T @ y_t + self.speed * T1 @ y
         spin = scene.spin_coordinate
         if spin is not None:
-            q[spin], q_t[spin] = angle, self.speed
+            q[spin], q_t[spin] = scene.spin_sign * angle, scene.spin_sign * self.speed
         return StartState(q, q_t, angle, self.speed)
 
     def interface_motion(self, interface: str, angle: float | None = None) -> np.ndarray:
