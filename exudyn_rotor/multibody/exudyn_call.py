@@ -76,8 +76,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         showMarkers: if True, the markers are drawn
         verbose: if True, a report of the new body is printed
         axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);
-            None takes the direction of initialAngularVelocity, through the mesh origin, or at
-            rest the line through the centres of the boundaries
+            None takes the direction of initialAngularVelocity, its largest component positive,
+            through the mesh origin, if a principal axis of inertia is within 10 degrees; or at rest
+            the line through the centres of the boundaries, if these and the body are round about it
         translation: 'free', 'in-plane', 'none' or a PrescribedMotion
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs

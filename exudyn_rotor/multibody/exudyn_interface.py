@@ -56,7 +56,9 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         diagonal.
     axis : SpinAxis, {'x', 'y', 'z'} or array_like, optional
         Spin axis in mesh coordinates; None takes the direction of `initialAngularVelocity` when the
-        body is added, or at rest the line through the centres of the node sets.
+        body is added, its largest component positive, if a principal axis of inertia is within 10°;
+        or at rest the line through the centres of the node sets, if these and the body are round
+        about it.
     translation, spin : optional
         The formulation; see :class:`exudyn_rotor.Formulation`.
     stiffening : {'tilt', 'none', 'full'}

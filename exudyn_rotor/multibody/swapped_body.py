@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.axis_of_body import axis_through_seats
+from exudyn_rotor.multibody.axis_of_body import axis_at_rest, axis_of_motion, with_axis
 from exudyn_rotor.multibody.locking import LOCKINGS
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -126,12 +126,15 @@ def solid_rotor(
 ) -> SolidRotor:
     """Return the model in `fem`; without an axis it spins about that of its angular velocity.
 
-    A body at rest, or without a state, spins about the line through its seats.
+    A body at rest, or without a state, spins about the line through its seats. Either must fit the
+    body: see :mod:`exudyn_rotor.multibody.axis_of_body`.
     """
-    if axis is None:
-        turns = start is not None and np.any(start.omega)
-        axis = SpinAxis(start.rotation.T @ start.omega) if turns else axis_through_seats(fem)
-    return SolidRotor.from_fem_interface(fem, axis)
+    if axis is not None:
+        return SolidRotor.from_fem_interface(fem, axis)
+    rotor = SolidRotor.from_fem_interface(fem, "z")
+    if start is not None and np.any(start.omega):
+        return with_axis(rotor, axis_of_motion(rotor, start.rotation.T @ start.omega))
+    return with_axis(rotor, axis_at_rest(rotor))
 
 
 def add_swapped_body(
