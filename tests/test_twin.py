@@ -340,6 +340,28 @@ def test_rotor_at_rest_without_seats_needs_an_axis(fem):
     assert item_counts(mbs) == before
 
 
+def test_the_translation_that_auto_stands_for(fem):
+    """It must not depend on what comes later: free, unless the stiffness holds the rotor."""
+    held = FEMinterface()
+    held.nodes = {"Position": np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]])}
+    held.massMatrix, held.stiffnessMatrix = sp.eye(6).tocsr(), 1e6 * sp.eye(6).tocsr()
+    held.modeBasis = {"matrix": np.eye(6), "type": "NormalModes"}
+    system = exu.SystemContainer().AddSystem
+    for model, given, expected in (
+        (fem, {}, "free"),
+        (fem, {"gravity": [0, 0, 9.81], "initialVelocity": [1.0, 0, 0]}, "free"),
+        (fem, {"translation": "in-plane"}, "in-plane"),
+        (held, {"spin": 30.0}, "none"),
+    ):
+        made = getattr(system(), TWIN)(name=None, femInterface=model, axis="z", **given)
+        body = made["FFRFReducedOrderObjectDict"]["rotorBody"]
+        assert body.formulation.translation == expected
+    with pytest.raises(ValueError, match="a prescribed spin"):
+        getattr(system(), TWIN)(name=None, femInterface=held, axis="z")
+    with pytest.raises(ValueError, match=r"translation.*auto"):
+        getattr(system(), TWIN)(name=None, femInterface=fem, axis="z", translation="axial")
+
+
 def test_what_is_returned_prints_short(fem):
     mbs = exu.SystemContainer().AddSystem()
     made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", fem, axis="z")

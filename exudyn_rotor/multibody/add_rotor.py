@@ -36,7 +36,12 @@ from exudyn_rotor.multibody.static_check import watched
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
-from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
+from exudyn_rotor.theory.formulation import (
+    ConstantSpeed,
+    Formulation,
+    PrescribedMotion,
+    suited_translation,
+)
 from exudyn_rotor.theory.stiffening import LEVELS
 
 TURNED_AXES = (
@@ -88,7 +93,8 @@ def add_rotor(
         without names; markers are then called like their interfaces.
     translation, spin, drive
         The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
-        speed [rad/s].
+        speed [rad/s]; translation ``'auto'`` is ``'free'``, or ``'none'`` for a rotor that its
+        stiffness matrix holds (:func:`exudyn_rotor.theory.formulation.suited_translation`).
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; ``'none'`` gives the paper's own equations, ``'full'`` needs a
         rotor reduced with a prestress.
@@ -202,7 +208,7 @@ def add_rotor(
     """
     inputs.main_system(mbs)
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
-    formulation = Formulation(translation, spin, drive)
+    formulation = Formulation(suited_translation(translation, reduced.grounded), spin, drive)
     requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, marker_body)
     setup = inputs.Setup(
         name=None if name is None else checks.label(name, "name"),

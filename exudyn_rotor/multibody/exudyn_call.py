@@ -44,7 +44,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     showMarkers: bool = True,
     verbose: bool = False,
     axis: SpinAxis | str | ArrayLike | None = None,
-    translation: str | PrescribedMotion = "free",
+    translation: str | PrescribedMotion = "auto",
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     stiffening: str = "tilt",
     locking: str = "auto",
@@ -79,7 +79,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             None takes the direction of initialAngularVelocity, its largest component positive,
             through the mesh origin, if a principal axis of inertia is within 10 degrees; or at rest
             the line through the centres of the boundaries, if these and the body are round about it
-        translation: 'free', 'in-plane', 'none' or a PrescribedMotion
+        translation: 'free', 'in-plane', 'none', a PrescribedMotion, or 'auto': 'free', since
+            supports and loads are not known yet, but 'none' for a rotor that its own stiffness
+            matrix holds
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
             prestress

@@ -60,7 +60,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         or at rest the line through the centres of the node sets, if these and the body are round
         about it.
     translation, spin : optional
-        The formulation; see :class:`exudyn_rotor.Formulation`.
+        The formulation; see :class:`exudyn_rotor.Formulation`. ``'auto'`` is ``'free'``, but
+        ``'none'`` for a rotor that its own stiffness matrix holds.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; ``'full'`` needs `prestress`.
     locking : {'auto', 'mass', 'constraints'}
@@ -125,7 +126,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         roundMassMatrix: float = 1e-13,
         roundStiffnessMatrix: float = 1e-13,
         axis: SpinAxis | str | ArrayLike | None = None,
-        translation: str | PrescribedMotion = "free",
+        translation: str | PrescribedMotion = "auto",
         spin: str | float | ConstantSpeed | PrescribedMotion = "free",
         stiffening: str = "tilt",
         locking: str = "auto",

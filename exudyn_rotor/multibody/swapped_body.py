@@ -24,6 +24,7 @@ from exudyn_rotor.theory.formulation import (
     Formulation,
     PrescribedMotion,
     start_values,
+    suited_translation,
 )
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -35,7 +36,8 @@ class Additions:
     The attributes are arguments of ``add_rotor``; `markers` may be None for no markers.
     """
 
-    formulation: Formulation
+    translation: str | PrescribedMotion
+    spin: str | float | ConstantSpeed | PrescribedMotion
     stiffening: str
     locking: str
     markers: str | None
@@ -57,8 +59,10 @@ class Additions:
         _check_prestress(checks.choice(stiffening, "stiffening", LEVELS), prestress)
         if markers is not None:
             checks.choice(markers, "markers", inputs.MARKER_KINDS)
+        Formulation(suited_translation(translation, grounded=False), spin)  # or refuse it
         return cls(
-            formulation=Formulation(translation, spin),
+            translation=translation,
+            spin=spin,
             stiffening=stiffening,
             locking=checks.choice(locking, "locking", LOCKINGS),
             markers=markers,
@@ -148,20 +152,22 @@ def add_swapped_body(
 ) -> RotorBody:
     """Add the rotor; nothing has been added where this raises ValueError or TypeError."""
     speed = _speed_along(start.rotation @ reduced.axis.direction, start.omega)
+    translation = suited_translation(more.translation, reduced.grounded)
+    formulation = Formulation(translation, more.spin)
     velocity = start.velocity
-    if more.formulation.translation_count:
+    if formulation.translation_count:
         velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
     return add_rotor(
         mbs,
         reduced,
         name=name,
-        translation=more.formulation.translation,
-        spin=more.formulation.spin,
+        translation=translation,
+        spin=formulation.spin,
         stiffening=more.stiffening,
         position=start.position,
         rotation=start.rotation,
         initial_velocity=velocity,
-        initial_speed=_initial_speed(more.formulation, speed),
+        initial_speed=_initial_speed(formulation, speed),
         gravity=start.gravity,
         mass_damping=start.mass_damping,
         stiffness_damping=start.stiffness_damping,

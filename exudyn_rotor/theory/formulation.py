@@ -25,6 +25,7 @@ import numpy as np
 from exudyn_rotor import checks
 
 TRANSLATIONS = ("free", "in-plane", "none")
+AUTOMATIC = "auto"
 DRIVES = ("rigid", "elastic")
 _RATES = ("value", "rate", "acceleration")
 
@@ -149,6 +150,44 @@ def _at_start(motion: PrescribedMotion | ConstantSpeed, rate: str, name: str) ->
             f"{name}: its {rate} needs to be a function of time alone [s]; at t = 0 it raised "
             f"{type(error).__name__}: {error}"
         ) from error
+
+
+def suited_translation(
+    translation: str | PrescribedMotion, grounded: bool
+) -> str | PrescribedMotion:
+    """Return the translation that ``'auto'`` stands for; anything else as it was given.
+
+    ``'auto'`` is ``'free'``, but ``'none'`` for a rotor that its own stiffness matrix holds in its
+    frame (`grounded`): no other is possible there, and its spin must be prescribed.
+
+    Supports, loads and joints come after the rotor, so nothing may depend on them. All translations
+    can represent the same displacements, where rigid motions that the frame does not hold are
+    modes, and yet only ``'free'`` cannot give another motion:
+
+    - with ``'none'`` the frame's node stands still. A load, spring or joint on it acts on nothing,
+      a sensor on it shows nothing; with ``'in-plane'`` this holds along the axis.
+    - modes turn with the rotor. What stands or moves slowly in space, a sag or a flight, turns
+      backwards in their coordinates, and costs accuracy with the square of spin speed times step;
+      a rotor that travels far is lost.
+
+    :func:`exudyn_rotor.propose`, which is told the supports, weighs the others.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a word that is no translation.
+
+    Examples
+    --------
+    >>> suited_translation("auto", grounded=False), suited_translation("auto", grounded=True)
+    ('free', 'none')
+    """
+    if isinstance(translation, PrescribedMotion):
+        return translation
+    words = (AUTOMATIC, *TRANSLATIONS)
+    if checks.choice(translation, "translation, if no PrescribedMotion", words) != AUTOMATIC:
+        return translation
+    return "none" if grounded else "free"
 
 
 @dataclass(frozen=True)
