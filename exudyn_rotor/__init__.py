@@ -38,6 +38,7 @@ from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+from exudyn_rotor.reduction.mean_axis import use_mean_axis_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import select_modes
 from exudyn_rotor.reduction.spinning import spinning_modes
@@ -117,4 +118,5 @@ __all__ = [
     "stress_history",
     "unbalance_response",
     "unstable_ranges",
+    "use_mean_axis_modes",
 ]

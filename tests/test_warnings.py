@@ -7,7 +7,8 @@ from pathlib import Path
 import exudyn as exu
 import numpy as np
 import pytest
-from models import STEEL, block_beam
+from exudyn.FEM import FEMinterface
+from models import STEEL, block_beam, disc_fem
 from point_rotors import ring_rotor
 
 import exudyn_rotor
@@ -88,6 +89,20 @@ def scene_of_a_lossy_rotor(_):
     add_rotor(mbs, lossy(), spin=4.0, translation="none")
 
 
+def frame_held_by_modes(_):
+    fem = disc_fem()
+    held = FEMinterface()
+    for name in ("nodes", "massMatrix", "stiffnessMatrix"):
+        setattr(held, name, getattr(fem, name))
+    matrix = fem.modeBasis["matrix"].copy()
+    held.modeBasis = {"matrix": matrix - np.tile(np.eye(3), (len(matrix) // 3, 1)) @ matrix[:3]}
+    mbs = exu.SystemContainer().AddSystem()
+    mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", held, axis="z")
+    tilted = np.cross([1.0, 0.0, 0.0], fem.GetNodePositionsAsArray()).reshape(-1, 1)
+    held.modeBasis = {"matrix": matrix + tilted}
+    mbs.CreateFixedAxisFFRFReducedOrderObject("tilted", held, axis="z")
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
@@ -110,6 +125,9 @@ PLACES = {
     ),
     "linear/models/linear_model.py:warn_of_structural_damping": (
         campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it",
+    ),
+    "reduction/mean_axis.py:warn_of_held_frame": (
+        frame_held_by_modes, UserWarning, "use_mean_axis_modes",
     ),
     "multibody/add_rotor.py:add_rotor": (
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it",

@@ -22,6 +22,7 @@ from exudyn_rotor.multibody.swapped_body import (
     numbers,
     solid_rotor,
 )
+from exudyn_rotor.reduction.mean_axis import warn_of_held_frame
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
@@ -105,6 +106,10 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         mesh axes but for skew spin axes, for which a warning says what is turned. In local output
         (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
 
+        Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first
+        boundary, and what tilts the rotor against it softens falsely with the square of the speed;
+        a warning says how much. use_mean_axis_modes(fem) gives both bodies the same modes.
+
     Example:
         >>> import exudyn
         >>> import exudyn_rotor  # adds the method to MainSystem
@@ -145,8 +150,10 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     rotor = solid_rotor(femInterface, axis, start)
     offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
     reduced = rotor.reduce(femInterface, prestress=prestress)
+    modes = femInterface.modeBasis["matrix"]
+    warn_of_held_frame(rotor, modes, stacklevel=2)
     body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
-    accept_stress_modes(body, StressConversion(femInterface.modeBasis["matrix"], reduced))
+    accept_stress_modes(body, StressConversion(modes, reduced))
     if verbose:
         exudyn.Print(body.report())
     return {"FFRFReducedOrderObjectDict": numbers(body)} | {

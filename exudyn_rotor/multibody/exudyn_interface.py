@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from types import ModuleType
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -28,8 +29,10 @@ from exudyn_rotor.multibody.swapped_body import (
     numbers,
     solid_rotor,
 )
+from exudyn_rotor.reduction.mean_axis import warn_of_held_frame
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
 
@@ -98,6 +101,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     -----
     The flexible object is the first object that is added. Stress modes that a script sets later,
     six columns for each mode of the FEMinterface, are converted to the rotor's coordinates.
+    A warning tells where Exudyn's own body would soften falsely with these modes; see
+    :func:`exudyn_rotor.use_mean_axis_modes`.
 
     Examples
     --------
@@ -143,6 +148,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         )
         self._axis = None if axis is None else SpinAxis.of(axis)
         self._fem: FEMinterface | None = None
+        self._solid: SolidRotor | None = None
         self._reduced: ReducedRotor | None = None
         self.rotorBody: RotorBody | None = None
         if femInterface is not None:
@@ -196,14 +202,11 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         TypeError, ValueError
             For bad input; nothing has been added then.
         """
-        inputs.main_system(mbs)
-        unnamed = isinstance(name, str) and name == ""
-        start = State.checked(
-            position=("positionRef", positionRef),
-            rotation=(
-                "rotationMatrixRef",
-                _UNIT if _empty(rotationMatrixRef) else rotationMatrixRef,
-            ),
+        return self._add(
+            mbs,
+            name,
+            positionRef,
+            rotationMatrixRef,
             velocity=initialVelocity,
             omega=initialAngularVelocity,
             mass_damping=massProportionalDamping,
@@ -211,10 +214,25 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             gravity=gravity,
             color=color,
         )
+
+    def _add(
+        self,
+        mbs: exudyn.MainSystem,
+        name: str,
+        position: ArrayLike,
+        rotation: ArrayLike,
+        **more: Any,
+    ) -> dict:
+        """Add the rotor; warnings point at what called the method that calls this."""
+        inputs.main_system(mbs)
+        unnamed = isinstance(name, str) and name == ""
+        label = None if unnamed else checks.label(name, "name")
+        rotation = _UNIT if _empty(rotation) else rotation
+        start = State.checked(("positionRef", position), ("rotationMatrixRef", rotation), **more)
         reduced = self._reduce(start) if self._reduced is None else self._reduced
-        body = add_swapped_body(
-            mbs, None if unnamed else checks.label(name, "name"), reduced, start, self._more
-        )
+        if self._solid is not None:
+            warn_of_held_frame(self._solid, self.modeBasis, stacklevel=3)
+        body = add_swapped_body(mbs, label, reduced, start, self._more)
         if self._fem is not None:
             accept_stress_modes(body, StressConversion(self.modeBasis, reduced))
         self.rotorBody = body
@@ -269,17 +287,17 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
                     "orientation given twice: by rotationMatrixRef and by eulerParametersRef"
                 )
             rotationMatrixRef = _orientation(eulerParametersRef)
-        return self.AddObjectFFRFreducedOrder(
+        return self._add(
             mbs,
-            positionRef=positionRef,
-            initialVelocity=initialVelocity,
-            rotationMatrixRef=rotationMatrixRef,
-            initialAngularVelocity=initialAngularVelocity,
-            massProportionalDamping=massProportionalDamping,
-            stiffnessProportionalDamping=stiffnessProportionalDamping,
+            name,
+            positionRef,
+            rotationMatrixRef,
+            velocity=initialVelocity,
+            omega=initialAngularVelocity,
+            mass_damping=massProportionalDamping,
+            stiffness_damping=stiffnessProportionalDamping,
             gravity=gravity,
             color=color,
-            name=name,
         )
 
     def SaveToFile(self, fileName: str | os.PathLike, fileVersion: int = 1) -> None:
@@ -321,7 +339,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
                 f"fileName: the file's spin axis is {reduced.axis.direction.tolist()}, this "
                 f"interface has axis {self._axis.direction.tolist()}"
             )
-        self._reduced, self._fem = reduced, None
+        self._reduced, self._fem, self._solid = reduced, None, None
         if reduced.shapes is not None:
             elastic = reduced.shapes.matrix[:, len(reduced.rigid_kinds) :]
             self._show(elastic, reduced.shapes.nodes)
@@ -333,8 +351,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
             raise ValueError(
                 "femInterface: this interface is empty; give a FEMinterface, or call LoadFromFile"
             )
-        rotor = solid_rotor(self._fem, self._axis, start)
-        return rotor.reduce(self._fem, prestress=self._more.prestress)
+        self._solid = solid_rotor(self._fem, self._axis, start)
+        return self._solid.reduce(self._fem, prestress=self._more.prestress)
 
     def _show(self, modes: np.ndarray, nodes: np.ndarray) -> None:
         self.modeBasis, self.xRef = modes, nodes.ravel()

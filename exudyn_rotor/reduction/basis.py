@@ -66,8 +66,8 @@ def orthonormal_basis(
     smaller than `rank_tolerance` times its own norm. The flexible columns are then turned so that
     M and K become diagonal on them, ascending in frequency.
     """
-    columns, rigid_used, _ = _gram_schmidt(np.zeros((len(rigid), 0)), rigid, mass, rank_tolerance)
-    flexible, modes_used, triangle = _gram_schmidt(columns, modes.matrix, mass, rank_tolerance)
+    columns, rigid_used, _ = gram_schmidt(np.zeros((len(rigid), 0)), rigid, mass, rank_tolerance)
+    flexible, modes_used, triangle = gram_schmidt(columns, modes.matrix, mass, rank_tolerance)
     _, turn = scipy.linalg.eigh(flexible.T @ (stiffness @ flexible))
     from_modes = np.zeros((modes.matrix.shape[1], columns.shape[1] + len(modes_used)))
     from_modes[modes_used, columns.shape[1] :] = scipy.linalg.solve_triangular(triangle, turn)
@@ -83,7 +83,7 @@ def _unused(names: tuple[str, ...], used: list[int]) -> tuple[str, ...]:
     return tuple(name for i, name in enumerate(names) if i not in used)
 
 
-def _gram_schmidt(
+def gram_schmidt(
     first: np.ndarray, columns: np.ndarray, mass: sp.csr_array, tolerance: float
 ) -> tuple[np.ndarray, list[int], np.ndarray]:
     """Orthonormalise `columns` against `first` and each other; two passes keep full precision.

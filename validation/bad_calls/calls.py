@@ -143,6 +143,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "unbalances": [er.Unbalance("left", 1e-4)],
         "at": ["left"],
     },
+    "use_mean_axis_modes": lambda w: {"fem": w.fem},
     "unstable_ranges": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
     "Motion": lambda w: {
         "invariants": w.selection.invariants,

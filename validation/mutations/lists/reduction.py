@@ -28,8 +28,8 @@ REDUCTION = [
         ),
         (
             "modes not orthogonal to the rigid motions",
-            "_gram_schmidt(columns, modes.matrix",
-            "_gram_schmidt(columns[:, :0], modes.matrix",
+            "gram_schmidt(columns, modes.matrix",
+            "gram_schmidt(columns[:, :0], modes.matrix",
         ),
     ),
     *mutations(

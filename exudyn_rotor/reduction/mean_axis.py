@@ -1,0 +1,160 @@
+"""Modes of a ``FEMinterface`` seen from the mean motion of the rotor (Tisserand frame).
+
+Exudyn's floating frame moves with whatever its modes do not move. Craig–Bampton modes, whose first
+boundary stays at rest, hold the frame there; all that tilts the rotor against that boundary is
+then a deformation ζ, linear in ζ, and the second-order displacement of the tilt is missing. The
+work of the centrifugal field on it, ``½ Ω² ζᵀK2ζ``, is missing as well, so that these deformations
+soften with Ω² (:mod:`exudyn_rotor.theory.stiffening`). Without their share in the rigid motions R,
+
+    Ψ − R (RᵀMR)⁻¹ RᵀMΨ,
+
+the same modes leave tilts to the frame, whose equations hold them to every order.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import scipy.linalg
+from exudyn.FEM import FEMinterface
+
+from exudyn_rotor import checks
+from exudyn_rotor.reduction.basis import gram_schmidt, rigid_columns
+from exudyn_rotor.solid.fem_interface import import_model
+from exudyn_rotor.solid.matrices import as_mass, as_nodes
+from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import stiffening
+
+_SEEN = 1e-6  # share of a mode's mass that moves as a rigid body, above rounding of free modes
+_STIFF = 1e-10  # eigenvalues of K below this share of the largest belong to rigid motions
+_TOLD = 0.01  # loss of stiffness whose speed the warning names
+
+
+def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> tuple[int, ...]:
+    """Put the modes of a ``FEMinterface`` into a mean-axis frame, in place.
+
+    Exudyn's own flexible body then has the same mode space as a fixed-axis rotor with the same
+    ``FEMinterface``, and the two can be run side by side. As they are computed, Craig–Bampton modes
+    hold Exudyn's frame at the first boundary, and what tilts the rotor against it softens falsely
+    with the square of the speed. Free eigenmodes stay as they are.
+
+    Parameters
+    ----------
+    fem : exudyn.FEM.FEMinterface
+        With nodes, mass matrix and modes. ``modeBasis['matrix']`` is replaced by
+        ``Ψ − R (RᵀMR)⁻¹ RᵀMΨ``, R the six rigid motions. Stress modes remain right, since rigid
+        motions have no stress.
+    rank_tolerance : float
+        A mode whose remaining part, without the modes before it, is below this share of it is a
+        rigid motion or a combination of others; it is left out, with its stress.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of the modes that are left out, usually none.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, or if nothing but rigid motions remains.
+
+    Examples
+    --------
+    Two masses on a spring, and a mode that holds the first of them:
+
+    >>> import numpy as np
+    >>> import scipy.sparse as sp
+    >>> from exudyn.FEM import FEMinterface
+    >>> from exudyn_rotor import use_mean_axis_modes
+    >>> fem = FEMinterface()
+    >>> fem.nodes = {"Position": np.array([[0.0, 0, 0], [1.0, 0, 0]])}
+    >>> fem.massMatrix = sp.diags([1.0, 1, 1, 3, 3, 3]).tocsr()
+    >>> fem.stiffnessMatrix = sp.csr_matrix(np.kron([[1, -1], [-1, 1]], np.diag([1.0, 0, 0])))
+    >>> fem.modeBasis = {"matrix": np.array([[0.0, 0, 0, 1, 0, 0]]).T, "type": "HCBmodes"}
+    >>> use_mean_axis_modes(fem)
+    ()
+    >>> print(fem.modeBasis["matrix"].T)
+    [[-0.75  0.    0.    0.25  0.    0.  ]]
+    """
+    checks.instance(fem, "fem", FEMinterface)
+    checks.tolerance(rank_tolerance, "rank_tolerance")
+    model = import_model(fem)
+    nodes = as_nodes(model.nodes)
+    mass = as_mass(model.mass, len(nodes))
+    if "matrix" not in fem.modeBasis:
+        raise ValueError(
+            "fem: it holds no modes; call fem.ComputeEigenmodes(…) or "
+            "fem.ComputeHurtyCraigBamptonModes(…) first"
+        )
+    modes = checks.array(fem.modeBasis["matrix"], "fem: its modes", shape=(nodes.size, None))
+    rigid, shares = _rigid_share(nodes, mass, modes)
+    flexible = modes - rigid @ shares
+    kept = [
+        index
+        for index in gram_schmidt(np.zeros((nodes.size, 0)), flexible, mass, rank_tolerance)[1]
+        if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
+    ]
+    if not kept:
+        raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
+    fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, kept]}
+    stress = fem.postProcessingModes.get("matrix")
+    if stress is not None and np.shape(stress)[1] == 6 * modes.shape[1]:
+        columns = [6 * index + component for index in kept for component in range(6)]
+        fem.postProcessingModes = {
+            **fem.postProcessingModes,
+            "matrix": np.asarray(stress)[:, columns],
+        }
+    return tuple(index for index in range(modes.shape[1]) if index not in kept)
+
+
+def false_softening(rotor: FiniteElementRotor, modes: np.ndarray) -> float:
+    """Return the largest share of stiffness that Exudyn's body loses with `modes`, per Ω².
+
+    Zero for modes that do not turn the rotor in the mean: free eigenmodes, and what
+    :func:`use_mean_axis_modes` makes.
+    """
+    rigid, shares = _rigid_share(rotor.nodes, rotor.mass, modes)
+    energy = np.einsum("ik,ik->k", modes, rotor.mass @ modes)
+    of_rigid = np.einsum("ik,ik->k", rigid @ shares, rotor.mass @ (rigid @ shares))
+    if rotor.grounded or np.all(of_rigid <= _SEEN * energy):
+        return 0.0
+    center = rotor.axis.project(rotor.center_of_mass)
+    invariants = Invariants.of(
+        rotor.nodes - center, rotor.mass, rotor.stiffness, None, modes, rotor.axis.direction
+    )
+    values, vectors = scipy.linalg.eigh(invariants.K)
+    stiff = values > _STIFF * values[-1]
+    scaled = vectors[:, stiff] / np.sqrt(values[stiff])
+    missing, softening = (
+        np.linalg.eigvalsh(scaled.T @ matrix @ scaled)[-1]
+        for matrix in (stiffening(invariants, "tilt").K2, invariants.C)
+    )
+    return float(missing) if missing > _SEEN * softening else 0.0
+
+
+def warn_of_held_frame(rotor: FiniteElementRotor, modes: np.ndarray, stacklevel: int) -> None:
+    """Warn, at the caller's line, where Exudyn's own body would soften falsely with `modes`."""
+    loss = false_softening(rotor, modes)
+    if loss > 0.0:
+        warnings.warn(
+            "the modes of the FEMinterface hold Exudyn's frame at a boundary (Craig–Bampton); "
+            f"its own body then falsely loses up to {_TOLD:.0%} of a mode's stiffness at "
+            f"{np.sqrt(_TOLD / loss):.3g} rad/s, growing with the square of the speed, and this "
+            "rotor does not: call use_mean_axis_modes(fem) to compare the two",
+            UserWarning,
+            stacklevel=stacklevel + 1,
+        )
+
+
+def _rigid_share(nodes: np.ndarray, mass, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rigid motions (3n, 6), and their shares (6, k) in the modes."""
+    rigid = rigid_columns(nodes, SpinAxis.of("z"), nodes.mean(axis=0))
+    weighted = mass @ rigid
+    return rigid, scipy.linalg.pinvh(rigid.T @ weighted) @ (weighted.T @ modes)
+
+
+def _norm(column: np.ndarray, mass) -> float:
+    return float(np.sqrt(max(column @ (mass @ column), 0.0)))

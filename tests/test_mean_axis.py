@@ -1,0 +1,192 @@
+"""Modes in a mean-axis frame, and how Exudyn's own body errs with Craig–Bampton modes."""
+
+import warnings
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scipy.linalg
+from exudyn.FEM import FEMinterface, HCBstaticModeSelection
+from models import disc_fem
+from point_rotors import free_stiffness, ring_rotor
+
+from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface, SolidRotor, use_mean_axis_modes
+from exudyn_rotor.reduction.basis import rigid_columns
+from exudyn_rotor.reduction.mean_axis import false_softening
+
+OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
+SPEED = 500.0
+
+
+def copy(fem, modes=None):
+    """Return the FEMinterface with other modes, which may be replaced."""
+    model = FEMinterface()
+    for name in ("nodes", "massMatrix", "stiffnessMatrix", "surface", "nodeSets"):
+        setattr(model, name, getattr(fem, name))
+    model.modeBasis = {"matrix": fem.modeBasis["matrix"] if modes is None else modes, "type": "x"}
+    return model
+
+
+@pytest.fixture(scope="module")
+def held():
+    """Craig–Bampton modes as in Exudyn's examples, of a disc on a shaft."""
+    fem = copy(disc_fem())
+    seats = [node_set["NodeNumbers"] for node_set in fem.nodeSets]
+    fem.ComputeHurtyCraigBamptonModes(seats, 4, computationMode=HCBstaticModeSelection.RBE2)
+    return fem
+
+
+@pytest.fixture(scope="module")
+def solid(held):
+    return SolidRotor.from_fem_interface(held, "z")
+
+
+def rigid_of(solid):
+    return rigid_columns(solid.nodes, solid.axis, solid.center_of_mass)
+
+
+def test_modes_lose_their_momentum_and_nothing_else(held, solid):
+    fem = copy(held)
+    assert use_mean_axis_modes(fem) == ()
+    rigid, mass = rigid_of(solid), solid.mass
+    before, after = held.modeBasis["matrix"], fem.modeBasis["matrix"]
+    size = np.sqrt(np.outer(np.diag(rigid.T @ (mass @ rigid)), np.diag(after.T @ (mass @ after))))
+    assert np.all(np.abs(rigid.T @ (mass @ after)) < 1e-10 * size)
+    # with the rigid motions they span what they did
+    both = scipy.linalg.orth(np.hstack([rigid, before]))
+    np.testing.assert_allclose(after, both @ (both.T @ after), atol=1e-9 * np.abs(after).max())
+    assert np.linalg.matrix_rank(after) == before.shape[1]
+    # deformation energies stay
+    np.testing.assert_allclose(
+        after.T @ (solid.stiffness @ after),
+        before.T @ (solid.stiffness @ before),
+        atol=1e-9 * np.abs(before.T @ (solid.stiffness @ before)).max(),
+    )
+
+
+def test_free_modes_stay_and_rigid_ones_are_left_out(solid):
+    free = disc_fem()
+    matrix, stress = free.modeBasis["matrix"], free.postProcessingModes["matrix"]
+    rigid = rigid_of(solid)
+    fem = copy(free, np.hstack([rigid[:, :4], matrix, matrix[:, :1] + rigid[:, 5:]]))
+    zeros = np.zeros((len(stress), 6 * 4))
+    fem.postProcessingModes = {
+        "matrix": np.hstack([zeros, stress, stress[:, :6]]),
+        "outputVariableType": exu.OutputVariableType.StressLocal,
+    }
+    assert use_mean_axis_modes(fem) == (0, 1, 2, 3, 10)
+    np.testing.assert_allclose(fem.modeBasis["matrix"], matrix, atol=1e-8 * np.abs(matrix).max())
+    np.testing.assert_array_equal(fem.postProcessingModes["matrix"], stress)
+    with pytest.raises(ValueError, match="fem: its modes are rigid motions alone"):
+        use_mean_axis_modes(copy(free, rigid))
+    assert false_softening(solid, matrix) == 0.0
+
+
+def whirl(call, fem, **more):
+    """Return the path of a journal of an unbalanced rotor on two bearings over some turns."""
+    mbs = exu.SystemContainer().AddSystem()
+    omega = [0.0, 0.0, SPEED]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        made = getattr(mbs, call)("rotor", fem, initialAngularVelocity=omega, **more)
+    ground = mbs.CreateGround()
+    mbs.Assemble()
+    sensor = None
+    for name in ("rotor:left", "rotor:right"):
+        marker = made[name]
+        place = mbs.GetMarkerOutput(
+            marker, exu.OutputVariableType.Position, exu.ConfigurationType.Reference
+        )
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, marker],
+            localPosition0=list(place),
+            stiffness=[2e6] * 3,
+            damping=[500.0] * 3,
+        )
+        sensor = mbs.AddSensor(
+            exu.utilities.SensorMarker(
+                markerNumber=marker,
+                outputVariableType=exu.OutputVariableType.Displacement,
+                storeInternal=True,
+            )
+        )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = 250
+    settings.timeIntegration.endTime = 0.025
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-4
+    mbs.SolveDynamic(settings)
+    return mbs.GetSensorStoredData(sensor)[:, 1:3]
+
+
+def test_exudyns_body_agrees_in_the_mean_axis_frame_only(held):
+    """With the first boundary as its frame it softens falsely; the fixed axis does not."""
+    held = copy(held)
+    held.massMatrix = held.massMatrix.copy()
+    rim = int(np.argmax(held.GetNodePositionsAsArray()[:, 0]))
+    held.AddNodeMass(rim, 0.01)
+    mean = copy(held)
+    use_mean_axis_modes(mean)
+    twin = whirl(TWIN, held, axis="z")
+    size = np.abs(twin).max()
+    np.testing.assert_allclose(whirl(TWIN, mean, axis="z"), twin, atol=1e-6 * size)
+    away = [np.abs(whirl(OWN, fem) - twin).max() / size for fem in (held, mean)]
+    # 2e-3, as the other tests of the swapped call: second order in the tilt, and O(h²) of the turn
+    assert away[1] < 2e-3
+    assert away[0] > 10.0 * away[1]
+
+
+def test_missing_stiffness_is_the_work_on_the_second_order_displacement():
+    """Node by node: ``−Σ m x_⊥ · u₂`` with ``u₂ = ½ φ × (φ × y) + φ × ψ`` of random modes."""
+    ring = ring_rotor(0.2, 0.1, 3.0)
+    soft = SolidRotor.from_matrices(
+        ring.mass, free_stiffness(ring.nodes, np.diag(np.arange(1.0, 31.0))), ring.nodes, "z"
+    )
+    modes = np.random.default_rng(5).normal(size=(30, 3))
+    y, mass = ring.nodes, 0.3
+    inertia = mass * sum(np.dot(p, p) * np.eye(3) - np.outer(p, p) for p in y)
+
+    def missing(displacement):
+        u = displacement.reshape(-1, 3)
+        phi = np.linalg.solve(inertia, mass * np.cross(y, u).sum(axis=0))
+        flexible = u - u.mean(axis=0) - np.cross(phi, y)
+        second = 0.5 * np.cross(phi, np.cross(phi, y)) + np.cross(phi, flexible)
+        return -2.0 * mass * np.sum(y[:, :2] * second[:, :2])
+
+    unit = np.eye(3)
+    K2 = np.array(
+        [[0.25 * (missing(modes @ (a + b)) - missing(modes @ (a - b))) for b in unit] for a in unit]
+    )
+    expected = scipy.linalg.eigh(K2, modes.T @ (soft.stiffness @ modes))[0][-1]
+    assert expected > 0.0
+    assert false_softening(soft, modes) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_speed_of_the_warning_is_that_of_the_missing_stiffness(held, solid):
+    """At that speed 1 % of the stiffness is missing, of the worst of all combinations."""
+    loss = false_softening(solid, held.modeBasis["matrix"])
+    cms = ObjectFixedAxisFFRFreducedOrderInterface(held, axis="z")
+    expected = f"up to 1% of a mode's stiffness at {np.sqrt(0.01 / loss):.3g} rad/s"
+    with pytest.warns(UserWarning, match=expected):
+        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
+    mean = copy(held)
+    use_mean_axis_modes(mean)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cms = ObjectFixedAxisFFRFreducedOrderInterface(mean, axis="z")
+        cms.AddObjectFFRFreducedOrder(exu.SystemContainer().AddSystem())
+
+
+def test_bad_input_is_refused_and_changes_nothing(held):
+    with pytest.raises(TypeError, match="fem: needs FEMinterface"):
+        use_mean_axis_modes("rotor")
+    fem = copy(held)
+    before = fem.modeBasis["matrix"]
+    with pytest.raises(ValueError, match="rank_tolerance"):
+        use_mean_axis_modes(fem, rank_tolerance=0.0)
+    assert fem.modeBasis["matrix"] is before
+    fem.modeBasis = {}
+    with pytest.raises(ValueError, match="fem: it holds no modes"):
+        use_mean_axis_modes(fem)
