@@ -23,7 +23,10 @@ from exudyn_rotor import (
     linear_model,
     select_modes,
     stability,
+    stability_map,
+    stability_threshold,
     unbalance_response,
+    unstable_ranges,
 )
 from exudyn_rotor.theory.formulation import Formulation
 
@@ -263,6 +266,16 @@ def test_analyses_in_time_say_that_they_leave_it_out():
     np.testing.assert_array_equal(found.growth, campbell(one_mass(), [0.0, 50.0]).growth)
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         stability(rotor, [50.0])
+    without = pytest.warns(UserWarning, match="stability finds exponents without it")
+    with without, pytest.raises(ValueError, match="stable at 10 as well as at 20"):
+        stability_threshold(rotor, 10.0, 20.0)
+    with pytest.warns(UserWarning, match="stability finds exponents without it"):
+        unstable = unstable_ranges(rotor, [10.0, 20.0])
+    assert unstable.shape == (0, 2)
+    with pytest.warns(UserWarning, match="stability finds exponents without it") as told:
+        found = stability_map(lambda loss, speed: (one_mass(loss=loss), speed), [0.0, ETA], [50.0])
+    assert len(told) == 1  # at one of the two points
+    np.testing.assert_array_equal(found.growth[0], found.growth[1])
     with pytest.warns(UserWarning, match="A scene runs without it"):
         add_rotor(exudyn.SystemContainer().AddSystem(), rotor, spin=40.0, translation="none")
     with warnings.catch_warnings():

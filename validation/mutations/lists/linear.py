@@ -81,8 +81,8 @@ LINEAR = [
         "test_response.py test_stability.py",
         (
             "support seen from the rotor the wrong way",
-            "samples.append(R.T @ matrix @ R)",
-            "samples.append(R @ matrix @ R.T)",
+            "products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  #",
+            "products = (R @ matrix)[:, None] @ R.transpose(0, 2, 1)  #",
         ),
         ("loads turn against the rotor", "turned = {-n: R @ vector", "turned = {n: R @ vector"),
     ),
@@ -146,6 +146,44 @@ LINEAR = [
             "wrench = np.concatenate([self.force, self.moment])",
             "wrench = np.concatenate([self.moment, self.force])",
         ),
+        (
+            "ground's acceleration pulls along",
+            "return {n: model.base_loads.T @ amplitude for n, amplitude in parts.items()}",
+            "return {n: -model.base_loads.T @ amplitude for n, amplitude in parts.items()}",
+        ),
+    ),
+    *mutations(
+        "linear/response/steady_response.py",
+        "test_response.py",
+        (
+            "unbalance pulls in proportion to the speed",
+            "loads = {0: speed**2 * self.load + 0j}",
+            "loads = {0: speed * self.load + 0j}",
+        ),
+        (
+            "motion in the inertial frame as in the rotor frame",
+            'if self.frame == "rotor" or speed == 0.0:',
+            'if self.frame == "inertial" or speed == 0.0:',
+        ),
+        (
+            "harmonics folded to the wrong sense",
+            "(a if n > 0 else a.conj())",
+            "(a.conj() if n > 0 else a)",
+        ),
+    ),
+    *mutations(
+        "linear/response/responses.py",
+        "test_response.py",
+        (
+            "forward and backward whirl exchanged",
+            "return 0.5 * (a + 1j * b), 0.5 * (a - 1j * b).conj()",
+            "return 0.5 * (a - 1j * b), 0.5 * (a + 1j * b).conj()",
+        ),
+        (
+            "harmonic of the spin at the wrong side of the force",
+            'return self.frequencies + checks.whole_number(order, "order") * self.speed',
+            'return self.frequencies - checks.whole_number(order, "order") * self.speed',
+        ),
     ),
     *mutations(
         "linear/response/unbalance.py",
@@ -166,13 +204,37 @@ LINEAR = [
         "test_stability.py",
         (
             "least growth for the largest",
-            "return float(np.max(values.real - margin))",
-            "return float(np.min(values.real - margin))",
+            "return float(np.max(excess[moving] if np.any(moving) else excess))",
+            "return float(np.min(excess[moving] if np.any(moving) else excess))",
+        ),
+        (
+            "growth of a tenth of the speed taken for round-off",
+            "return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
+            "return 0.1 * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
+        ),
+        (
+            "multipliers over half a period",
+            "multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])",
+            "multipliers = np.exp(np.pi * exponents / periodic[:, None])",
         ),
         (
             "ranges in the wrong order of their ends",
             "edges = [values[0]] if unstable[0] else []",
             "edges = [values[0]] if not unstable[0] else []",
+        ),
+    ),
+    *mutations(
+        "linear/stability/stability_map.py",
+        "test_stability.py",
+        (
+            "parameters exchanged in the map",
+            "points = [(a, b) for a in grid[0] for b in grid[1]]",
+            "points = [(a, b) for b in grid[1] for a in grid[0]]",
+        ),
+        (
+            "damping taken for growth",
+            "return values.real.max(), excess_growth(values, system, tolerance)",
+            "return -values.real.min(), excess_growth(values, system, tolerance)",
         ),
     ),
 ]
