@@ -39,7 +39,7 @@ def rotor_in(reduced, **options) -> RotorBody:
 
 def rigid(body: RotorBody, **changes) -> exudyn.MarkerIndex:
     place = np.eye(4)
-    place[:3] = [[0, -1, 0, 0.1], [1, 0, 0, -0.2], [0, 0, 1, 0.3]]
+    place[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     common = {"meshNodeNumbers": NODES, "weightingFactors": WEIGHTS, "localHT": place}
     number = body.objects["marker_body"]
     item = MarkerSuperElementRigid(bodyNumber=number, **(common | changes))

@@ -42,7 +42,7 @@ from exudyn_rotor.theory.formulation import (
     PrescribedMotion,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import LEVELS, tilt_factors
 
 TURNED_AXES = (
     "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
@@ -124,7 +124,8 @@ def add_rotor(
     condense_markers : bool
         Whether ``mbs.Assemble()`` moves a script's own markers on many mesh nodes of the rotor to
         one or three added nodes with the same mean motion: the same to round-off, at a cost that
-        does not depend on the mesh. See :mod:`exudyn_rotor.multibody.condensed_markers`.
+        does not depend on the mesh; and whether forces at a rigid marker's own offset have their
+        lever for tilts. See :mod:`exudyn_rotor.multibody.condensed_markers`.
     locking : {'auto', 'mass', 'constraints'}
         How coordinates of the marker body that the formulation does not have are held; see the
         notes and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for
@@ -285,7 +286,8 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
             plan.setup.color,
         )
     )
-    condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers)
+    tilts = plan.frame.B @ tilt_factors(plan.motion.invariants)[0][:3]
+    condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers, tilts)
     guide = guiding_force(plan.locks, plan.layout)
     constraints = {}
     if not plan.by_mass:

@@ -9,6 +9,9 @@ needs of its nodes is linear in the modal coordinates,
 so that one node serves a position marker, and three a rigid one: nodes that move rigidly with this
 displacement and rotation give the same marker to round-off.
 
+Exudyn lets a marker's own offset turn with the frame alone. That holds the tilts of Exudyn's body,
+which are modes here: the three nodes take the offset, and it turns with the rigid tilts.
+
 Markers are known when the system is assembled. Importing this module therefore lets
 ``mbs.Assemble()`` do this first, for the rotors of this package that stand in the ``mbs``.
 """
@@ -31,12 +34,19 @@ _Z = SpinAxis([0.0, 0.0, 1.0])  # of the plane of the three nodes; any serves
 _SINGULAR = 1e-10  # ratio of eigenvalues of W: nodes on a line, which Exudyn refuses itself
 
 
-def at_assembly(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex, wanted: bool) -> None:
-    """Say whether ``mbs.Assemble()`` condenses the markers on a marker body."""
-    mbs.sys.setdefault(_BODIES, {})[int(marker_body)] = wanted
+def at_assembly(
+    mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex, wanted: bool, tilts: np.ndarray
+) -> None:
+    """Say whether ``mbs.Assemble()`` condenses the markers on a marker body.
+
+    `tilts` (3, m) is the rigid rotation that the modal coordinates hold, axes of the body.
+    """
+    mbs.sys.setdefault(_BODIES, {})[int(marker_body)] = tilts if wanted else None
 
 
-def condense_markers(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex | int) -> int:
+def condense_markers(
+    mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex | int, tilts: np.ndarray
+) -> int:
     """Move markers on many mesh nodes of a marker body to nodes that are added to it.
 
     Markers stay as they are where their weights do not add up to one, where a rigid marker takes
@@ -62,11 +72,12 @@ def condense_markers(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex | i
     for number, marker in chosen:
         nodes = np.asarray(marker["meshNodeNumbers"])
         weights = np.asarray(marker["weightingFactors"])
+        offset = _offset(marker)
         moved = _condensed(marker["markerType"], points[nodes], shapes[nodes], weights)
         if moved is None:
             continue
-        new_points.append(moved[0])
-        new_columns.append(moved[1])
+        new_points.append(moved[0] + offset)
+        new_columns.append(moved[1] - np.tile(skew(offset) @ tilts, (len(moved[0]), 1)))
         places.append((number, list(range(count, count + len(moved[0])))))
         count += len(moved[0])
     if places:
@@ -74,6 +85,8 @@ def condense_markers(mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex | i
     for number, nodes in places:
         mbs.SetMarkerParameter(number, "meshNodeNumbers", nodes)
         mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(nodes)] * len(nodes))
+        if len(nodes) == 3:
+            mbs.SetMarkerParameter(number, "offset", np.zeros(3))
     return len(places)
 
 
@@ -87,12 +100,18 @@ def _markers_on(mbs: exudyn.MainSystem, body: int) -> list[dict | None]:
 
 
 def _can_be_condensed(marker: dict) -> bool:
-    if len(marker["meshNodeNumbers"]) <= _NEEDED[marker["markerType"]]:
+    few = len(marker["meshNodeNumbers"]) <= _NEEDED[marker["markerType"]]
+    if few and not np.any(_offset(marker)):
         return False
     if len(marker["meshNodeNumbers"]) != len(marker["weightingFactors"]):
         return False  # Exudyn says so in Assemble()
     unit = abs(np.sum(marker["weightingFactors"]) - 1.0) <= _UNIT_SUM
     return bool(unit and marker.get("useAlternativeApproach", True))
+
+
+def _offset(marker: dict) -> np.ndarray:
+    """Return the offset of a marker, axes of the body."""
+    return np.asarray(marker.get("offset", np.zeros(3)), dtype=float)
 
 
 def _condensed(
@@ -151,9 +170,9 @@ def _install() -> None:
 
     @functools.wraps(assemble)
     def Assemble(mbs: exudyn.MainSystem) -> None:
-        for number, wanted in mbs.sys.get(_BODIES, {}).items():
-            if wanted and _is_marker_body(mbs, number):
-                condense_markers(mbs, number)
+        for number, tilts in mbs.sys.get(_BODIES, {}).items():
+            if tilts is not None and _is_marker_body(mbs, number):
+                condense_markers(mbs, number, tilts)
         return assemble(mbs)
 
     Assemble.condenses_markers = True
