@@ -248,10 +248,12 @@ def _jeffcott(inner: float, speed: float) -> tuple[LinearRotor, float]:
 
 
 def test_map_over_two_parameters(tmp_path):
-    inner, speeds = np.array([20.0, 40.0, 80.0]), np.array([200.0, 400.0, 700.0])
+    inner, speeds = np.array([20.0, 40.0, 80.0]), np.array([200.0, 400.0, 550.0, 700.0])
     result = stability_map(_jeffcott, inner, speeds, labels=("c_i", "Ω"))
     limit = np.sqrt(STIFFNESS / MASS) * (1.0 + OUTER / inner)
     assert np.array_equal(result.stable, speeds < limit[:, None])
+    for damping, growth in zip(inner, result.growth, strict=True):
+        assert np.array_equal(growth, stability(_jeffcott(damping, 0.0)[0], speeds).growth)
     assert result.plot().get_ylabel() == "Ω"
     result.save(tmp_path / "map.npz")
     assert np.array_equal(load_result(tmp_path / "map.npz").growth, result.growth)
