@@ -41,6 +41,8 @@ FORMULATIONS = {
     "constant speed, shaken": Formulation(SHAKE, ConstantSpeed(1.3, 0.2)),
     "prescribed spin, shaken": Formulation(SHAKE, SWING),
     "free spin, shaken": Formulation(SHAKE, "free"),
+    "frozen spin": Formulation("none", "free", spin_coupling="frozen"),
+    "frozen spin, free": Formulation("free", "free", spin_coupling="frozen"),
     **{
         f"{spin_name}, {translation}": Formulation(translation, spin)
         for translation in ("free", "in-plane")
@@ -146,6 +148,7 @@ def test_unknowns_may_stand_among_others(translation):
         FORMULATIONS["constant speed, shaken"],
         FORMULATIONS["free spin, free"],
         FORMULATIONS["free spin, in-plane"],
+        FORMULATIONS["frozen spin, free"],
         FORMULATIONS["prescribed spin, free"],
     ],
 )

@@ -32,6 +32,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "travel": 0.1,
         "adrift": 1.0,
         "locked": 1e-6,
+        "frozen spin": accuracy,
         "unresisted load": 0.01,
         "top modes": 0.01,
         "residual": accuracy,
@@ -99,6 +100,8 @@ def check_run(
     ``adrift``           1        the same distance where the spin is prescribed, too: nothing holds
                                   the rotor in its place
     ``locked``           1e-6     locked coordinates off their place [rad], [size]
+    ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
+                                  left out by ``spin_coupling='frozen'``; the error of spin speeds
     ``unresisted load``  0.01     load on the frame's node, or moment by a second-order arm, that no
                                   equation resists, over the largest load
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
@@ -277,6 +280,14 @@ def _rows(
         f"the motion has {measures.frequency:.4g} rad/s on average, in its own coordinates; take "
         "smaller steps, whose square the error follows, or start without a jump if it rings",
     )
+    left_out = measures.frozen()
+    if left_out is not None:
+        yield (
+            "frozen spin",
+            "angular momentum left out, over the whole",
+            left_out,
+            "add the rotor with spin_coupling='full'",
+        )
     missing = residual_deflection(measures.body, measures.record, measures.size)
     if missing is not None:
         yield (

@@ -100,6 +100,21 @@ class Measures:
         moved = np.linalg.norm(self.zeta @ self.invariants.S.T, axis=1) / self.invariants.mass
         return float(moved.max() / self.size)
 
+    def frozen(self) -> float | None:
+        """Return the share of the angular momentum that a frozen spin leaves out.
+
+        That of ``½ωc + ζ̇ᵀWζ``, c the change of the moment of inertia about the axis, in Θ times the
+        highest speed: the error of spin speeds. None for a spin that is not frozen.
+        """
+        if not self.body.formulation.has_frozen_spin:
+            return None
+        terms, zeta = self.body.motion.spin_terms, self.zeta
+        change = 2.0 * zeta @ terms.h + np.einsum("si,ij,sj->s", zeta, terms.C_hat, zeta)
+        left = 0.5 * self.record.speed * change
+        left += np.einsum("si,ij,sj->s", self.zeta_t, terms.W, zeta)
+        whole = self.invariants.Theta * self.fastest
+        return float(np.abs(left).max() / whole) if whole else 0.0
+
     def locked(self) -> float:
         """Return how far locked coordinates are off: angles [rad], lengths over the size."""
         if "marker_body" not in self.body.objects:

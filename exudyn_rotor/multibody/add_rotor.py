@@ -62,6 +62,7 @@ def add_rotor(
     translation: str | PrescribedMotion = "free",
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     drive: str = "rigid",
+    spin_coupling: str = "full",
     stiffening: str = "tilt",
     position: ArrayLike = (0.0, 0.0, 0.0),
     rotation: ArrayLike | None = None,
@@ -95,6 +96,11 @@ def add_rotor(
         The formulation; see :class:`exudyn_rotor.Formulation`. `spin` as a number is a constant
         speed [rad/s]; translation ``'auto'`` is ``'free'``, or ``'none'`` for a rotor that its
         stiffness matrix holds (:func:`exudyn_rotor.theory.formulation.suited_translation`).
+    spin_coupling : {'full', 'frozen'}
+        For a free spin. ``'frozen'`` leaves out how the deflection changes the moment of inertia
+        about the axis, with the forces that belong to it, so that energy stays conserved: the mass
+        matrix is constant for a frame in the centre of mass, and a step needs half the Python
+        calls. Spin speeds err by half that change, which :func:`exudyn_rotor.check_run` reports.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; ``'none'`` gives the paper's own equations, ``'full'`` needs a
         rotor reduced with a prestress.
@@ -209,7 +215,9 @@ def add_rotor(
     """
     inputs.main_system(mbs)
     checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
-    formulation = Formulation(suited_translation(translation, reduced.grounded), spin, drive)
+    formulation = Formulation(
+        suited_translation(translation, reduced.grounded), spin, drive, spin_coupling
+    )
     requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, marker_body)
     setup = inputs.Setup(
         name=None if name is None else checks.label(name, "name"),

@@ -27,6 +27,7 @@ from exudyn_rotor import checks
 TRANSLATIONS = ("free", "in-plane", "none")
 AUTOMATIC = "auto"
 DRIVES = ("rigid", "elastic")
+SPIN_COUPLINGS = ("full", "frozen")
 _RATES = ("value", "rate", "acceleration")
 
 
@@ -205,6 +206,10 @@ class Formulation:
         Only for a prescribed spin. ``'rigid'``: the rotor's mean rotation follows θ(t).
         ``'elastic'``: the frame follows θ(t) and the rotor's own spin is a component mode, which
         the scene must hold, e.g. by a torsional spring.
+    spin_coupling : {'full', 'frozen'}
+        ``'frozen'`` leaves the part of the mass matrix that varies with the modal coordinates out
+        of a free spin, with the forces that belong to it; see
+        :class:`exudyn_rotor.theory.motion.Motion`.
 
     Raises
     ------
@@ -225,6 +230,7 @@ class Formulation:
     translation: str | PrescribedMotion = "free"
     spin: str | float | ConstantSpeed | PrescribedMotion = "free"
     drive: str = "rigid"
+    spin_coupling: str = "full"
 
     def __post_init__(self) -> None:
         if isinstance(self.translation, PrescribedMotion):
@@ -245,6 +251,12 @@ class Formulation:
             raise ValueError(
                 "drive='elastic' needs a prescribed spin; with spin='free' leave it out"
             )
+        checks.choice(self.spin_coupling, "spin_coupling", SPIN_COUPLINGS)
+        if self.spin_coupling == "frozen" and self.spin != "free":
+            raise ValueError(
+                "spin_coupling='frozen' needs spin='free'; a prescribed spin has no equation that "
+                "it would shorten, so leave it out"
+            )
 
     def reversed(self) -> Formulation:
         """Return the formulation with the spin angle counted about the opposite axis, −θ."""
@@ -264,6 +276,11 @@ class Formulation:
     def has_spin(self) -> bool:
         """True when θ is an unknown."""
         return self.spin == "free"
+
+    @property
+    def has_frozen_spin(self) -> bool:
+        """True when the mass matrix leaves out what varies with the modal coordinates."""
+        return self.spin_coupling == "frozen"
 
     @property
     def translation_count(self) -> int:

@@ -104,6 +104,7 @@ class Kernel:
         self._motion, self._count, self._first = motion, count, size - count
         self._translations = np.asarray(places[motion.translations], dtype=int)
         self._spin = int(places[form.translation_count]) if form.has_spin else None
+        self._varies = form.has_spin and not form.has_frozen_spin  # the spin's own inertia
         self.has_modal_forces = not form.is_constant_speed
         self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
         self._stack(motion)
@@ -140,7 +141,9 @@ class Kernel:
         self._spin_inertia_row = self._products[0, : count + 1]
         self._centrifugal, self._spin_coupling = self._products[:2, :count]
         self._unbalance = self._products[1, count + 1 :]
-        self._B = terms.B if np.any(terms.B) else None
+        frozen = motion.formulation.has_frozen_spin
+        self._B = terms.B if np.any(terms.B) and not frozen else None
+        self._share = 1.0 if frozen else 2.0  # of ω(h + Ĉζ)ᵀζ̇ in the torque (86)
         self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
         # −ẽS*, S* and 2S*
         self._frame_by_state = -e @ S1, S1, 2.0 * S1
@@ -150,7 +153,8 @@ class Kernel:
         moved, turning = self._translations, self._turning
         blocks = []
         if self._spin is not None:
-            blocks += [([self._spin], [self._spin]), ([self._spin], modes)]
+            if self._varies:
+                blocks += [([self._spin], [self._spin]), ([self._spin], modes)]
             if self._motion.is_coupled:
                 blocks.append((moved, [self._spin]))
         if self._motion.is_coupled:
@@ -168,12 +172,12 @@ class Kernel:
         """Return the entries at :attr:`rows` and :attr:`columns`; valid until the next call."""
         self._update(t, q)
         parts = self._mass_parts
-        if self._spin is not None:
+        if self._varies:
             parts[0][0] = self._state.dot(self._spin_inertia_row)
             parts[1][:] = self._spin_coupling
         if self._motion.is_coupled:
             if self._spin is not None:
-                np.dot(self._turning.A, self._unbalance, out=parts[2])
+                np.dot(self._turning.A, self._unbalance, out=parts[-2])
             parts[-1][:] = self._turning.coupling
         return self._mass
 
@@ -187,7 +191,7 @@ class Kernel:
             self._modal_force[:] = loads[: self._count]
         turning, torque = self._turning, 0.0
         if self._spin is not None:
-            torque = -2.0 * omega * float(self._centrifugal.dot(self._rate))
+            torque = -self._share * omega * float(self._centrifugal.dot(self._rate))
             if self._B is not None:
                 torque -= self._rate.dot(self._B.dot(self._rate))
         if turning.has_body_force:
@@ -228,11 +232,12 @@ class Kernel:
         matrix, spin, first = self._jacobian, self._spin, self._first
         centrifugal, rate = self._centrifugal, self._rate
         column = factor_v * (self._products[2, : self._count] - 2.0 * omega * centrifugal)
-        row = (2.0 * omega * factor_q) * terms.C_hat.dot(rate)
-        row += (2.0 * omega * factor_v) * centrifugal
+        share = self._share
+        row = (share * omega * factor_q) * terms.C_hat.dot(rate)
+        row += (share * omega * factor_v) * centrifugal
         if self._B is not None:
             row += (2.0 * factor_v) * self._B.dot(rate)
-        corner = 2.0 * factor_v * centrifugal.dot(rate)
+        corner = share * factor_v * centrifugal.dot(rate)
         if turning.has_body_force:
             modal, by_deflection, torque = turning.slope()
             column -= factor_q * modal

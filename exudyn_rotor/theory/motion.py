@@ -8,6 +8,14 @@ The kinetic energy behind the terms, with ``W = G + B`` and ``Ĉ = C − K2``
 
     T = ½m|τ̇|² + τ̇·A(ω(mχ* + S*ζ) + Sζ̇) + ½ω²(Θ + 2hᵀζ + ζᵀĈζ) + ωζ̇ᵀ(g + Wζ) + ½ζ̇ᵀMζ̇
 
+A free spin may be *frozen*. Then T lacks ``T₁ = ½ω²c + ωζ̇ᵀWζ`` with ``c = 2hᵀζ + ζᵀĈζ``, so that
+(85) is Θ and (84) is g, both constant. The forces on the modes stay those of (87),
+``ω²(h + Ĉζ) − 2ωGζ̇``: what T₁ gives at steady speed, where the Euler force ``−ω̇Wζ`` is zero. Their
+power is ``½ω²ċ``, since G is skew; the torque ``−½ωċ = −ω(h + Ĉζ)ᵀζ̇``, half of (86), takes it from
+the spin, so ``T − T₁ + ½ζᵀKζ`` is conserved exactly. From ``Θω̇ = −½ωċ`` follows ω falling by the
+share c/2Θ, where conserved momentum, ``(Θ + c)ω``, has c/Θ: spin fluctuations come out halved, and
+speeds and angles err by c/2Θ, below 1e-4 for rotors in balance.
+
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
 
@@ -189,8 +197,9 @@ class Motion:
             blocks["t", "f"] = now.A @ inv.S
             blocks["f", "t"] = blocks["t", "f"].T
         if self.formulation.has_spin:
-            blocks["r", "r"] = [[self._spin_inertia(now.zeta)]]
-            blocks["r", "f"] = (inv.g + self.spin_terms.W @ now.zeta)[None, :]
+            zeta = 0.0 * now.zeta if self.formulation.has_frozen_spin else now.zeta
+            blocks["r", "r"] = [[self._spin_inertia(zeta)]]
+            blocks["r", "f"] = (inv.g + self.spin_terms.W @ zeta)[None, :]
             blocks["f", "r"] = blocks["r", "f"].T
             if self.is_coupled:
                 blocks["t", "r"] = (now.A @ self._unbalance(now.zeta))[:, None]
@@ -210,7 +219,9 @@ class Motion:
         force[self.modes] = load + by_zeta @ now.zeta + by_rate @ now.zeta_t
         if self.formulation.has_spin:
             coriolis = 2.0 * now.omega * (self._centrifugal(now.zeta) @ now.zeta_t)
-            force[self._spin] = -coriolis - now.zeta_t @ (terms.B @ now.zeta_t)
+            euler = now.zeta_t @ (terms.B @ now.zeta_t)
+            frozen = self.formulation.has_frozen_spin
+            force[self._spin] = -0.5 * coriolis if frozen else -coriolis - euler
         force[self.translations] = self.weight
         if self.has_body_force:
             self._add_body_force(now, force)
@@ -227,11 +238,14 @@ class Motion:
         omega, zeta, zeta_t = now.omega, now.zeta, now.zeta_t
         by_q, by_v = ({("f", "f"): block} for block in self._modal_jacobian(now))
         if self.formulation.has_spin:
-            centrifugal = self._centrifugal(zeta)
-            by_q["r", "f"] = -2.0 * omega * (terms.C_hat @ zeta_t)[None, :]
+            centrifugal, frozen = self._centrifugal(zeta), self.formulation.has_frozen_spin
+            half = 0.5 if frozen else 1.0
+            by_q["r", "f"] = -2.0 * half * omega * (terms.C_hat @ zeta_t)[None, :]
             by_v["f", "r"] = 2.0 * (omega * centrifugal - terms.G @ zeta_t)[:, None]
-            by_v["r", "r"] = [[-2.0 * centrifugal @ zeta_t]]
-            by_v["r", "f"] = -2.0 * (omega * centrifugal + terms.B @ zeta_t)[None, :]
+            by_v["r", "r"] = [[-2.0 * half * centrifugal @ zeta_t]]
+            by_v["r", "f"] = -2.0 * half * omega * centrifugal[None, :]
+            if not frozen:
+                by_v["r", "f"] -= 2.0 * (terms.B @ zeta_t)[None, :]
             if self.has_body_force:
                 by_angle = -self._e @ now.body_acceleration
                 by_q["f", "r"] = (self.invariants.S.T @ by_angle)[:, None]

@@ -213,6 +213,7 @@ BY_NAME: dict[str, Kind] = {
     "speed": v.SIGNED,
     "speeds": v.SERIES,
     "spin": _SPIN,
+    "spin_coupling": v.WORD.but(another_word="half"),
     "stable": _FIELD,
     "start_speed": v.SIGNED,
     "state": v.OBJECT,

@@ -71,9 +71,28 @@ THEORY = [
         ),
     ),
     *mutations(
+        "theory/motion.py",
+        "test_frozen_spin.py::test_energy_is_conserved",
+        (
+            "frozen spin with the whole Coriolis torque",
+            "-0.5 * coriolis if frozen",
+            "-coriolis if frozen",
+        ),
+        (
+            "frozen spin with the torque the wrong way",
+            "= -0.5 * coriolis if frozen",
+            "= 0.5 * coriolis if frozen",
+        ),
+    ),
+    *mutations(
+        "advice/run_measures.py",
+        "test_frozen_spin.py::test_the_share_is_that_of_the_momentum",
+        ("frozen spin's share without W", "left += np.einsum", "left += 0.0 * np.einsum"),
+    ),
+    *mutations(
         "theory/kernel.py",
         "test_kernel.py::test_kernel_equals_the_plain_equations",
-        ("Coriolis torque halved", "torque = -2.0 * omega *", "torque = -omega *"),
+        ("Coriolis torque halved", "torque = -self._share * omega", "torque = -omega"),
         ("Euler force forwards", "factors[1] = -spin", "factors[1] = spin"),
         ("gravity turned the wrong way", '"rb,abv,ca->rcv"', '"rb,bav,ca->rcv"'),
         (
@@ -114,10 +133,10 @@ THEORY = [
         ),
         (
             "spin's Jacobian, Coriolis torque by the deflection reversed",
-            "row = (2.0 * omega * factor_q)",
-            "row = (-2.0 * omega * factor_q)",
+            "row = (share * omega * factor_q)",
+            "row = (-share * omega * factor_q)",
         ),
-        ("spin's Jacobian by its speed reversed", "corner = 2.0", "corner = -2.0"),
+        ("spin's Jacobian by its speed reversed", "corner = share", "corner = -share"),
         ("angle's slope of gravity reversed", "(0.0, -sine, cosine)", "(0.0, sine, -cosine)"),
         (
             "spin's Jacobian, weight of the deflection reversed",
