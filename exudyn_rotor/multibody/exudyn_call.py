@@ -13,7 +13,7 @@ from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import inputs
+from exudyn_rotor.multibody import copying, inputs
 from exudyn_rotor.multibody.later_stress import StressConversion, accept_stress_modes
 from exudyn_rotor.multibody.swapped_body import (
     Additions,
@@ -175,3 +175,4 @@ def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.n
 
 
 install()
+copying.install()

@@ -10,6 +10,24 @@ Two ways:
     ``CoordinateConstraint`` objects: exact for implicit and static solvers, one multiplier each.
 
 A constant spin is held by mass in both: that is exact, in every solver.
+
+Exudyn's own analyses of an ``mbs`` (``ComputeODE2Eigenvalues``, ``ComputeLinearizedSystem``,
+``ComputeSystemDegreeOfFreedom``) see what holds these coordinates:
+
+===============  ============================  ========================  =======================
+locking          false eigenvalues             degrees of freedom more   condition of M
+===============  ============================  ========================  =======================
+``'mass'``       2, 3 or 5 at 1 rad/s for      as many                   1e16 to 1e20
+                 translation free, in-plane,
+                 none; constant spin: 1 more
+                 at 0
+``constraints``  none; constant spin: 1 at 0   none; constant spin: 1    that of the rotor with
+                                                                         ``projectInto…``;
+                                                                         constant spin: 1e16
+===============  ============================  ========================  =======================
+
+So take ``locking='constraints'`` for them, or ``marker_body=False``, which holds nothing.
+``ComputeODE2Eigenvalues`` leaves the gyroscopic terms out; :func:`exudyn_rotor.campbell` has them.
 """
 
 from __future__ import annotations
