@@ -33,6 +33,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "adrift": 1.0,
         "locked": 1e-6,
         "frozen spin": accuracy,
+        "connections": 0.0,
         "unresisted load": 0.01,
         "top modes": 0.01,
         "residual": accuracy,
@@ -102,6 +103,8 @@ def check_run(
     ``locked``           1e-6     locked coordinates off their place [rad], [size]
     ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
                                   left out by ``spin_coupling='frozen'``; the error of spin speeds
+    ``connections``      0        connectors, joints and loads at the frame's node that it cannot
+                                  carry: ``body.check_connections()`` names them
     ``unresisted load``  0.01     load on the frame's node, or moment by a second-order arm, that no
                                   equation resists, over the largest load
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
@@ -227,6 +230,12 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         Measures.locked,
         "locked coordinates off their place [rad], [size]",
         "use locking='constraints', a smaller step, or load an interface instead of the frame",
+    ),
+    (
+        "connections",
+        lambda m: len(m.body.check_connections(warn=False)),
+        "connections, joints and loads that the frame's node cannot carry",
+        "body.check_connections() names them; use markers at interfaces or mesh nodes",
     ),
     (
         "unresisted load",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import exudyn
 from numpy.typing import ArrayLike
 
+from exudyn_rotor import checks
 from exudyn_rotor.multibody import more_markers, sensors
+from exudyn_rotor.multibody.connections import lost_connections
 from exudyn_rotor.multibody.record import Record, add_recording, read_record
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.start_state import StartState, start_from
@@ -110,6 +113,31 @@ class RotorBody(RotorItems):
         return more_markers.add_marker(
             self, where, offset, weights=weights, kind=kind, name=name, show=show
         )
+
+    def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
+        """Return what the scene attaches to the frame's node that this node cannot carry.
+
+        Torques across the spin axis, springs, dampers and joints against tilts, forces along
+        translations that the formulation does not have, and forces at a marker's own offset that
+        has no lever: one sentence for each, with what to use instead. Exudyn's own body carries
+        them. :func:`exudyn_rotor.check_run` has a row of this.
+
+        Parameters
+        ----------
+        warn : bool
+            Whether there is a UserWarning for each.
+
+        Raises
+        ------
+        ValueError
+            If the system is not assembled.
+        """
+        checks.flag(warn, "warn")
+        self.check_assembled()
+        found = lost_connections(self)
+        for sentence in found if warn else ():
+            warnings.warn(f"rotor {self.name!r}: {sentence}", UserWarning, stacklevel=2)
+        return found
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.
