@@ -8,6 +8,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.FEM import FEMinterface
+from exudyn.itemInterface import LoadTorqueVector, MarkerNodeRigid
 from models import STEEL, block_beam, disc_fem
 from point_rotors import ring_rotor
 
@@ -103,6 +104,24 @@ def frame_held_by_modes(_):
     mbs.CreateFixedAxisFFRFReducedOrderObject("tilted", held, axis="z")
 
 
+def axis_that_no_node_turns_about(beam):
+    rotor = ring_rotor(0.1, 0.1, 2.0, axis=[1.0, 2.0, 2.0]).reduce(0)
+    add_rotor(exu.SystemContainer().AddSystem(), rotor)
+
+
+def torque_across_the_axis_on_the_node(beam):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, ring_rotor(0.1, 0.1, 2.0).reduce(0))
+    mbs.AddLoad(
+        LoadTorqueVector(
+            markerNumber=mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"])),
+            loadVector=[1.0, 0.0, 0.0],
+        )
+    )
+    mbs.Assemble()
+    body.check_connections()
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
@@ -131,6 +150,12 @@ PLACES = {
     ),
     "multibody/add_rotor.py:add_rotor": (
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it",
+    ),
+    "multibody/add_rotor.py:_warn_of_turned_axes": (
+        axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about",
+    ),
+    "multibody/rotor_body.py:check_connections": (
+        torque_across_the_axis_on_the_node, UserWarning, "1 N m there has no effect",
     ),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",

@@ -250,17 +250,18 @@ def add_rotor(
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
     if not marker_body:
         return watched(_add_bare(mbs, plan))
-    if not plan.frame.has_mesh_axes:
-        warnings.warn(TURNED_AXES.format(name, *_axes(plan)), UserWarning, stacklevel=2)
+    _warn_of_turned_axes(plan)
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
     return watched(_add_with_marker_body(mbs, plan, mesh))
 
 
-def _axes(plan: Plan) -> tuple[list[float], list[float]]:
-    """Return the spin axis in mesh and in inertial axes, for a message."""
+def _warn_of_turned_axes(plan: Plan) -> None:
+    if plan.frame.has_mesh_axes:
+        return
     e = plan.motion.invariants.direction
-    return np.round(e, 3).tolist(), np.round(plan.motion.orientation @ e, 3).tolist()
+    axes = (np.round(axis, 3).tolist() for axis in (e, plan.motion.orientation @ e))
+    warnings.warn(TURNED_AXES.format(plan.setup.name, *axes), UserWarning, stacklevel=3)
 
 
 def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
