@@ -47,10 +47,12 @@ def test_energy_is_that_of_the_nodes(formulation):
     assert found.weight == pytest.approx(weight, abs=1e-12 * abs(mass).sum() * abs(p).max() * 4)
 
 
+@pytest.mark.parametrize("coupling", ["full", "frozen"])
 @pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
-def test_energy_with_stiffening_is_that_of_the_equations(translation):
+def test_energy_with_stiffening_is_that_of_the_equations(translation, coupling):
     """With a free spin all of the energy is in the unknowns; the equations conserve it."""
-    motion, _, _ = motion_of(Formulation(translation, "free"), "tilt")
+    formulation = Formulation(translation, "free", spin_coupling=coupling)
+    motion, _, _ = motion_of(formulation, "tilt")
     q, v = random_state(motion.size, 2)
     found = energy_of(motion, 0.0, q, v)
     assert found.kinetic + found.elastic == pytest.approx(motion.energy(0.0, q, v), rel=1e-12)

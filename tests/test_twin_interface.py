@@ -113,6 +113,17 @@ def test_names_and_defaults_are_those_of_exudyn():
                 assert default == parameter.default, (method, name)
 
 
+def test_both_twins_take_the_same_of_their_own():
+    """But for markers, which Exudyn's class does not add."""
+    call = exu.MainSystem.CreateFixedAxisFFRFReducedOrderObject
+    of_call = list(inspect.signature(call).parameters.values())
+    of_call = of_call[[parameter.name for parameter in of_call].index("axis") :]
+    of_class = list(inspect.signature(CLASSES[1]).parameters.values())[-len(of_call) :]
+    for one, other in zip(of_call, of_class, strict=True):
+        assert one.name == other.name
+        assert one.default == other.default or one.name == "markers"
+
+
 def test_returned_keys_and_attributes_are_those_of_exudyn(fem):
     own, twin = (made(kind, fem, axis="z") for kind in CLASSES)
     for name in ("nModes", "nNodes", "dim3D"):

@@ -24,6 +24,7 @@ SCRIPTS = {
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
+    "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),

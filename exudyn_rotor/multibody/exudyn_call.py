@@ -47,6 +47,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     axis: SpinAxis | str | ArrayLike | None = None,
     translation: str | PrescribedMotion = "auto",
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+    spin_coupling: str = "full",
     stiffening: str = "tilt",
     locking: str = "auto",
     markers: str = "rigid",
@@ -84,6 +85,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             supports and loads are not known yet, but 'none' for a rotor that its own stiffness
             matrix holds
         spin: 'free', a constant speed in rad/s, or a PrescribedMotion
+        spin_coupling: 'full', or 'frozen' for a free spin whose inertia is that of the undeformed
+            rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
             prestress
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.multibody.locking
@@ -135,7 +138,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     checks.flag(verbose, "verbose")
     checks.choice(markers, "markers", inputs.MARKER_KINDS)
     more = Additions.checked(
-        translation, spin, stiffening, locking, markers, condense_markers, prestress
+        *(translation, spin, spin_coupling, stiffening, locking),
+        *(markers, condense_markers, prestress),
     )
     start = State.checked(
         position=("referencePosition", referencePosition),

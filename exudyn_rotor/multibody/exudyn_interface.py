@@ -65,6 +65,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     translation, spin : optional
         The formulation; see :class:`exudyn_rotor.Formulation`. ``'auto'`` is ``'free'``, but
         ``'none'`` for a rotor that its own stiffness matrix holds.
+    spin_coupling : {'full', 'frozen'}
+        For a free spin; see :func:`exudyn_rotor.add_rotor`.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; ``'full'`` needs `prestress`.
     locking : {'auto', 'mass', 'constraints'}
@@ -133,6 +135,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         axis: SpinAxis | str | ArrayLike | None = None,
         translation: str | PrescribedMotion = "auto",
         spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+        spin_coupling: str = "full",
         stiffening: str = "tilt",
         locking: str = "auto",
         markers: str | None = None,
@@ -144,7 +147,8 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         checks.number(roundMassMatrix, "roundMassMatrix", least=0.0)
         checks.number(roundStiffnessMatrix, "roundStiffnessMatrix", least=0.0)
         self._more = Additions.checked(
-            translation, spin, stiffening, locking, markers, condense_markers, prestress
+            *(translation, spin, spin_coupling, stiffening, locking),
+            *(markers, condense_markers, prestress),
         )
         self._axis = None if axis is None else SpinAxis.of(axis)
         self._fem: FEMinterface | None = None
@@ -153,8 +157,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         self.rotorBody: RotorBody | None = None
         if femInterface is not None:
             self._fem = checks.instance(femInterface, "femInterface", FEMinterface)
-            if self._axis is not None:
-                self._reduced = self._reduce(None)
+            self._reduced = None if self._axis is None else self._reduce(None)
             self._show(_modes(femInterface), np.asarray(femInterface.nodes["Position"]))
             self.postProcessingModes = femInterface.postProcessingModes
 

@@ -38,6 +38,7 @@ class Additions:
 
     translation: str | PrescribedMotion
     spin: str | float | ConstantSpeed | PrescribedMotion
+    spin_coupling: str
     stiffening: str
     locking: str
     markers: str | None
@@ -49,6 +50,7 @@ class Additions:
         cls,
         translation: str | PrescribedMotion,
         spin: str | float | ConstantSpeed | PrescribedMotion,
+        spin_coupling: str,
         stiffening: str,
         locking: str,
         markers: str | None,
@@ -59,10 +61,12 @@ class Additions:
         _check_prestress(checks.choice(stiffening, "stiffening", LEVELS), prestress)
         if markers is not None:
             checks.choice(markers, "markers", inputs.MARKER_KINDS)
-        Formulation(suited_translation(translation, grounded=False), spin)  # or refuse it
+        suited = suited_translation(translation, grounded=False)
+        Formulation(suited, spin, spin_coupling=spin_coupling)  # or refuse it
         return cls(
             translation=translation,
             spin=spin,
+            spin_coupling=spin_coupling,
             stiffening=stiffening,
             locking=checks.choice(locking, "locking", LOCKINGS),
             markers=markers,
@@ -163,6 +167,7 @@ def add_swapped_body(
         name=name,
         translation=translation,
         spin=formulation.spin,
+        spin_coupling=more.spin_coupling,
         stiffening=more.stiffening,
         position=start.position,
         rotation=start.rotation,

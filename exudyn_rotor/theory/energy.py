@@ -91,12 +91,14 @@ def energy_of(
         rate = motion.free_directions @ q_t[motion.translations]
     A = motion.orientation @ SpinAxis(inv.direction).rotation(float(theta))
     unbalance = motion.static_unbalance + motion.S1 @ zeta
-    inertia = inv.Theta + 2.0 * terms.h @ zeta + zeta @ (terms.C_hat @ zeta)
+    # a frozen spin has the inertia of the undeformed rotor, so that its equations keep the sum
+    bent = np.zeros_like(zeta) if form.has_frozen_spin else zeta
+    inertia = inv.Theta + 2.0 * terms.h @ bent + bent @ (terms.C_hat @ bent)
     kinetic = (
         0.5 * inv.mass * rate @ rate
         + rate @ A @ (inv.S @ zeta_t + omega * unbalance)
         + 0.5 * omega**2 * inertia
-        + omega * (terms.g + terms.W @ zeta) @ zeta_t
+        + omega * (terms.g + terms.W @ bent) @ zeta_t
         + 0.5 * zeta_t @ (inv.M @ zeta_t)
     )
     moved = inv.mass * (shift + (A - motion.orientation) @ inv.center) + A @ (inv.S @ zeta)
