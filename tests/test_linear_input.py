@@ -65,6 +65,7 @@ BAD = {
     "max_speed": (np.nan, -1.0, 0.0, "x", [1.0], True),
     "nodal_diameters": ([5], [-1], [1.0], "x", 1, [], None, {}),
     "own": ("no", 1, None, []),
+    "refine": ("no", 1, None, []),
     "allow_negative": ("no", 1, None, []),
     "progress": ("no", 1, None, []),
     "executor": (3, "threads", ROTOR),

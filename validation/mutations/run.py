@@ -19,7 +19,6 @@ from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 
 from validation.mutations.lists import ALL
@@ -51,7 +50,10 @@ class Outcome:
 
 def quick(every: Iterable[Mutation], count: int = _QUICK) -> list[Mutation]:
     """Return the first mutation of each folder, `count` at most."""
-    return [next(group) for _, group in groupby(every, lambda one: one.folder)][:count]
+    first: dict[str, Mutation] = {}
+    for one in every:
+        first.setdefault(one.folder, one)
+    return list(first.values())[:count]
 
 
 @contextmanager
