@@ -19,12 +19,14 @@ from exudyn_rotor import (
     SolidRotor,
     StressField,
     Support,
+    Unbalance,
     add_rotor,
     campbell,
     check_run,
     propose,
     select_modes,
     stress_history,
+    unbalance_response,
 )
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
@@ -122,6 +124,13 @@ def torque_across_the_axis_on_the_node(beam):
     body.check_connections()
 
 
+def peak_between_few_speeds(_):
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
+    supports = [Support("all", 2e4, 1.0, tilt_stiffness=1e4)]  # critical at 100 rad/s
+    unbalances = [Unbalance("all", 1e-4)]
+    unbalance_response(rotor, [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
@@ -144,6 +153,9 @@ PLACES = {
     ),
     "linear/models/linear_model.py:warn_of_structural_damping": (
         campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it",
+    ),
+    "linear/response/responses.py:peak": (
+        peak_between_few_speeds, UserWarning, "too far apart to give its size",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",
