@@ -18,6 +18,8 @@ class Script(NamedTuple):
 
 SCRIPTS = {
     "speed": Script("speed.speed", "cost of a step"),
+    "small_models": Script("speed.small_models", "speed on small meshes"),
+    "frozen_spin": Script("speed.frozen_spin", "error and cost of a frozen spin"),
     "ablation": Script("speed.ablation", "cost of each ingredient of a scene"),
     "set_up": Script("speed.set_up", "time of the set-up"),
     "trade": Script("trade.trade", "accuracy for the time"),

@@ -204,15 +204,24 @@ class Run:
     messages: tuple[str, ...] = ()
 
 
-def run(scene: Scene, call: str, fraction: float = 1.0, refined: int = 1) -> Run:
-    """Run a scene with a call, for a share of its time, with steps divided by `refined`."""
+def run(
+    scene: Scene,
+    call: str,
+    fraction: float = 1.0,
+    refined: int = 1,
+    change: Callable[[exudyn.SimulationSettings], None] | None = None,
+) -> Run:
+    """Run a scene with a call, for a share of its time, with steps divided by `refined`.
+
+    The settings are Exudyn's defaults, with what `change` does to them.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         script = Script(call)
         try:
             scene.build(script)
             script.mbs.Assemble()
-            seconds = _solve(script.mbs, scene, fraction, refined)
+            seconds = _solve(script.mbs, scene, fraction, refined, change)
         except (ValueError, TypeError, RuntimeError) as error:
             return Run([], np.nan, messages=(*_texts(caught), f"{type(error).__name__}: {error}"))
     histories = [np.array(script.mbs.GetSensorStoredData(number)) for number in script.sensors]
@@ -226,7 +235,9 @@ def run(scene: Scene, call: str, fraction: float = 1.0, refined: int = 1) -> Run
     )
 
 
-def _solve(mbs: exudyn.MainSystem, scene: Scene, fraction: float, refined: int) -> float:
+def _solve(
+    mbs: exudyn.MainSystem, scene: Scene, fraction: float, refined: int, change: Callable | None
+) -> float:
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = scene.step / refined
@@ -235,6 +246,8 @@ def _solve(mbs: exudyn.MainSystem, scene: Scene, fraction: float, refined: int) 
     steps = round(fraction * scene.end / scene.step)
     integration.numberOfSteps = steps * refined
     integration.endTime = steps * scene.step
+    if change is not None:
+        change(settings)
     start = time.perf_counter()
     if not mbs.SolveDynamic(settings, showHints=False):
         raise RuntimeError("the solver stopped")
