@@ -4,7 +4,8 @@ import dataclasses
 
 import pytest
 
-from validation.speed import ablation, speed
+from validation.peer.scene import Run, Scene
+from validation.speed import ablation, frozen_spin, small_models, speed
 from validation.speed import scenes as speed_scenes
 
 STEPS = 20
@@ -61,3 +62,26 @@ def test_every_ablation_runs_and_changes_one_thing():
         fields = [f.name for f in dataclasses.fields(ablation.Variant)]
         changed = [n for n in fields if getattr(before, n) != getattr(after, n)]
         assert 1 <= len(changed) <= 2, (base, change)
+
+
+def test_small_models_are_timed_with_both_settings(monkeypatch):
+    times = iter([4.0, 2.0, 6.0, 1.0, 3.0, 3.0, 8.0, 2.0])
+    changes = []
+
+    def run(scene, call, share, change=None):
+        changes.append(change)
+        return Run([], next(times), 371, 8)
+
+    monkeypatch.setattr(small_models, "run", run)
+    scene = Scene("rotor", lambda script: None, 0.02, 1e-4)
+    default, full = small_models.compare(scene, 2, 1.0)
+    assert changes == [None] * 4 + [small_models.full_newton] * 4
+    assert (default["median"], default["least"]) == (4.0, 2.0)  # of 4/2 and 6/1
+    assert (full["median"], full["least"]) == (2.5, 1.0)
+    assert default["microseconds"] == pytest.approx([4.0 / 200 * 1e6, 1.0 / 200 * 1e6])
+
+
+def test_a_frozen_spin_errs_by_what_is_reported():
+    row = frozen_spin.compare(0.1, 0.0, 0.005, 1)
+    assert 0.0 < row["speed"] < 2.0 * row["reported"] < 1e-4
+    assert row["lateral"] < 1e-3
