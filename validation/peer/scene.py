@@ -169,7 +169,7 @@ class Scene:
     end, step : float
         [s]
     note : str
-        What is known of a deviation.
+        The known cause of what the scene deviates by.
     """
 
     name: str

@@ -68,7 +68,8 @@ class Row:
             f"{self.deviation:9.1e} {times} {first.seconds / second.seconds:6.2f}"
             f"{'' if self.holds else '  !'}"
         )
-        return "\n".join([line, *(f"    says: {text}" for text in self.messages)])
+        cause = [f"    cause: {self.scene.note}"] if self.scene.note else []
+        return "\n".join([line, *(f"    says: {text}" for text in self.messages), *cause])
 
 
 def measured(scene: Scene, fraction: float = 1.0, repeats: int = 1) -> Row:
