@@ -304,6 +304,9 @@ def test_a_rotor_body_kept_over_a_reset_says_so(fem):
     uses = {
         "coordinates": lambda: old.coordinates(),
         "marker": lambda: old.marker("left"),
+        "add_marker": lambda: old.add_marker("left"),
+        "check_connections": lambda: old.check_connections(),
+        "energy sensor": lambda: old.add_energy_sensor(),
         "start_recording": lambda: old.start_recording(),
         "recorded": lambda: old.recorded(),
         "check_run": lambda: exudyn_rotor.check_run(old, warn=False),

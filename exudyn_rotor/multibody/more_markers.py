@@ -28,6 +28,7 @@ def add_marker(
     show: bool = True,
 ) -> exudyn.MarkerIndex:
     """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes."""
+    body.check_present()
     if "marker_body" not in body.objects:
         raise ValueError(
             f"rotor {body.name!r} was added with marker_body=False; markers need the marker body"

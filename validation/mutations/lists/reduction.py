@@ -18,6 +18,12 @@ REDUCTION = [
         ),
     ),
     *mutations(
+        "reduction/mean_axis.py",
+        "test_mean_axis.py",
+        ("momentum left in the modes", "modes - rigid @ shares", "modes - 0.5 * rigid @ shares"),
+        ("missing stiffness reversed", "scaled.T @ matrix @ scaled", "-scaled.T @ matrix @ scaled"),
+    ),
+    *mutations(
         "reduction/basis.py",
         "test_reduction.py",
         ("one pass of Gram and Schmidt", "for _ in range(2):", "for _ in range(1):"),

@@ -4,6 +4,14 @@ from validation.mutations.mutation import mutations
 
 THEORY = [
     *mutations(
+        "theory/energy.py",
+        "test_energy.py",
+        ("Coriolis part of the energy reversed", "+ omega * (terms.g", "- omega * (terms.g"),
+        ("eccentric motion with the frame dropped", "+ omega * unbalance)", ")"),
+        ("deflection has no weight", "+ A @ (inv.S @ zeta)", ""),
+        ("frozen spin ignored", "if form.has_frozen_spin else zeta", "if False else zeta"),
+    ),
+    *mutations(
         "theory/spin_terms.py",
         "test_motion.py",
         ("Coriolis forces halved", "return 2.0 * speed * self.G", "return speed * self.G"),
