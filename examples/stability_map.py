@@ -58,7 +58,9 @@ print(f"isotropic bearings: unstable from {found[0, 0]:.4f} to {found[0, 1]:.4f}
 print(f"  stiffness singular at {expected[0]:.4f} and {expected[1]:.4f} rad/s")
 
 for damping in (0.0, 400.0):
-    ranges = unstable_ranges(reduced, speeds, supports=bearings(SIDEWAYS, UPRIGHT, damping))
+    ranges = unstable_ranges(
+        reduced, speeds, supports=bearings(SIDEWAYS, UPRIGHT, damping), tolerance=1e-7
+    )
     listed = ", ".join(f"{low:.2f} to {high:.2f}" for low, high in ranges) or "nowhere"
     print(f"softer sideways, {damping:3.0f} N s/m: unstable {listed} rad/s")
 

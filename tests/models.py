@@ -53,10 +53,11 @@ def disc_fem() -> FEMinterface:
     return fem
 
 
-def two_material_cylinder(maxh: float = 0.06) -> ngs.Mesh:
+def two_material_cylinder(maxh: float = 0.06, safety: float = 1.0) -> ngs.Mesh:
     """Return a cylinder of radius 0.1 m: 'steel' for z below 0.3 m, 'aluminium' up to 0.4 m.
 
-    The face z = 0 is named 'left', the face between the materials 'joint'.
+    The face z = 0 is named 'left', the face between the materials 'joint'. `safety` as in
+    :func:`disc_on_shaft`: the better, the less is the mesh off balance.
     """
     lower = Cylinder(Pnt(0, 0, 0), Z, 0.1, 0.3)
     lower.mat("steel")
@@ -64,7 +65,8 @@ def two_material_cylinder(maxh: float = 0.06) -> ngs.Mesh:
     lower.faces.Max(Z).name = "joint"
     upper = Cylinder(Pnt(0, 0, 0.3), Z, 0.1, 0.1)
     upper.mat("aluminium")
-    return ngs.Mesh(OCCGeometry(Glue([lower, upper])).GenerateMesh(maxh=maxh))
+    geometry = OCCGeometry(Glue([lower, upper]))
+    return ngs.Mesh(geometry.GenerateMesh(maxh=maxh, curvaturesafety=safety))
 
 
 def block_beam(maxh: float = 0.05, scale: float = 1.0) -> ngs.Mesh:

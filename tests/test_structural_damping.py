@@ -144,7 +144,7 @@ def test_viscous_damping_of_one_frequency_is_equal_there():
 @pytest.fixture(scope="module")
 def cylinder():
     materials = {"steel": STEEL, "aluminium": ALUMINIUM}
-    return SolidRotor.from_ngsolve(two_material_cylinder(0.15), materials, "z", order=1)
+    return SolidRotor.from_ngsolve(two_material_cylinder(0.15, safety=2.0), materials, "z", order=1)
 
 
 @pytest.fixture(scope="module")
