@@ -198,6 +198,33 @@ def test_stress_set_later_is_that_given_before(fem):
         mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress[:, 6:])
 
 
+@pytest.mark.parametrize("call", ["class", "function"])
+def test_strain_modes_are_taken_as_stress_modes_are(fem, call):
+    model = bare(fem)
+    strain = fem.postProcessingModes["matrix"] / 1e11
+    kind = exu.OutputVariableType.StrainLocal
+    model.postProcessingModes = {"matrix": strain, "outputVariableType": kind}
+    mbs = exu.SystemContainer().AddSystem()
+    if call == "class":
+        made = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
+        made.AddObjectFFRFreducedOrder(mbs)
+    else:
+        mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", model, axis="z")
+    own = exu.SystemContainer().AddSystem()
+    ObjectFixedAxisFFRFreducedOrderInterface(fem, axis="z").AddObjectFFRFreducedOrder(own)
+    stress = own.GetObjectParameter(0, "outputVariableModeBasis")
+    found = mbs.GetObjectParameter(0, "outputVariableModeBasis")
+    np.testing.assert_allclose(found, stress / 1e11, atol=1e-9 * np.abs(stress).max() / 1e11)
+    assert mbs.GetObjectParameter(0, "outputVariableTypeModeBasis") == kind
+    mbs.Assemble()
+    assert CMSObjectComputeNorm(mbs, 0, kind, "maxNorm") == 0.0
+    model.postProcessingModes = {"matrix": strain[:, 1:], "outputVariableType": kind}
+    before = item_counts(mbs)
+    with pytest.raises(ValueError, match="femInterface: its strain modes"):
+        mbs.CreateFixedAxisFFRFReducedOrderObject("other", model, axis="z")
+    assert item_counts(mbs) == before
+
+
 def test_other_parameters_and_bodies_are_set_as_before(fem):
     mbs = exu.SystemContainer().AddSystem()
     own, twin = (

@@ -156,8 +156,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     reduced = rotor.reduce(femInterface, prestress=prestress)
     modes = femInterface.modeBasis["matrix"]
     warn_of_held_frame(rotor, modes, stacklevel=2)
+    conversion = StressConversion(modes, reduced, femInterface.postProcessingModes)
     body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
-    accept_stress_modes(body, StressConversion(modes, reduced))
+    accept_stress_modes(body, conversion)
     if verbose:
         exudyn.Print(body.report())
     return {"FFRFReducedOrderObjectDict": numbers(body)} | {

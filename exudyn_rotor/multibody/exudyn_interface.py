@@ -233,11 +233,13 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         rotation = _UNIT if _empty(rotation) else rotation
         start = State.checked(("positionRef", position), ("rotationMatrixRef", rotation), **more)
         reduced = self._reduce(start) if self._reduced is None else self._reduced
+        conversion = None
         if self._solid is not None:
             warn_of_held_frame(self._solid, self.modeBasis, stacklevel=3)
+            conversion = StressConversion(self.modeBasis, reduced, self._fem.postProcessingModes)
         body = add_swapped_body(mbs, label, reduced, start, self._more)
-        if self._fem is not None:
-            accept_stress_modes(body, StressConversion(self.modeBasis, reduced))
+        if conversion is not None:
+            accept_stress_modes(body, conversion)
         self.rotorBody = body
         made = numbers(body)
         self.nRigidBody, self.nGenericODE2 = made["nRigidBody"], made["nGenericODE2"]

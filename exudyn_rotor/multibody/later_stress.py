@@ -7,12 +7,15 @@ mass-orthonormal, and virtual nodes, so such columns are converted to its coordi
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import wraps
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import exudyn
 import numpy as np
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.mark import mark_of
@@ -33,10 +36,28 @@ class StressConversion:
         The modes of the FEMinterface.
     reduced : ReducedRotor
         Made of these modes, with its shapes.
+    recovered : mapping
+        Post-processing modes of the FEMinterface. The rotor has their stress already; strain is
+        set by :func:`accept_stress_modes`.
     """
 
     modes: np.ndarray
     reduced: ReducedRotor
+    recovered: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        if self.has_strain:
+            self.checked(self.recovered["matrix"], "femInterface: its strain modes", "")
+
+    @property
+    def has_strain(self) -> bool:
+        """Whether the FEMinterface holds strain modes."""
+        return str(self.recovered.get("outputVariableType", "")).endswith("StrainLocal")
+
+    def checked(self, columns: ArrayLike, name: str, unit: str = "Pa") -> np.ndarray:
+        """Return six columns for each mode, or refuse another shape."""
+        shape = (len(self.reduced.shapes.nodes), 6 * self.modes.shape[1])
+        return checks.array(columns, name, unit, shape=shape)
 
     def columns(self, stress: np.ndarray) -> np.ndarray:
         """Return the stress (n, 6, k) of the reduced rotor's columns from that of the modes.
@@ -64,6 +85,10 @@ def accept_stress_modes(body: RotorBody, conversion: StressConversion) -> None:
     physics = body.objects["physics"]
     entry = (physics, marker_body, conversion, T)
     _accepting.setdefault(body.mbs, {})[body.mark] = entry
+    if conversion.has_strain:
+        strain = exudyn.OutputVariableType.StrainLocal
+        body.mbs.SetObjectParameter(marker_body, _PARAMETER, conversion.recovered["matrix"])
+        body.mbs.SetObjectParameter(marker_body, "outputVariableTypeModeBasis", strain)
 
 
 def _converted(mbs: exudyn.MainSystem, number: object, value: object) -> object:
@@ -71,13 +96,10 @@ def _converted(mbs: exudyn.MainSystem, number: object, value: object) -> object:
     for mark, (physics, marker_body, conversion, T) in _accepting.get(mbs, {}).items():
         if int(number) != marker_body or mark_of(mbs, physics) != mark:
             continue
-        node_count, mode_count = len(conversion.reduced.shapes.nodes), conversion.modes.shape[1]
         there = np.shape(mbs.GetObjectParameter(marker_body, "modeBasis"))
         if np.shape(value) == (there[0] // 3, 6 * there[1]) or np.size(value) == 0:
             return value
-        stress = checks.array(
-            value, f"value: {_PARAMETER}", "Pa", shape=(node_count, 6 * mode_count)
-        )
+        stress = conversion.checked(value, f"value: {_PARAMETER}")
         return stress_columns(conversion.columns(stress) @ T, there[0] // 3)
     return value
 
