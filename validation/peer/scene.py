@@ -19,7 +19,7 @@ from exudyn.itemInterface import (
     SensorSuperElement,
 )
 
-import exudyn_rotor  # noqa: F401  adds the swapped call to MainSystem
+from exudyn_rotor import RotorBody
 from validation.peer import parts
 
 ORIGINAL = "CreateFFRFReducedOrderObject"
@@ -39,6 +39,8 @@ class Flexible:
         The flexible object, and the node of its frame.
     markers : dict of str
         Markers that the call made, by boundary.
+    rotor : RotorBody or None
+        Of the swapped call.
     """
 
     mbs: exudyn.MainSystem
@@ -46,6 +48,7 @@ class Flexible:
     object: exudyn.ObjectIndex
     node: exudyn.NodeIndex
     markers: dict
+    rotor: RotorBody | None
 
     def rigid_marker(self, boundary: str, **options) -> exudyn.MarkerIndex:
         """Add the script's own rigid marker at a boundary."""
@@ -153,7 +156,9 @@ class Script:
 def _flexible(mbs: exudyn.MainSystem, fem: FEMinterface, name: str, made: dict) -> Flexible:
     items = made["FFRFReducedOrderObjectDict"]
     markers = {key.partition(":")[2]: value for key, value in made.items() if ":" in key}
-    return Flexible(mbs, fem, items["oFFRFreducedOrder"], items["nRigidBody"], markers)
+    return Flexible(
+        mbs, fem, items["oFFRFreducedOrder"], items["nRigidBody"], markers, items.get("rotorBody")
+    )
 
 
 @dataclass(frozen=True)
@@ -231,7 +236,7 @@ def run(
         sum(body.fem.NumberOfNodes() for body in script.bodies),
         sum(body.fem.modeBasis["matrix"].shape[1] for body in script.bodies),
         _marker_kinds(script),
-        tuple(_texts(caught)),
+        (*_texts(caught), *_asked(script)),
     )
 
 
@@ -252,6 +257,14 @@ def _solve(
     if not mbs.SolveDynamic(settings, showHints=False):
         raise RuntimeError("the solver stopped")
     return time.perf_counter() - start
+
+
+def _asked(script: Script) -> list[str]:
+    """Return what the rotors say when they are asked what their node cannot carry."""
+    rotors = [body.rotor for body in script.bodies if body.rotor]
+    return [
+        f"check_connections: {text}" for one in rotors for text in one.check_connections(warn=False)
+    ]
 
 
 def _texts(caught: list) -> list[str]:
