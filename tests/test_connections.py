@@ -30,6 +30,7 @@ from exudyn.utilities import (
     SphericalJoint,
     TorsionalSpringDamper,
 )
+from models import disc_fem
 from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
@@ -214,6 +215,22 @@ def test_forces_on_a_node_that_stands_still(locking):
         place = s.mbs.AddMarker(MarkerNodePosition(nodeNumber=s.node))
         s.mbs.AddObject(CartesianSpringDamper(markerNumbers=[s.base, place], stiffness=[1e3] * 3))
         assert len(s.found()) == across
+
+
+def test_forces_on_the_node_of_a_swapped_body_act_elsewhere():
+    """Exudyn's body has its node in the mesh origin, this one in the centre of mass."""
+    for attach, expected in (
+        (lambda mbs, marker: mbs.CreateForce(itemNumber=marker, loadVector=[0, 9.0, 0]), 1),
+        (lambda mbs, marker: mbs.CreateTorque(itemNumber=marker, loadVector=[0, 0, 9.0]), 0),
+    ):
+        mbs = exu.SystemContainer().AddSystem()
+        made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", disc_fem(), axis="z")
+        parts = made["FFRFReducedOrderObjectDict"]
+        attach(mbs, mbs.AddMarker(MarkerNodeRigid(nodeNumber=parts["nRigidBody"])))
+        mbs.Assemble()
+        found = parts["rotorBody"].check_connections(warn=False)
+        assert len(found) == expected
+        assert all("off the mesh origin" in sentence for sentence in found)
 
 
 def test_offset_without_a_lever():

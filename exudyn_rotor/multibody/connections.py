@@ -34,7 +34,16 @@ _FORCES_ONLY = (
     "ConnectorGravity",
     "JointSpherical",
 )
+_SWAPPED = "exudyn_rotor: bodies in place of Exudyn's"  # key in mbs.sys
+_APART = (
+    1e-3  # of the radius of gyration, by which the node is elsewhere than that of Exudyn's body
+)
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
+
+
+def stands_for_exudyns(body: RotorItems) -> None:
+    """Note that a script expects the node where Exudyn's body has it, in the mesh origin."""
+    body.mbs.sys.setdefault(_SWAPPED, set()).add(int(body.objects["marker_body"]))
 
 
 def lost_connections(body: RotorItems) -> tuple[str, ...]:
@@ -55,6 +64,7 @@ class _Walk:
         held = np.eye(3) - motion.free_directions @ motion.free_directions.T
         self.held = held if locks.normal is None else np.outer(locks.normal, locks.normal)
         self.locked = {*locks.tilts, *(i for i in (*locks.fixed, *locks.prescribed) if i < 3)}
+        self.apart = self._distance_to_exudyns_node()
         count = self.mbs.systemData.NumberOfMarkers()
         every = {number: self.mbs.GetMarker(number) for number in range(count)}
         node, flexible = int(body.nodes["rigid"]), int(body.objects["marker_body"])
@@ -70,6 +80,14 @@ class _Walk:
             and int(marker["bodyNumber"]) == flexible
             and np.any(marker["offset"])
         }
+
+    def _distance_to_exudyns_node(self) -> float:
+        """Return how far the node is off the mesh origin; 0 where no script expects it there."""
+        body, inv = self.body, self.body.motion.invariants
+        if int(body.objects["marker_body"]) not in self.mbs.sys.get(_SWAPPED, ()):
+            return 0.0
+        apart = float(np.linalg.norm(body.frame.origin))
+        return apart if apart > _APART * np.sqrt(np.trace(inv.J) / inv.mass) else 0.0
 
     def loads(self) -> Iterator[tuple[str, str]]:
         """Yield loads, and why they are lost."""
@@ -113,6 +131,8 @@ class _Walk:
             missing = np.linalg.norm(lost @ turn @ vector)
             if missing > max(_ALONG * np.linalg.norm(vector), _NOTHING):
                 return self._tilts(f"{missing:.4g} N m") if torque else self._held("a force")
+            if self.apart and not torque and np.any(vector):
+                return self._elsewhere("a force")
         return None
 
     def _vectors(self, load: dict[str, Any]) -> Iterator[np.ndarray]:
@@ -145,7 +165,17 @@ class _Walk:
                 return reason
         if np.linalg.matrix_rank(self.held, tol=0.5) == 3:
             return self._held("a connector")
+        if self.apart and (marker["markerType"] == "NodePosition" or self._holds_places(item)):
+            return self._elsewhere("a connector")
         return None
+
+    def _holds_places(self, item: dict[str, Any]) -> bool:
+        """Return whether a connector of rigid markers exerts forces beside torques."""
+        if item["objectType"] == "ConnectorRigidBodySpringDamper":
+            return bool(np.any(item["stiffness"][:3, :3]) or np.any(item["damping"][:3, :3]))
+        if item["objectType"] == "JointGeneric":
+            return bool(np.any(item["constrainedAxes"][:3]))
+        return item["objectType"] != "ConnectorTorsionalSpringDamper"
 
     def _rotations(self, item: dict[str, Any]) -> str | None:
         """Return why a connector of rigid markers is lost by what it holds of rotations."""
@@ -190,6 +220,12 @@ class _Walk:
 
     def _tilts(self, what: str) -> str:
         return f"the frame's node does not tilt (tilts are modes): {what} there has no effect"
+
+    def _elsewhere(self, what: str) -> str:
+        return (
+            f"the frame's node is {self.apart:.3g} m off the mesh origin, where Exudyn's body has "
+            f"its own: {what} there acts at another place"
+        )
 
     def _held(self, what: str) -> str:
         rank = np.linalg.matrix_rank(self.held, tol=0.5)

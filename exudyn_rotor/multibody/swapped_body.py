@@ -13,6 +13,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.axis_of_body import axis_at_rest, axis_of_motion, with_axis
+from exudyn_rotor.multibody.connections import stands_for_exudyns
 from exudyn_rotor.multibody.locking import LOCKINGS
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -161,7 +162,7 @@ def add_swapped_body(
     velocity = start.velocity
     if formulation.translation_count:
         velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
-    return add_rotor(
+    body = add_rotor(
         mbs,
         reduced,
         name=name,
@@ -183,6 +184,8 @@ def add_swapped_body(
         locking=more.locking,
         color=start.color,
     )
+    stands_for_exudyns(body)
+    return body
 
 
 def numbers(body: RotorBody) -> dict:
