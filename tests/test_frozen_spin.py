@@ -1,5 +1,6 @@
 """A free spin whose mass matrix leaves out what varies with the deflection."""
 
+import re
 from dataclasses import replace
 
 import exudyn
@@ -9,7 +10,7 @@ from point_rotors import random_invariants, ring_rotor
 from run_scenes import solve
 from scipy.integrate import solve_ivp
 
-from exudyn_rotor import Formulation, Motion, add_rotor, check_run
+from exudyn_rotor import Formulation, Motion, add_rotor, check_run, propose, select_modes
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.stiffening import stiffening
 
@@ -141,3 +142,22 @@ def test_what_cannot_be_frozen_is_refused(rings, arguments, message):
     mbs = exudyn.SystemContainer().AddSystem()
     with pytest.raises(ValueError, match=message):
         add_rotor(mbs, rings, **arguments)
+
+
+@pytest.mark.filterwarnings("ignore::exudyn_rotor.AssumptionWarning")
+def test_proposal_weighs_a_frozen_spin(rings):
+    """Against the steady state at a constant speed, which is the static stretch."""
+    speed = 100.0
+    reasons = [r for r in propose(rings, speeds=(0.0, speed)).reasons if "frozen" in r]
+    assert len(reasons) == 1
+    assert "saves half the Python calls" in reasons[0]
+    assert not any("frozen" in reason for reason in propose(rings, speeds=speed).reasons)
+    found = float(re.search(r"leaves out (\S+) by", reasons[0]).group(1))
+    selection = select_modes(rings, Formulation("free", "free"))
+    invariants = selection.invariants
+    stiff = np.flatnonzero(np.diag(invariants.K) > 1.0)
+    K, h = invariants.K[np.ix_(stiff, stiff)], invariants.h[stiff]
+    share = h @ np.linalg.solve(K, speed**2 * h) / invariants.Theta
+    assert found == pytest.approx(share, rel=0.05)  # printed with two digits
+    tight = propose(rings, speeds=(0.0, speed), accuracy=share)
+    assert any("errs by too much" in reason for reason in tight.reasons)

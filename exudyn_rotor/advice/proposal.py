@@ -14,6 +14,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
 from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
 from exudyn_rotor.advice.request import Request
+from exudyn_rotor.advice.spin_coupling import spin_coupling_reasons
 from exudyn_rotor.advice.step_size import Step, choose_step
 from exudyn_rotor.advice.stiffening_level import Level, choose_level
 from exudyn_rotor.advice.warning import AssumptionWarning
@@ -264,6 +265,7 @@ def propose(
             why,
             *_mode_reasons(given, request, chosen),
             *_level_reasons(request, level),
+            *spin_coupling_reasons(given, request, spin),
             _step_reason(request, step),
         ),
     )
