@@ -237,4 +237,13 @@ LINEAR = [
             "return -values.real.min(), excess_growth(values, system, tolerance)",
         ),
     ),
+    *mutations(
+        "linear/response/steady_state.py",
+        "test_steady_state.py",
+        (
+            "velocity of the turning axes reversed",
+            "T @ y_t + self.speed * T1 @ y",
+            "T @ y_t - self.speed * T1 @ y",
+        ),
+    ),
 ]

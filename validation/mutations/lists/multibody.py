@@ -139,4 +139,13 @@ MULTIBODY = [
             "- 0.0 * _deflected_weight(body, t, q[modes])",
         ),
     ),
+    *mutations(
+        "multibody/static_check.py",
+        "test_steady_state.py",
+        (
+            "static solution looked at from one angle only",
+            "moved[spin] = q[spin] + turn",
+            "moved[spin] = q[spin]",
+        ),
+    ),
 ]
