@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -17,7 +16,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import fem_interface, ngsolve_model
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.damping import with_damping
-from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
+from exudyn_rotor.solid.model import FiniteElementModel, node_set
 from exudyn_rotor.solid.rotor import AxisLike, FiniteElementRotor
 from exudyn_rotor.solid.summary import summary
 from exudyn_rotor.theory.axis import SpinAxis
@@ -232,7 +231,7 @@ class SolidRotor(FiniteElementRotor):
             rigid motions, node numbers, units.
         """
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
-        node_sets = {name: _node_set(name, entry) for name, entry in entries.items()}
+        node_sets = {name: node_set(name, entry) for name, entry in entries.items()}
         model = FiniteElementModel(nodes, mass, stiffness, damping, node_sets, triangles)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
 
@@ -411,11 +410,3 @@ class SolidRotor(FiniteElementRotor):
     def summary(self) -> str:
         """Return size, mass, supports, interfaces and point masses as lines of text."""
         return summary(self)
-
-
-def _node_set(name: str, entry: Any) -> NodeSet:
-    """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
-    nodes, weights = entry, None
-    if isinstance(entry, tuple) and len(entry) == 2 and not np.isscalar(entry[0]):
-        nodes, weights = entry
-    return checks.array(nodes, f"interfaces: {name!r}: nodes", dtype=int), weights

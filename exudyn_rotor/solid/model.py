@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.solid.elements import NgsolveElements
 
 StressRecovery = Callable[[np.ndarray], np.ndarray]
@@ -42,3 +43,11 @@ class FiniteElementModel:
     triangles: Any = ()
     stress_recovery: StressRecovery | None = None
     elements: NgsolveElements | None = None
+
+
+def node_set(name: str, entry: Any) -> NodeSet:
+    """Read one entry of ``from_matrices(interfaces=…)``: nodes, or (nodes, weights)."""
+    nodes, weights = entry, None
+    if isinstance(entry, tuple) and len(entry) == 2 and not np.isscalar(entry[0]):
+        nodes, weights = entry
+    return checks.array(nodes, f"interfaces: {name!r}: nodes", dtype=int), weights
