@@ -66,7 +66,7 @@ for damping in (0.0, 400.0):
 
 result = stability_map(
     damped,
-    speeds[::2],
+    speeds,
     np.linspace(0.0, 400.0, 5),
     labels=("spin speed [rad/s]", "damping of a bearing [N s/m]"),
     tolerance=1e-6,
