@@ -4,8 +4,10 @@ import os
 
 import pytest
 
-# before numpy is imported, which reads them; processes that tests start have them, too
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+# before numpy and ngsolve are imported, which read them; processes that tests start have them, too.
+# NGSolve's threads wait by spinning: two processes on two cores took three times as long
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS")
+for _name in _THREADS:
     os.environ.setdefault(_name, "1")
 os.environ["MPLBACKEND"] = "Agg"
 
