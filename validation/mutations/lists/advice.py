@@ -54,7 +54,8 @@ ADVICE = [
     *mutations(
         "advice/unresisted.py",
         "test_measures.py::test_axial_force_on_a_rotor_off_its_frame_is_felt "
-        "test_run_check.py::test_loads_that_the_frame_does_not_take_are_found",
+        "test_run_check.py::test_loads_that_the_frame_does_not_take_are_found "
+        "test_connections.py::test_weight_of_a_pendulum_is_no_lost_load",
         (
             "second-order moment with the wrong sign",
             "unresisted - tilting @ by_arm",
