@@ -109,6 +109,7 @@ def test_kernel_knows_what_it_has_evaluated(name):
         used.mass_entries(0.5 * time, other)
         used.forces(0.5 * time, other, q_t)
         used.jacobian(0.5 * time, other, q_t, 1.0, 1.0)
+        used.forces(0.5 * time, q, q_t)  # the same place at another time
         fresh = Kernel(motion, range(motion.size), motion.size)
         mass = used.mass_entries(time, q).copy()
         forces = used.forces(time, q, q_t).copy()
