@@ -171,6 +171,10 @@ THEORY = [
             "by_rate = products[2] - 2.0",
             "by_rate = products[2] + 2.0",
         ),
+    ),
+    *mutations(
+        "theory/kernel.py",
+        "test_kernel.py::test_kernel_knows_what_it_has_evaluated",
         (
             "products of an earlier time kept",
             "if q == self._last and t == self._time:",
