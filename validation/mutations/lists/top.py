@@ -16,7 +16,7 @@ TOP = [
     ),
     *mutations(
         "plotting.py",
-        "test_strength.py",
+        "test_surface.py",
         (
             "body drawn from right to left",
             "(20.0, -75.0, 0.0), (20.0, 15.0, 0.0)",
