@@ -23,7 +23,8 @@ import functools
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.marker_body import virtual_nodes
+from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
+from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
@@ -81,7 +82,7 @@ def condense_markers(
         places.append((number, list(range(count, count + len(moved[0])))))
         count += len(moved[0])
     if places:
-        _add_nodes(mbs, marker_body, body, np.vstack(new_points), np.vstack(new_columns))
+        append_nodes(mbs, marker_body, np.vstack(new_points), np.vstack(new_columns))
     for number, nodes in places:
         mbs.SetMarkerParameter(number, "meshNodeNumbers", nodes)
         mbs.SetMarkerParameter(number, "weightingFactors", [1.0 / len(nodes)] * len(nodes))
@@ -121,35 +122,13 @@ def _condensed(
     center, mean = weights @ points, np.einsum("n,nak->ak", weights, shapes)
     if kind == "SuperElementPosition":
         return center[None, :], mean
-    arms = [skew(point - center) for point in points]
-    W = -np.einsum("n,nab,nbc->ac", weights, arms, arms)
+    W, levers = rotation_moments(points - center, weights)
     sizes = np.linalg.eigvalsh(0.5 * (W + W.T))
     if sizes[0] <= _SINGULAR * sizes[-1]:
         return None
-    turn = np.linalg.solve(W, np.einsum("n,nab,nbk->ak", weights, arms, shapes - mean))
+    turn = np.linalg.solve(W, np.einsum("nab,nbk->ak", levers, shapes - mean))
     motion = np.vstack([mean, turn])
     return virtual_nodes(center, float(np.sqrt(sizes[-1])), motion, _Z)
-
-
-def _add_nodes(
-    mbs: exudyn.MainSystem,
-    marker_body: exudyn.ObjectIndex | int,
-    body: dict,
-    points: np.ndarray,
-    columns: np.ndarray,
-) -> None:
-    """Append nodes to the marker body; they carry no stress."""
-    new = {
-        "referencePositions": np.hstack([body["referencePositions"], points.ravel()]),
-        "modeBasis": np.vstack([body["modeBasis"], columns]),
-    }
-    stress = np.asarray(body["outputVariableModeBasis"])
-    if stress.size:
-        new["outputVariableModeBasis"] = np.vstack(
-            [stress, np.zeros((len(points), stress.shape[1]))]
-        )
-    for name, value in new.items():
-        mbs.SetObjectParameter(marker_body, name, value)
 
 
 def _is_marker_body(mbs: exudyn.MainSystem, number: int) -> bool:

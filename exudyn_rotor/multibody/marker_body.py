@@ -105,6 +105,25 @@ def virtual_nodes(
     return reference + arms, np.vstack(columns)
 
 
+def append_nodes(
+    mbs: exudyn.MainSystem,
+    marker_body: exudyn.ObjectIndex | int,
+    positions: np.ndarray,
+    columns: np.ndarray,
+) -> list[int]:
+    """Add virtual nodes (k, 3) with mode columns (3k, m), without stress; return their numbers."""
+    item = mbs.GetObject(marker_body)
+    before = np.asarray(item["referencePositions"])
+    mbs.SetObjectParameter(marker_body, "referencePositions", np.r_[before, positions.ravel()])
+    mbs.SetObjectParameter(marker_body, "modeBasis", np.vstack([item["modeBasis"], columns]))
+    stress = np.asarray(item["outputVariableModeBasis"])
+    if stress.size:
+        zero = np.zeros((len(positions), stress.shape[1]))
+        mbs.SetObjectParameter(marker_body, "outputVariableModeBasis", np.vstack([stress, zero]))
+    first = len(before) // 3
+    return list(range(first, first + len(positions)))
+
+
 def around(nodes: list[int]) -> list[int]:
     """Return the three nodes of an interface from those of its marker; a point comes after them."""
     return nodes if len(nodes) == 3 else [nodes[0] - 3, nodes[0] - 2, nodes[0] - 1]

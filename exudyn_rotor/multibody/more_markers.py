@@ -11,7 +11,10 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.inputs import MARKER_KINDS
+from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.solid.interface import rotation_moments
+from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
 _FLAT = 1e-6  # smallest second moment of nodes over the largest for which they show a rotation
@@ -49,17 +52,14 @@ def add_marker(
             raise ValueError("weights: are for mesh nodes; an interface has its own")
     else:
         point, motion, radius = _of_nodes(body, where, weights, kind)
+    motion = np.vstack([motion[:3] - skew(shift) @ motion[3:], motion[3:]])
+    marker_body = body.objects["marker_body"]
     if kind == "position":
-        arms = shift[None, :]
-    else:
-        angles = 2.0 * np.pi / 3.0 * np.arange(3)
-        circle = np.column_stack([np.cos(angles), np.sin(angles)]) @ body.axis.plane.T
-        arms = shift + (radius or 1.0) * circle @ body.frame.B.T
-    columns = [motion[:3] - skew(arm) @ motion[3:] for arm in arms]
-    nodes = _append_nodes(body, point + arms, np.vstack(columns))
-    if kind == "position":
+        nodes = append_nodes(body.mbs, marker_body, (point + shift)[None, :], motion[:3])
         item = MarkerSuperElementPosition(meshNodeNumbers=nodes, weightingFactors=[1.0], **common)
         return body.mbs.AddMarker(item)
+    axis = SpinAxis(body.frame.B @ body.axis.direction)
+    nodes = append_nodes(body.mbs, marker_body, *virtual_nodes(point + shift, radius, motion, axis))
     turn = np.eye(4)
     turn[:3, :3] = body.frame.B
     item = MarkerSuperElementRigid(
@@ -100,31 +100,14 @@ def _of_nodes(
     columns = np.asarray(item["modeBasis"])
     columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
     point, mean = share @ places, np.tensordot(share, columns, 1)
-    arms = np.array([skew(place - point) for place in places])
-    moments = np.einsum("n,nba,nbc->ac", share, arms, arms)
+    moments, levers = rotation_moments(places - point, share)
     sizes = np.linalg.eigvalsh(moments)
     motion = np.vstack([mean, np.zeros_like(mean)])
     if sizes[0] > _FLAT * sizes[-1]:
-        # mean rotation of u = ū + φ × a, weighted: Σ w ãᵀã φ = Σ w ã (u − ū)
-        motion[3:] = np.linalg.solve(moments, np.einsum("n,nab,nbm->am", share, arms, columns))
+        motion[3:] = np.linalg.solve(moments, np.einsum("nab,nbm->am", levers, columns))
     elif kind == "rigid":
         raise ValueError(
             f"where: the nodes {checks.shown(nodes.tolist())} lie on a line or in a point and show "
             "no rotation; give more nodes, an interface, or kind='position'"
         )
     return point, motion, float(np.sqrt(0.5 * np.trace(moments)))
-
-
-def _append_nodes(body: RotorItems, places: np.ndarray, columns: np.ndarray) -> list[int]:
-    """Add virtual nodes (k, 3) with mode columns (3k, m) to the marker body; return them."""
-    mbs, number = body.mbs, body.objects["marker_body"]
-    item = mbs.GetObject(number)
-    before = np.asarray(item["referencePositions"])
-    mbs.SetObjectParameter(number, "referencePositions", np.r_[before, places.ravel()])
-    mbs.SetObjectParameter(number, "modeBasis", np.vstack([item["modeBasis"], columns]))
-    stress = np.asarray(item["outputVariableModeBasis"])
-    if stress.size:
-        rows = np.zeros((len(places), stress.shape[1]))
-        mbs.SetObjectParameter(number, "outputVariableModeBasis", np.vstack([stress, rows]))
-    first = len(before) // 3
-    return list(range(first, first + len(places)))

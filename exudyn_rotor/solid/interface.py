@@ -97,11 +97,9 @@ class Interface:
         which the nodes have no arm (a single node, nodes on a line) get no rotation.
         """
         node_count = checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
-        arms = self.positions - self.center
-        tildes = np.array([skew(arm) for arm in arms])
-        inertia = -np.einsum("k,kab,kbc->ac", self.weights, tildes, tildes)
+        inertia, levers = rotation_moments(self.positions - self.center, self.weights)
         lever = np.linalg.pinv(inertia, rcond=1e-9, hermitian=True)
-        turn = np.einsum("ab,k,kbc->kac", lever, self.weights, tildes)
+        turn = np.einsum("ab,kbc->kac", lever, levers)
         shift = self.weights[:, None, None] * np.eye(3)
         shift = shift - skew(self.reference - self.center) @ turn
         blocks = np.concatenate([shift, turn], axis=1)
@@ -112,3 +110,13 @@ class Interface:
             shape=(columns.size, 3 * node_count),
         )
         return sp.csr_array(sp.csr_array(dense) @ selector)
+
+
+def rotation_moments(arms: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return ``W = −Σ w p̃ p̃``, shape (3, 3), and ``w p̃`` of every node, shape (k, 3, 3).
+
+    The mean rotation of displacements u is ``W⁻¹ Σ w p̃ u``, with the arms p (k, 3) from the
+    weighted centre; see :meth:`Interface.mean_motion`.
+    """
+    tildes = np.array([skew(arm) for arm in arms])
+    return -np.einsum("k,kab,kbc->ac", weights, tildes, tildes), weights[:, None, None] * tildes

@@ -44,8 +44,8 @@ MULTIBODY = [
         "test_spin_angles.py",
         (
             "lever of an added marker with the wrong sign",
-            "motion[:3] - skew(arm)",
-            "motion[:3] + skew(arm)",
+            "motion[:3] - skew(shift)",
+            "motion[:3] + skew(shift)",
         ),
     ),
     *mutations(
