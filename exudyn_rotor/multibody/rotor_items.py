@@ -10,6 +10,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.equations import Layout
+from exudyn_rotor.multibody.evaluation import STATES
 from exudyn_rotor.multibody.frame import BodyFrame
 from exudyn_rotor.multibody.inputs import main_system
 from exudyn_rotor.multibody.locking import Locks
@@ -20,10 +21,6 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.motion import Motion
 
-_CONFIGURATIONS = tuple(
-    getattr(exudyn.ConfigurationType, name)
-    for name in ("Initial", "Current", "StartOfStep", "Visualization")
-)
 _INDICES = {
     "nodes": exudyn.NodeIndex,
     "objects": exudyn.ObjectIndex,
@@ -146,8 +143,8 @@ class RotorItems:
             For a configuration without coordinates, or a system that is not assembled.
         """
         checks.instance(configuration, "configuration", exudyn.ConfigurationType)
-        if configuration not in _CONFIGURATIONS:
-            known = ", ".join(kind.name for kind in _CONFIGURATIONS)
+        if configuration not in STATES:
+            known = ", ".join(kind.name for kind in STATES)
             raise ValueError(f"configuration: needs one of {known}, got {configuration.name}")
         self.check_assembled()
         kinds = exudyn.OutputVariableType

@@ -11,7 +11,6 @@ supports that are alike in all directions) is left as it is.
 from __future__ import annotations
 
 import functools
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -19,6 +18,12 @@ import exudyn
 import numpy as np
 from exudyn.misc.extensionRegistry import extends, install
 
+from exudyn_rotor.multibody.evaluation import (
+    constraint_rows,
+    evaluating,
+    restore_states,
+    saved_states,
+)
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.theory.formulation import start_values
@@ -29,13 +34,6 @@ _ROTORS = "exudyn_rotor: rotors whose static solutions are checked"  # key in mb
 _TURNS = (1.0, 2.5)  # rad by which the rotor is turned
 _SHARE = 1e-3  # of the loads by which forces may change with the angle
 _NO_LOAD = 1e-6  # N, N m or N/√kg: below is round-off
-_CONFIGURATIONS = exudyn.ConfigurationType
-_STATES = (
-    _CONFIGURATIONS.Initial,
-    _CONFIGURATIONS.Current,
-    _CONFIGURATIONS.StartOfStep,
-    _CONFIGURATIONS.Visualization,
-)
 
 
 @dataclass(frozen=True)
@@ -107,7 +105,7 @@ def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) ->
     undeformed[places[list(rotor.unknowns)]] = 0.0
     kept = np.setdiff1d(np.arange(len(q)), np.setdiff1d(places, places[list(rotor.unknowns)]))
     time = data.GetTime()
-    with _solver(mbs) as solver:
+    with evaluating(mbs) as solver:
 
         def forces(state: np.ndarray, turn: float) -> np.ndarray:
             moved = state.copy()
@@ -135,40 +133,10 @@ def _unheld(
     size: int,
 ) -> np.ndarray:
     """Return a force less what the scene's constraints take up."""
-    if not solver.GetAEsize():
+    directions = constraint_rows(mbs, solver, size)[:, kept].T
+    if not directions.size:
         return force
-    # the first call clears the matrix that the second one fills
-    solver.ComputeJacobianODE2RHS(mbs, 0.0, 0.0, 0.0)
-    solver.ComputeJacobianAE(mbs, 1.0, 0.0, 0.0, False)
-    directions = np.array(solver.GetSystemJacobian())[size:, kept].T
     return force - directions @ np.linalg.lstsq(directions, force, rcond=1e-12)[0]
-
-
-@contextmanager
-def _solver(mbs: exudyn.MainSystem):
-    """Open the system for evaluations and leave it as it was."""
-    settings = exudyn.SimulationSettings()
-    settings.staticSolver.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.active = False
-    saved, solver = _saved(mbs), exudyn.MainSolverStatic()
-    try:
-        solver.InitializeSolver(mbs, settings)
-        yield solver
-    finally:
-        solver.FinalizeSolver(mbs, settings)
-        _restore(mbs, saved)
-
-
-def _saved(mbs: exudyn.MainSystem) -> list[tuple]:
-    data = mbs.systemData
-    return [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
-
-
-def _restore(mbs: exudyn.MainSystem, saved: list[tuple]) -> None:
-    for state, values, time in saved:
-        mbs.systemData.SetSystemState(values, state)
-        mbs.systemData.SetTime(time, state)
 
 
 def _install() -> None:
@@ -183,13 +151,13 @@ def _install() -> None:
             return solve(mbs, *given, **options)
         if not mbs.systemIsConsistent and options.get("autoAssemble", True):
             mbs.Assemble()
-        saved = _saved(mbs)
+        saved = saved_states(mbs)
         solved = solve(mbs, *given, **options)
         try:
             if solved:
                 check_static(mbs)
         except ValueError:
-            _restore(mbs, saved)
+            restore_states(mbs, saved)
             raise
         return solved
 

@@ -10,17 +10,11 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
-_CONFIGURATIONS = exudyn.ConfigurationType
-_STATES = (
-    _CONFIGURATIONS.Initial,
-    _CONFIGURATIONS.Current,
-    _CONFIGURATIONS.StartOfStep,
-    _CONFIGURATIONS.Visualization,
-)
 # root mean square displacement [m] of a difference step: as large as nonlinearity allows, because
 # Exudyn's forces are differences of positions of order 1 m
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
@@ -50,13 +44,10 @@ class Probe:
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
         self._set(theta, np.zeros(len(self.scene.free)), np.zeros(len(self.scene.free)))
-        if not self.solver.GetAEsize():
+        rows = constraint_rows(self.mbs, self.solver, len(self.scene.rest))
+        if not len(rows):
             return np.zeros((0, len(self.scene.free)))
-        # the first call clears the matrix that the second one fills
-        self.solver.ComputeJacobianODE2RHS(self.mbs, 0.0, 0.0, 0.0)
-        self.solver.ComputeJacobianAE(self.mbs, 1.0, 0.0, 0.0, False)
-        jacobian = np.array(self.solver.GetSystemJacobian())
-        C = jacobian[len(self.scene.rest) :, self.scene.free] @ self.scene.turn(theta)[0]
+        C = rows[:, self.scene.free] @ self.scene.turn(theta)[0]
         return C[np.abs(C).max(axis=1) > 1e-14]
 
     def mass(self) -> np.ndarray:
@@ -128,21 +119,8 @@ class Probe:
 @contextmanager
 def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     """Open a scene for probing and leave it as it was."""
-    mbs, settings = scene.body.mbs, exudyn.SimulationSettings()
-    settings.staticSolver.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.active = False
-    data = mbs.systemData
-    saved = [(state, data.GetSystemState(state), data.GetTime(state)) for state in _STATES]
-    solver = exudyn.MainSolverStatic()
-    try:
-        solver.InitializeSolver(mbs, settings)
+    with evaluating(scene.body.mbs) as solver:
         yield Probe(scene, speed, solver)
-    finally:
-        solver.FinalizeSolver(mbs, settings)
-        for state, values, time in saved:
-            data.SetSystemState(values, state)
-            data.SetTime(time, state)
 
 
 def linearised(

@@ -143,11 +143,11 @@ def quadratic_modes(
     size, resolution = len(M), resolution_of(values)
     values = merged(values, states, resolution)
     chosen = _one_of_each_pair(values, size)
-    vectors = _refined(values[chosen], states[:size, chosen], M, D, K)
+    vectors = inverse_iterated(values[chosen], states[:size, chosen], M, D, K)
     return values[chosen], vectors, resolution
 
 
-def _refined(
+def inverse_iterated(
     values: np.ndarray, vectors: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
 ) -> np.ndarray:
     """Return unit vectors after two inverse iterations.

@@ -16,12 +16,9 @@ from __future__ import annotations
 import cmath
 
 import numpy as np
-import scipy.linalg as la
 
+from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-
-_OFF_ROOT = 1e-9  # relative distance from an exponent that keeps its matrix invertible
-_ITERATIONS = 3
 
 
 def verified(values: np.ndarray, limits: np.ndarray, system: PeriodicSystem) -> np.ndarray:
@@ -40,16 +37,19 @@ def verified(values: np.ndarray, limits: np.ndarray, system: PeriodicSystem) -> 
         return values
     matrices = system.matrices(0.0)
     result = values.astype(complex)
-    for index in growing:
-        checked = _by_its_motion(values[index], *matrices)
+    start = np.ones((system.size, growing.size))
+    motions = inverse_iterated(values[growing], start, *matrices)
+    for index, x in zip(growing, motions.T, strict=True):
+        checked = _by_its_motion(values[index], x, *matrices)
         if checked.real <= limits[index]:
             result[index] = checked
     return result
 
 
-def _by_its_motion(value: complex, M: np.ndarray, D: np.ndarray, K: np.ndarray) -> complex:
+def _by_its_motion(
+    value: complex, x: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
+) -> complex:
     """Return the root next to `value` of the scalar equation, with the most favourable rounding."""
-    x = _vector(value, M, D, K)
     stiff = 0.5 * (K + K.T)
     a = np.vdot(x, M @ x).real
     b = np.vdot(x, 0.5 * (D + D.T) @ x).real + 1j * np.vdot(x, 0.5 * (D - D.T) @ x).imag
@@ -64,14 +64,3 @@ def _nearest_root(a: float, b: complex, c: complex, value: complex) -> complex:
     """Return the root of ``aλ² + bλ + c`` next to `value`."""
     width = cmath.sqrt(b * b - 4.0 * a * c)
     return min(((-b + sign * width) / (2.0 * a) for sign in (1, -1)), key=lambda x: abs(x - value))
-
-
-def _vector(value: complex, M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Return the motion of an exponent by inverse iteration."""
-    shifted = value * (1.0 + _OFF_ROOT)
-    factors = la.lu_factor(shifted**2 * M + shifted * D + K, check_finite=False)
-    x = np.ones(len(M), dtype=complex)
-    for _ in range(_ITERATIONS):
-        x = la.lu_solve(factors, M @ x, check_finite=False)
-        x /= np.linalg.norm(x)
-    return x

@@ -1,0 +1,57 @@
+"""Evaluating the equations of an ``mbs`` at any state, and leaving it as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import exudyn
+import numpy as np
+
+# configurations that hold coordinates
+STATES = tuple(
+    getattr(exudyn.ConfigurationType, name)
+    for name in ("Initial", "Current", "StartOfStep", "Visualization")
+)
+Saved = list[tuple]
+
+
+def saved_states(mbs: exudyn.MainSystem) -> Saved:
+    """Return what :func:`restore_states` needs."""
+    data = mbs.systemData
+    return [(state, data.GetSystemState(state), data.GetTime(state)) for state in STATES]
+
+
+def restore_states(mbs: exudyn.MainSystem, saved: Saved) -> None:
+    """Put coordinates and times of all configurations back."""
+    for state, values, time in saved:
+        mbs.systemData.SetSystemState(values, state)
+        mbs.systemData.SetTime(time, state)
+
+
+@contextmanager
+def evaluating(mbs: exudyn.MainSystem) -> Iterator[exudyn.MainSolverStatic]:
+    """Give a solver that evaluates forces and masses; states are put back afterwards."""
+    settings = exudyn.SimulationSettings()
+    settings.staticSolver.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.active = False
+    saved, solver = saved_states(mbs), exudyn.MainSolverStatic()
+    try:
+        solver.InitializeSolver(mbs, settings)
+        yield solver
+    finally:
+        solver.FinalizeSolver(mbs, settings)
+        restore_states(mbs, saved)
+
+
+def constraint_rows(
+    mbs: exudyn.MainSystem, solver: exudyn.MainSolverStatic, size: int
+) -> np.ndarray:
+    """Return the constraints' Jacobian by the `size` coordinates, shape (c, size)."""
+    if not solver.GetAEsize():
+        return np.zeros((0, size))
+    # the first call clears the matrix that the second one fills
+    solver.ComputeJacobianODE2RHS(mbs, 0.0, 0.0, 0.0)
+    solver.ComputeJacobianAE(mbs, 1.0, 0.0, 0.0, False)
+    return np.array(solver.GetSystemJacobian())[size:, :size]
