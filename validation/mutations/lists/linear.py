@@ -186,6 +186,40 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/response/refinement.py",
+        "test_peaks.py",
+        (
+            "peak on the other side of its point",
+            "place = float(np.clip(-0.5",
+            "place = float(np.clip(0.5",
+        ),
+        ("size at a peak falls", "size[1] / np.sqrt(max(least", "size[1] * np.sqrt(max(least"),
+        (
+            "phase of neighbours not compared",
+            "phasors[1:] * phasors[:-1].conj()",
+            "phasors[1:] * phasors[1:].conj()",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/verified.py",
+        "test_growth_by_rounding.py",
+        (
+            "skew damping taken for symmetric",
+            "0.5 * (D - D.T) @ x).imag",
+            "0.5 * (D + D.T) @ x).imag",
+        ),
+        ("stiffness with the other sign", "b * b - 4.0 * a * c", "b * b + 4.0 * a * c"),
+    ),
+    *mutations(
+        "linear/modal/tracking.py",
+        "test_campbell_frames.py::test_a_line_breaks_where_it_would_join_different_modes",
+        (
+            "other shapes taken for the same mode",
+            "alike = likeness @ together >= _LEAST_LIKENESS",
+            "alike = likeness @ together >= -_LEAST_LIKENESS",
+        ),
+    ),
+    *mutations(
         "linear/response/unbalance.py",
         "test_response.py",
         (
