@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.spin import Spin, spin_of
+from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
 from exudyn_rotor.linear.models.supports import Support, check_interfaces
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.prestress.static_solution import relief_rotations
@@ -61,7 +62,7 @@ def _second_order(
 
 
 @dataclass(frozen=True, eq=False)
-class FullEquations:
+class FullEquations(SupportedRotor):
     """A solid rotor with linear supports, unreduced: sparse equations at any spin speed.
 
     Attributes
@@ -113,16 +114,6 @@ class FullEquations:
             for s in supports
         )
         return cls(rotor.axis, rotor.nodes, tuple(supports), motions, invariants, tilt, rotor)
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates 3n."""
-        return self.invariants.size
-
-    @property
-    def free_spin(self) -> Spin | None:
-        """The spin where nothing holds it, else None."""
-        return self.spin if self.spin is not None and self.spin.free else None
 
     def with_spin(self: Kind) -> Kind:
         """Return the same with the spin as a coordinate, as all analyses need it."""

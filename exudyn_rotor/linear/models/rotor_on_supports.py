@@ -13,12 +13,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from exudyn_rotor.linear.models.eccentricity import is_balanced, warn_of_eccentricity
+from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.identity_basis import as_reduced
-from exudyn_rotor.linear.models.points import Ring, radius_of_gyration, ring_motions, spread
+from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.spin import Spin, spin_of
+from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
 from exudyn_rotor.linear.models.supports import Support, check_interfaces
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
@@ -34,7 +35,7 @@ _SINGULAR = 1e-12  # of a stiffness that leaves motions free
 
 
 @dataclass(frozen=True, eq=False)
-class LinearRotor:
+class LinearRotor(SupportedRotor):
     """A reduced rotor with linear supports, ready for any spin speed.
 
     Attributes
@@ -111,65 +112,15 @@ class LinearRotor:
         return spin
 
     @property
-    def size(self) -> int:
-        """Number of coordinates k."""
-        return self.invariants.size
-
-    @property
-    def interfaces(self) -> tuple[str, ...]:
-        """Names of the rotor's interfaces."""
-        return tuple(self.rotor.interfaces)
-
-    @property
     def mesh(self) -> Mesh | None:
         """Nodes of the mesh; None where the rotor was stored without mode shapes."""
         shapes = self.rotor.shapes
         return None if shapes is None else Mesh(shapes.nodes, shapes.matrix, self.rotor.axis)
 
-    @property
-    def mass_matrix(self) -> np.ndarray:
-        """M, shape (k, k)."""
-        return self.invariants.M
-
-    @cached_property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², ``h`` (83), shape (k,), rotor frame."""
-        return self.invariants.h
-
-    @property
-    def has_structural_damping(self) -> bool:
-        """True where steady motions have structural damping, which other analyses leave out."""
-        return self.invariants.H is not None
-
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
         turn = np.kron(np.eye(2), axes_of(self.rotor.axis).T)
         return turn @ self.rotor.interfaces[name].motion
-
-    @property
-    def free_spin(self) -> Spin | None:
-        """The spin where nothing holds it, else None."""
-        return self.spin if self.spin is not None and self.spin.free else None
-
-    @property
-    def is_balanced(self) -> bool:
-        """True where centre of mass and principal axis are on the spin axis but for rounding."""
-        return is_balanced(self.invariants)
-
-    @property
-    def base_loads(self) -> np.ndarray:
-        """Loads of unit accelerations of the ground (109), shape (3, k)."""
-        return -axes_of(self.rotor.axis).T @ self.invariants.S
-
-    @property
-    def radius(self) -> float:
-        """The rotor's radius of gyration [m]."""
-        return radius_of_gyration(self.invariants)
-
-    @property
-    def stiffness_varies(self) -> bool:
-        """True where the stiffness of a support depends on the speed."""
-        return any(support.stiffness_varies for support in self.supports)
 
     @cached_property
     def _centrifugal(self) -> np.ndarray:
@@ -217,12 +168,6 @@ class LinearRotor:
         steady = rest @ np.linalg.lstsq(rest.T @ K @ rest, load, rcond=_SINGULAR)[0]
         forces = [(pull @ (U @ steady))[:3] for U, pull in zip(motions, pulls, strict=True)]
         return float(sum(f @ bend for f, bend in zip(forces, self.spin.bends, strict=True)))
-
-    def undamped(self) -> LinearRotor:
-        """Return the model without damping, and without the skew part of supports' stiffness."""
-        supports = tuple(support.undamped() for support in self.supports)
-        undamped = replace(self.invariants, D=0.0 * self.invariants.D, H=None)
-        return replace(self, supports=supports, invariants=undamped)
 
     def point_motions(self, most: int) -> PointMotions:
         """Return points of the mesh, or of rings that move with the interfaces."""
