@@ -43,6 +43,7 @@ def rotor(attached: bool) -> ReducedRotor:
         ),
         dropped=("column 7",),
         with_attachments=made.with_attachments if attached else None,
+        in_attached=made.in_attached if attached else None,
     )
 
 

@@ -4,6 +4,7 @@ import gc
 import re
 import warnings
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import exudyn as exu
 import numpy as np
@@ -49,6 +50,14 @@ def exact_flexibility(rotor: SolidRotor) -> np.ndarray:
     operators = [one.mean_motion(rotor.node_count) for one in rotor.interfaces.values()]
     motion = np.vstack([each @ modes[:, 6:] for each in operators])
     return (motion / values[6:]) @ motion.T
+
+
+def test_where_columns_are_among_attachments_is_checked(rotor):
+    reduced = rotor.reduce(2)
+    with pytest.raises(ValueError, match="in_attached: columns are not orthonormal"):
+        replace(reduced, in_attached=1.1 * reduced.in_attached)
+    with pytest.raises(ValueError, match="in_attached: needs with_attachments"):
+        replace(reduced, with_attachments=None)
 
 
 @pytest.mark.parametrize("count", [0, 2, 6])
@@ -102,9 +111,20 @@ def test_threads_share_a_rotor():
 
 def test_truncation_and_files_keep_them(rotor, tmp_path):
     reduced = rotor.reduce(6)
-    assert keep_modes(reduced, [0, 1]).with_attachments is reduced.with_attachments
+    fewer = keep_modes(reduced, [0, 1])
+    assert fewer.with_attachments is reduced.with_attachments
+    for each in (reduced, fewer):  # the columns of the rotor in the basis with attachments
+        found = each.with_attachments.invariants.in_basis(each.in_attached)
+        np.testing.assert_allclose(found.M, np.eye(each.size), atol=1e-9)
+        scale = each.invariants.K.max()
+        np.testing.assert_allclose(found.K, each.invariants.K, atol=1e-9 * scale)
+        for name, interface in each.with_attachments.interfaces.items():
+            expected = each.interfaces[name].motion
+            np.testing.assert_allclose(interface.motion @ each.in_attached, expected, atol=1e-8)
     reduced.save(tmp_path / "rotor.npz")
-    loaded = ReducedRotor.load(tmp_path / "rotor.npz").with_attachments
+    loaded = ReducedRotor.load(tmp_path / "rotor.npz")
+    np.testing.assert_array_equal(loaded.in_attached, reduced.in_attached)
+    loaded = loaded.with_attachments
     given = reduced.with_attachments
     assert np.array_equal(flexibility(loaded), flexibility(given))
     assert loaded.rigid == given.rigid

@@ -327,7 +327,7 @@ def test_size_without_shapes_is_independent_of_the_mesh():
     assert small.shapes is None
     assert sizes(small) == sizes(large)
     assert sizes(finer.reduce(5).without_shapes()) == sizes(large)
-    assert max(np.prod(shape) for shape in sizes(large).values()) <= 23**2  # with attachments
+    assert max(np.prod(shape) for shape in sizes(large).values()) <= 36**2  # with static responses
 
 
 def sizes(reduced: ReducedRotor) -> dict:

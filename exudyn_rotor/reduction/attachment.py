@@ -6,6 +6,8 @@ leave out: Rubin, "Improved component-mode representation", AIAA Journal 13 (197
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from exudyn_rotor.reduction.basis import rigid_columns
@@ -38,21 +40,18 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
     ValueError
         If the rotor has loose parts.
     """
-    interfaces, moving = rotor.interfaces.values(), coupled(rotor.stiffness).reshape(-1, 3)
-    rigid = [one for one in interfaces if _stays_rigid(one, others)]
+    moving = coupled(rotor.stiffness).reshape(-1, 3)
+    rigid = rigid_interfaces(rotor, others)
     loads = [
         one.mean_motion(rotor.node_count).T.toarray()
-        for one in interfaces
+        for one in rotor.interfaces.values()
         if one not in rigid and (moving[one.nodes].any() or not rotor.grounded)
     ]
-    inertia = rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
+    if rigid or rotor.grounded:
+        loads.append(rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass))
     responses = [np.zeros((rotor.nodes.size, 0))]
-    if rotor.grounded:
-        loads.append(inertia)
     if loads:
-        responses.append(inertia_relief(rotor).solve(np.hstack(loads)))
-    if rigid and not rotor.grounded:
-        responses.append(_held_at(rotor, rigid, inertia))
+        responses.append(static_responses(rotor, rigid, np.hstack(loads)))
     columns = np.hstack(responses)
     norms = np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
     columns = columns[:, norms > 0.0] / norms[norms > 0.0]
@@ -60,15 +59,31 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
     return ModeBasis(columns, labels, rotor.nodes)
 
 
-def _held_at(
-    rotor: FiniteElementRotor, interfaces: list[Interface], loads: np.ndarray
+def static_responses(
+    rotor: FiniteElementRotor, held: Sequence[Interface], loads: np.ndarray
 ) -> np.ndarray:
-    """Return static responses (3n, k) to loads with the nodes of interfaces held."""
-    held = np.concatenate([one.nodes for one in interfaces])
-    inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * held[:, None] + np.arange(3)).ravel())
+    """Return static responses (3n, k) to loads, with the nodes of interfaces held.
+
+    By inertia relief where none is. The rigid motions of held interfaces, which modes that keep
+    them rigid contain, complete the responses.
+
+    Raises
+    ------
+    ValueError
+        If the rotor has loose parts.
+    """
+    if not held:
+        return inertia_relief(rotor).solve(loads)
+    nodes = np.concatenate([one.nodes for one in held])
+    inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * nodes[:, None] + np.arange(3)).ravel())
     columns = np.zeros_like(loads)
     columns[inner] = SparseCholesky(rotor.stiffness[inner][:, inner]).solve(loads[inner])
     return columns
+
+
+def rigid_interfaces(rotor: FiniteElementRotor, modes: np.ndarray) -> list[Interface]:
+    """Return the interfaces that no mode (3n, k) deforms."""
+    return [one for one in rotor.interfaces.values() if _stays_rigid(one, modes)]
 
 
 def _stays_rigid(interface: Interface, modes: np.ndarray) -> bool:

@@ -16,6 +16,7 @@ from exudyn_rotor.reduction.basis import OrthonormalBasis, orthonormal_basis, ri
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
+from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid import matrices
@@ -67,6 +68,9 @@ def _reduced(
     )
     rigid_count = len(basis.rigid_kinds)
     _check_stable(invariants, rigid_count)
+    added, in_attached = None, None
+    if attach:
+        added, in_attached = _with_attachments(rotor, component, basis, rank_tolerance)
     own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
     if rotor.mass_damping is not None:
         damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
@@ -85,22 +89,36 @@ def _reduced(
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
         centrifugal=_centrifugal(rotor) if keep_shapes else None,
-        with_attachments=_with_attachments(rotor, component, rank_tolerance) if attach else None,
+        with_attachments=added,
+        in_attached=in_attached,
     )
 
 
 def _with_attachments(
-    rotor: FiniteElementRotor, component: ModeBasis, rank_tolerance: float
-) -> ReducedRotor | None:
-    """Return the rotor with attachment modes as well; None if its static response is unknown."""
+    rotor: FiniteElementRotor,
+    component: ModeBasis,
+    basis: OrthonormalBasis,
+    rank_tolerance: float,
+) -> tuple[ReducedRotor | None, np.ndarray | None]:
+    """Return the rotor with static responses beside its modes, and where its own columns are there.
+
+    None if its static response is unknown.
+    """
+    stiffness = np.einsum("ik,ik->k", basis.matrix, rotor.stiffness @ basis.matrix)
+    stiffness[: len(basis.rigid_kinds)] = 0.0
     try:
-        added = attachment_modes(rotor, component.matrix)
+        added = [
+            component,
+            attachment_modes(rotor, component.matrix),
+            inertial_modes(rotor, component.matrix, basis.matrix, np.maximum(stiffness, 0.0)),
+        ]
     except ValueError:  # loose parts; the given modes may do without them
-        return None
-    both = ModeBasis(
-        np.hstack([component.matrix, added.matrix]), component.labels + added.labels, rotor.nodes
-    )
-    return _reduced(rotor, both, False, False, rank_tolerance, attach=False)
+        return None, None
+    labels = sum((modes.labels for modes in added), ())
+    every = ModeBasis(np.hstack([modes.matrix for modes in added]), labels, rotor.nodes)
+    finer = _reduced(rotor, every, False, True, rank_tolerance, attach=False)
+    in_attached = finer.shapes.matrix.T @ (rotor.mass @ basis.matrix)
+    return finer.without_shapes(), in_attached
 
 
 def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:

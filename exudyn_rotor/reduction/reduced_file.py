@@ -24,6 +24,7 @@ _INTERFACE = ("reference", "center", "motion")
 _SHAPES = ("nodes", "matrix")
 _CENTRIFUGAL = ("displacement", "stress", "constant_stress")
 _ATTACHED = "attached."
+_IN_ATTACHED = "in_attached"
 _ROUNDING = 1e-8  # of the largest eigenvalue: above the rounding of sums, far below a wrong matrix
 
 
@@ -50,6 +51,7 @@ def _entries(rotor: Rotor) -> dict[str, object]:
     if rotor.with_attachments is not None:
         added = _entries(rotor.with_attachments)
         data |= {_ATTACHED + key: value for key, value in added.items()}
+        data |= {} if rotor.in_attached is None else {_IN_ATTACHED: rotor.in_attached}
     return data
 
 
@@ -103,6 +105,7 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
         "shapes": _shapes(entries.group("shapes.")),
         "centrifugal": _centrifugal(entries.group("centrifugal.")),
         "with_attachments": make(**_fields(attached, make)) if attached else None,
+        **entries.arrays(_IN_ATTACHED, optional=True),
     }
     attached.close()
     return fields

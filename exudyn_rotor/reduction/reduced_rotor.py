@@ -21,6 +21,7 @@ from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
+_ORTHONORMAL = 1e-6
 _SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
 
 
@@ -53,8 +54,12 @@ class ReducedRotor:
     centrifugal : Centrifugal or None
         None when the rotor was reduced without a computed prestress, or without shapes.
     with_attachments : ReducedRotor or None
-        The same rotor with static responses to loads at its interfaces beside the modes, without
-        shapes: what says how much the modes leave out. None where that is not known.
+        The same rotor with static responses to loads at its interfaces and to the inertia forces
+        of its modes in a turning frame beside the modes, without shapes: what says how much the
+        modes leave out. None where that is not known.
+    in_attached : ndarray, shape (l, k), or None
+        The columns of this rotor in the basis of `with_attachments`, orthonormal. None where that
+        is not known, as in files of version 0.1.
 
     Raises
     ------
@@ -91,6 +96,7 @@ class ReducedRotor:
     shapes: ModeShapes | None = None
     centrifugal: Centrifugal | None = None
     with_attachments: ReducedRotor | None = None
+    in_attached: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         checks.instance(self.axis, "axis", SpinAxis)
@@ -134,6 +140,20 @@ class ReducedRotor:
             added = checks.instance(self.with_attachments, "with_attachments", ReducedRotor)
             if added.interfaces.keys() != self.interfaces.keys():
                 raise ValueError("with_attachments: needs the interfaces of the rotor")
+        if self.in_attached is not None:
+            self._check_in_attached()
+
+    def _check_in_attached(self) -> None:
+        if self.with_attachments is None:
+            raise ValueError("in_attached: needs with_attachments")
+        shape = (self.with_attachments.size, self.size)
+        columns = checks.array(self.in_attached, "in_attached", shape=shape)
+        away = np.abs(columns.T @ columns - np.eye(self.size)).max(initial=0.0)
+        if away > _ORTHONORMAL:
+            raise ValueError(
+                f"in_attached: columns are not orthonormal, they miss it by {away:.3g}"
+            )
+        set_checked(self, in_attached=columns)
 
     @property
     def size(self) -> int:

@@ -102,6 +102,7 @@ BY_NAME: dict[str, Kind] = {
     "has_static": v.FLAG,
     "high": v.POSITIVE,
     "hub": Kind(_NODES.good | v.EMPTY | {"range"}, spoiled=True),
+    "in_attached": _FIELD,
     "indices": Kind(frozenset({"range"}) | v.EMPTY, spoiled=True).but(beyond=[99], twice=[0, 0]),
     "initialAngularVelocity": Kind(spoiled=True).but(across=[1.0, 0.0, 0.0]),
     "initialVelocity": v.VECTOR,
