@@ -9,12 +9,8 @@ from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
-from exudyn_rotor.linear.modal.critical_speeds import (
-    CriticalSpeedMap,
-    CriticalSpeeds,
-    critical_speed_map,
-    critical_speeds,
-)
+from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
+from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.supports import Support

@@ -17,7 +17,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, export
 from exudyn_rotor.storage import read_arrays, write_arrays
 
 _LONGEST = 60  # characters of one value in a repr
@@ -150,6 +150,63 @@ class Result:
                 data[f"field.{item.name}"] = np.array(value, dtype=str) if row else value
         write_arrays(path, _KIND, data)
 
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns of one length, named with their units.
+
+        Parameters
+        ----------
+        units : {'SI', 'Hz', 'rpm'}
+            Of speeds and frequencies; see :meth:`exudyn_rotor.units.Units.of`.
+
+        Raises
+        ------
+        TypeError
+            If the class has no such table.
+        """
+        raise TypeError(f"columns: a {type(self).__name__} has none; give its class this method")
+
+    def to_dataframe(self, units: str = "SI") -> Any:
+        """Return the table as a ``pandas.DataFrame``; see :meth:`columns`.
+
+        Raises
+        ------
+        ImportError
+            Without pandas, which ``pip install "exudyn-rotor[pandas]"`` brings.
+        """
+        return export.data_frame(self.columns(units))
+
+    def to_csv(self, path: str | PathLike, units: str = "SI") -> None:
+        """Write the table to a CSV file; see :meth:`columns`.
+
+        A file of that name is replaced only by a complete one.
+
+        Raises
+        ------
+        TypeError, OSError
+            As :meth:`save`.
+        """
+        checks.path(path)
+        export.write_csv(path, self.columns(units))
+
+    def to_xarray(self) -> Any:
+        """Return all fields as an ``xarray.Dataset``: arrays in SI units, the rest as attributes.
+
+        Raises
+        ------
+        ImportError
+            Without xarray, which ``pip install "exudyn-rotor[xarray]"`` brings.
+        """
+        found = {item: getattr(self, item.name) for item in fields(self)}
+        shapes = {i.name: i.metadata.get("shape", ()) for i, v in found.items() if np.ndim(v)}
+        arrays, rest = {}, {}
+        for item, value in found.items():
+            if len(shapes.get(item.name, ())) == np.ndim(value) > 0:
+                named = (_dimension(word, item.name, shapes) for word in shapes[item.name])
+                arrays[item.name] = (tuple(named), np.array(value))
+            elif value is not None:
+                rest[item.name] = value
+        return export.data_set(arrays, rest)
+
     @classmethod
     def load(cls: type[Kind], path: str | PathLike) -> Kind:
         """Read a result of this class; see :func:`load_result`.
@@ -163,6 +220,13 @@ class Result:
         if not isinstance(result, cls):
             raise ValueError(f"{path}: holds a {type(result).__name__}, not a {cls.__name__}")
         return result
+
+
+def _dimension(word: int | str, name: str, shapes: Mapping[str, tuple]) -> str:
+    """Return the name of a dimension; that of a field only where the field runs along it."""
+    if not isinstance(word, str):
+        return f"{name}_{word}"
+    return word if shapes.get(word, (word,)) == (word,) else f"{word}_number"
 
 
 @cache

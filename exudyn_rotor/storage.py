@@ -16,7 +16,7 @@ import os
 import secrets
 import stat
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -64,21 +64,24 @@ def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) ->
         if value.dtype.kind not in _KINDS:
             raise TypeError(f"{name}: cannot be stored, needs numbers, got {checks.shown(value)}")
     entries[_CHECKSUM] = np.array(_checksum(entries))
-    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
-    draft = target.with_name(f"{target.name[:40]}.{secrets.token_hex(8)}.draft")
-    try:
-        with _made(draft, mode) as file:
-            np.savez_compressed(file, allow_pickle=False, **entries)
-            if sum(value.nbytes for value in entries.values()) > _most_bytes(file.tell()):
-                file.seek(0)
-                file.truncate()
-                np.savez(file, allow_pickle=False, **entries)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(draft, target)
-    finally:
-        draft.unlink(missing_ok=True)
-    _flush_folder(target.parent)
+    with _replacing(target) as file:
+        np.savez_compressed(file, allow_pickle=False, **entries)
+        if sum(value.nbytes for value in entries.values()) > _most_bytes(file.tell()):
+            file.seek(0)
+            file.truncate()
+            np.savez(file, allow_pickle=False, **entries)
+
+
+def write_text(path: str | PathLike, text: str) -> None:
+    """Write text, UTF-8, to `path` in the way of :func:`write_arrays`.
+
+    Raises
+    ------
+    TypeError, OSError
+        As :func:`write_arrays`.
+    """
+    with _replacing(_target(path)) as file:
+        file.write(text.encode("utf-8"))
 
 
 def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:
@@ -197,6 +200,22 @@ def _target(path: str | PathLike) -> Path:
         if not os.access(target, os.W_OK):
             raise PermissionError(f"path: the file {str(given)!r} is read-only")
     return target
+
+
+@contextlib.contextmanager
+def _replacing(target: Path) -> Iterator[BinaryIO]:
+    """Open a draft that takes the place of `target` when it is complete and on the disk."""
+    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+    draft = target.with_name(f"{target.name[:40]}.{secrets.token_hex(8)}.draft")
+    try:
+        with _made(draft, mode) as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(draft, target)
+    finally:
+        draft.unlink(missing_ok=True)
+    _flush_folder(target.parent)
 
 
 def _made(draft: Path, mode: int | None) -> BinaryIO:

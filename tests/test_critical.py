@@ -8,7 +8,8 @@ from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import SolidRotor, campbell
-from exudyn_rotor.linear.modal.critical_speeds import critical_speed_map, critical_speeds
+from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
+from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.results import load_result

@@ -24,6 +24,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.units import Units
 
 Nodes = slice | np.ndarray
 
@@ -162,6 +163,18 @@ class StressField(Result):
         if isinstance(nodes, slice):
             return nodes
         return checks.whole_numbers(nodes, "nodes", most=len(self.positions) - 1)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return a row for each modal coordinate; `units` change nothing."""
+        Units.of(units)
+        sizes = von_mises(np.moveaxis(self.modes, 2, 0))
+        nodes = sizes.argmax(axis=1)
+        return {
+            "coordinate": np.arange(len(sizes)),
+            "largest von Mises stress per unit [Pa]": sizes.max(axis=1),
+            "node": nodes,
+            **{f"{axis} [m]": self.positions[nodes, i] for i, axis in enumerate("xyz")},
+        }
 
     def table(self) -> str:
         """Return what a unit of every modal coordinate does, and where, as text."""

@@ -15,6 +15,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
 from exudyn_rotor.strength.field import StressField, check_triangles, warn_without_static
+from exudyn_rotor.units import Units
 
 _CHUNK = 2_000_000  # values of a stress history held at a time
 
@@ -85,6 +86,17 @@ class StressHistory(Result):
     def hottest(self) -> int:
         """Mesh node with the highest von Mises stress of the run."""
         return int(np.argmax(self.peak))
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return a row for each node with a history; `units` change nothing."""
+        Units.of(units)
+        return {
+            "node": self.nodes,
+            **{f"{axis} [m]": self.positions[self.nodes, i] for i, axis in enumerate("xyz")},
+            "peak von Mises stress [Pa]": self.peak[self.nodes],
+            "at [s]": self.peak_time[self.nodes],
+            "range of the first principal stress [Pa]": np.ptp(self.principal[:, :, 0], axis=0),
+        }
 
     def table(self) -> str:
         """Return the nodes with a history, their places, peaks and ranges as text."""

@@ -162,6 +162,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "ConstantSpeed.rate": lambda w: {"t": 0.0},
     "ConstantSpeed.value": lambda w: {"t": 0.0},
     "*.save": lambda w: {"path": w.folder / "saved.npz"},
+    "*.to_csv": lambda w: {"path": w.folder / "table.csv"},
     "*.orbit": lambda w: {"value": 10.0},
     "*.plot_orbit": lambda w: {"value": 10.0},
     "*.rates": lambda w: {"order": 1},

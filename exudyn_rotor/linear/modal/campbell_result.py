@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.whirl import WHIRLS
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.units import Units
 
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
 # rotor with an uneven mesh looks like that
@@ -115,8 +119,35 @@ class Campbell(Result):
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
         return replace(self, **moved)
 
-    def plot(self, ax: Axes | None = None, frame: str = "inertial") -> Axes:
-        """Draw the tracked modes [Hz] over the spin speed [Hz]; see :mod:`exudyn_rotor.plotting`.
+    def crossings(self, order: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+        """Return where modes have the frequency pΩ in the inertial frame, p the `order`.
+
+        By linear interpolation between neighbouring speeds, with damping; :func:`critical_speeds`
+        finds undamped ones without a grid.
+
+        Returns
+        -------
+        speeds : ndarray, shape (c,)
+            Ascending [rad/s].
+        modes : ndarray of int, shape (c,)
+            Columns of :meth:`tracked`.
+        """
+        order = checks.number(order, "order", above=0.0)
+        tracked = self.tracked()
+        values = tracked.frequencies_inertial
+        return excitation.crossings(self.speeds, values, tracked.continued, order)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        frame: str = "inertial",
+        *,
+        units: str = "Hz",
+        orders: Sequence[float] | float | None = None,
+        operating_range: ArrayLike | None = None,
+        margins: ArrayLike | None = None,
+    ) -> Axes:
+        """Draw the tracked modes over the spin speed; see :mod:`exudyn_rotor.plotting`.
 
         A line breaks where it would join different modes.
 
@@ -125,52 +156,100 @@ class Campbell(Result):
         ax : matplotlib.axes.Axes, optional
             A new figure without a window by default.
         frame : {'inertial', 'rotor'}
+        units : {'Hz', 'rpm', 'SI'}
+            Of the picture: 'rpm' has speeds in rpm and frequencies in Hz, 'SI' rad/s.
+        orders : sequence of float, optional
+            Lines of excitation pΩ with p in `orders`, with the modes' crossings marked; by default
+            the spin speed alone without marks. Only in the inertial frame.
+        operating_range : two floats, optional
+            Lowest and highest operating speed [rad/s], shaded.
+        margins : two floats, optional
+            Separation margins, shaded: shares of the lowest speed below it and of the highest
+            above it, as (0.16, 0.26), the largest that API 617 asks for.
 
         Raises
         ------
-        ValueError
-            For an unknown frame.
+        TypeError, ValueError
+            For an unknown frame or unit, orders in the rotor frame, or numbers out of range.
         """
         checks.choice(frame, "frame", FRAMES)
+        shown, inertial = Units.of(units), frame == "inertial"
+        limits = excitation.checked_range(operating_range)
+        shares = excitation.checked_margins(margins, limits is not None)
+        if orders is not None:
+            orders = excitation.checked_orders(orders)
+            if not inertial:
+                raise ValueError("orders: lines of excitation are drawn in the inertial frame only")
         ax = plotting.axes_or_new(ax)
-        hertz = 1.0 / (2.0 * np.pi)
-        tracked, speeds = self.tracked(), hertz * self.speeds
-        inertial = frame == "inertial"
+        tracked, speeds = self.tracked(), shown.speeds(self.speeds)
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
         codes, continued = tracked.whirl_codes, tracked.continued
-        handles = draw_campbell(ax, speeds, hertz * values, codes, continued, unstable)
-        if inertial:
-            handles += ax.plot(speeds, np.abs(speeds), color="0.6", lw=0.8, label="spin speed")
-        ax.set_xlabel("spin speed [Hz]")
-        ax.set_ylabel(f"frequency in the {'inertial' if inertial else 'rotor'} frame [Hz]")
-        ax.set_ylim(bottom=0.0)
+        drawn = shown.frequencies(values)
+        handles = draw_campbell(ax, speeds, drawn, codes, continued, unstable)
+        if limits is not None:
+            handles += excitation.shade_range(ax, limits, shares, shown)
+        if orders is not None:
+            given = (self.speeds, values, continued, orders, shown)
+            handles += excitation.draw_orders(ax, *given)
+        elif inertial:
+            line = shown.frequencies(np.abs(self.speeds))
+            handles += ax.plot(speeds, line, color="0.6", lw=0.8, label="spin speed")
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel(f"frequency in the {frame} frame [{shown.frequency}]")
+        top = max(drawn.max(initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
+        ax.set_ylim(0.0, 1.05 * top or None)
         ax.grid(alpha=0.3)
         plotting.legend_above(ax, 3, handles)
         return ax
 
-    def table(self, count: int | None = None) -> str:
-        """Return the lowest `count` modes at every speed as lines of text, frequencies in Hz."""
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each speed and mode, tracked."""
+        shown, tracked = Units.of(units), self.tracked()
+        count = self.order.shape[1]
+        speed, frequency = f"[{shown.speed}]", f"[{shown.frequency}]"
+        return {
+            f"speed {speed}": np.repeat(shown.speeds(self.speeds), count),
+            "mode": np.tile(np.arange(1, count + 1), len(self.speeds)),
+            f"rotor frame {frequency}": shown.frequencies(tracked.frequencies_rotor).ravel(),
+            f"inertial {frequency}": shown.frequencies(tracked.frequencies_inertial).ravel(),
+            "growth [1/s]": tracked.growth.ravel(),
+            "damping ratio": tracked.damping_ratio.ravel(),
+            "log decrement": tracked.log_decrement.ravel(),
+            "nodal diameters": tracked.nodal_diameters.ravel(),
+            "whirl": tracked.whirl.ravel(),
+            "continued": tracked.continued.ravel(),
+        }
+
+    def table(self, count: int | None = None, *, units: str = "Hz") -> str:
+        """Return the lowest `count` modes at every speed as lines of text.
+
+        `units` are those of :meth:`plot`.
+        """
         if count is not None:
             count = checks.count(count, "count", least=1)
-        hertz = 1.0 / (2.0 * np.pi)
+        known = Units.of(units)
+        speed, frequency = f"[{known.speed}]", f"[{known.frequency}]"
         lines = [
-            "  speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl",
+            f"{'speed ' + speed:>12}  mode{'rotor frame ' + frequency:>18}"
+            f"{'inertial ' + frequency:>15}  damping ratio  n  whirl"
         ]
         shown = slice(0, count)
-        for i, speed in enumerate(self.speeds):
+        rotor, inertial = (
+            known.frequencies(f) for f in (self.frequencies_rotor, self.frequencies_inertial)
+        )
+        for i, at in enumerate(known.speeds(self.speeds)):
             for j in range(self.order.shape[1])[shown]:
                 n = self.nodal_diameters[i, j]
                 lines.append(
-                    f"{hertz * speed:12.4g}{j + 1:6d}"
-                    f"{hertz * self.frequencies_rotor[i, j]:18.6g}"
-                    f"{hertz * self.frequencies_inertial[i, j]:15.6g}"
+                    f"{at:12.4g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
                     f"{self.damping_ratio[i, j]:15.3g}  {n if n >= 0 else '-'}  {self.whirl[i, j]}"
                 )
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
-        lost = hertz * self.speeds[~np.all(self.continued, axis=1)]
+        lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
         if lost.size:
-            lines.append("modes not followed up to [Hz]: " + ", ".join(f"{f:.4g}" for f in lost))
+            listed = ", ".join(f"{f:.4g}" for f in lost)
+            lines.append(f"modes not followed up to {speed}: {listed}")
         return "\n".join(lines)

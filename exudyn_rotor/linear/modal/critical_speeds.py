@@ -1,4 +1,4 @@
-"""Critical speeds of a rotor, and over the stiffness of its supports.
+"""Critical speeds of a rotor.
 
 The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
 """
@@ -6,26 +6,19 @@ The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
-from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks, plotting
+from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.models.supports import Support, checked_supports
+from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable, words
-from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.sweep import sweep
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.units import Units
 
 
 @storable
@@ -68,12 +61,31 @@ class CriticalSpeeds(Result):
         super().__post_init__()
         checks.labels(self.whirl, "whirl", WHIRLS)
 
-    def table(self) -> str:
-        """Return the critical speeds as lines of text."""
-        lines = [f"critical speeds of order {self.order:g}", "  [rad/s]      [Hz]        n  whirl"]
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of :meth:`table`."""
+        shown = Units.of(units)
+        rotor = shown.frequencies(self.frequencies_rotor)
+        return {
+            f"critical speed [{shown.speed}]": shown.speeds(self.speeds),
+            f"frequency in the rotor frame [{shown.frequency}]": rotor,
+            "nodal diameters": self.nodal_diameters,
+            "whirl": np.array(self.whirl),
+        }
+
+    def table(self, *, units: str = "SI") -> str:
+        """Return the critical speeds as lines of text.
+
+        Parameters
+        ----------
+        units : {'SI', 'rpm', 'Hz'}
+            Of the first column, 'SI' rad/s; the second one is in Hz.
+        """
+        shown = Units.of(units)
+        unit = f"[{shown.speed}]"
+        lines = [f"critical speeds of order {self.order:g}", f"  {unit:<11}  [Hz]        n  whirl"]
         for speed, n, word in zip(self.speeds, self.nodal_diameters, self.whirl, strict=True):
-            shown = n if n >= 0 else "-"
-            lines.append(f"  {speed:<11.6g}  {speed / (2.0 * np.pi):<10.6g}  {shown}  {word}")
+            count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
+            lines.append(f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}")
         return "\n".join(lines)
 
 
@@ -141,7 +153,7 @@ def critical_speeds(
       100          15.9155     1  forward
       100          15.9155     1  forward
     """
-    order, max_speed, waves = _checked(order, max_speed, nodal_diameters)
+    order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     tolerance = options.accuracy(tolerance, "tolerance")
     residual = options.accuracy(residual, "residual")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
@@ -150,159 +162,7 @@ def critical_speeds(
     return _collected(critical, content, order, model.size)
 
 
-@storable
-@dataclass(frozen=True, eq=False)
-class CriticalSpeedMap(Result):
-    """Critical speeds over the stiffness of supports.
-
-    Attributes
-    ----------
-    stiffnesses : ndarray, shape (s,)
-        [N/m]
-    speeds : ndarray, shape (s, c)
-        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
-    whirl_codes : ndarray of int, shape (s, c)
-        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
-    order : float
-
-    Examples
-    --------
-    >>> from exudyn_rotor import CriticalSpeedMap
-    >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
-    critical speeds of order 1 [rad/s]
-      stiffness [N/m]
-      10000            50 forward
-      40000            100 forward
-    """
-
-    stiffnesses: np.ndarray = numbers("stiffnesses")
-    speeds: np.ndarray = numbers("stiffnesses", "speeds", finite=False)
-    whirl_codes: np.ndarray = numbers(
-        "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
-    )
-    order: float
-
-    def table(self) -> str:
-        """Return the critical speeds [rad/s] at every stiffness as lines of text."""
-        lines = [f"critical speeds of order {self.order:g} [rad/s]", "  stiffness [N/m]"]
-        for stiffness, speeds, codes in zip(
-            self.stiffnesses, self.speeds, self.whirl_codes, strict=True
-        ):
-            entries = (
-                f"{speed:.6g} {WHIRLS[code]}"
-                for speed, code in zip(speeds, codes, strict=True)
-                if code >= 0
-            )
-            lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
-        return "\n".join(lines)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the critical speeds [Hz] over the stiffness, both logarithmic."""
-        ax = plotting.axes_or_new(ax)
-        styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
-        for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
-            color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
-            shown = np.where(self.whirl_codes == code, self.speeds, np.nan) / (2.0 * np.pi)
-            lines = ax.loglog(self.stiffnesses, shown, marker, color=color, ms=3.5)
-            lines[0].set_label(WHIRLS[code])
-        ax.set_xlabel("support stiffness [N/m]")
-        ax.set_ylabel(f"critical speed of order {self.order:g} [Hz]")
-        ax.grid(alpha=0.3, which="both")
-        plotting.legend_above(ax, 4)
-        return ax
-
-
-def critical_speed_map(
-    target: ReducedRotor | SolidRotor,
-    interfaces: Sequence[str] | str,
-    stiffnesses: ArrayLike,
-    *,
-    supports: Sequence[Support] = (),
-    order: float = 1.0,
-    max_speed: float | None = None,
-    nodal_diameters: Sequence[int] = (1,),
-    stiffening: str = "tilt",
-    executor: Executor | None = None,
-    progress: bool = False,
-) -> CriticalSpeedMap:
-    """Compute the undamped critical speeds over the stiffness of isotropic supports.
-
-    Parameters
-    ----------
-    target : ReducedRotor or SolidRotor
-    interfaces : str or sequence of str
-        Where a support of each stiffness is put, the same at all of them.
-    stiffnesses : array_like, shape (s,)
-        Positive [N/m].
-    supports : sequence of Support, optional
-        Further supports that do not change.
-    order, max_speed, nodal_diameters, stiffening
-        See :func:`critical_speeds`.
-    executor : concurrent.futures.Executor, optional
-        Computes the stiffnesses.
-    progress : bool, optional
-        Show a progress bar.
-
-    Raises
-    ------
-    ValueError
-        For stiffnesses that are not positive and finite, or an unknown interface.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from exudyn_rotor import SolidRotor, Support, critical_speed_map
-    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
-    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
-    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
-    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
-    >>> critical_speed_map(rotor, ["left", "right"], [5e3, 2e4]).speeds.round(6)
-    array([[ 50.,  50.,  50.,  50.],
-           [100., 100., 100., 100.]])
-    """
-    checks.instance(target, "target", (ReducedRotor, SolidRotor))
-    values = np.atleast_1d(checks.array(stiffnesses, "stiffnesses", "N/m"))
-    if values.ndim != 1 or values.size == 0 or np.any(values <= 0.0):
-        raise ValueError(
-            "stiffnesses: needs positive finite numbers [N/m], got " + checks.shown(stiffnesses)
-        )
-    names = checks.labels(interfaces, "interfaces", target.interfaces)
-    if not names:
-        raise ValueError("interfaces: needs at least one name, got none")
-    supports = checked_supports(supports)
-    order, max_speed, _ = _checked(order, max_speed, nodal_diameters)
-    checks.choice(stiffening, "stiffening", LEVELS)
-    options.check_sweep(executor, progress)
-    given = {
-        "order": order,
-        "max_speed": max_speed,
-        "nodal_diameters": nodal_diameters,
-        "stiffening": stiffening,
-    }
-    task = partial(_at_stiffness, target, names, supports, given)
-    solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
-    most = max(len(entry.speeds) for entry in solved)
-    speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
-    for row, entry in enumerate(solved):
-        count = len(entry.speeds)
-        speeds[row, :count] = entry.speeds
-        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), order)
-
-
-def _at_stiffness(
-    target: ReducedRotor | SolidRotor,
-    names: tuple[str, ...],
-    supports: tuple[Support, ...],
-    given: dict,
-    stiffness: float,
-) -> CriticalSpeeds:
-    varied = tuple(Support(name, stiffness) for name in names)
-    return critical_speeds(target, supports=supports + varied, **given)
-
-
-def _checked(
+def checked(
     order: float, max_speed: float | None, nodal_diameters: Sequence[int]
 ) -> tuple[float, float | None, list[int]]:
     """Return order and largest speed, and the signed waves to look for."""

@@ -12,12 +12,12 @@ from exudyn_rotor.plotting import COLORS, LINES
 
 
 def draw_bode(
-    size: Axes, phase: Axes, hertz: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
+    size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
 ) -> None:
-    """Draw amplitudes [m], complex, as sizes [µm] and phases over a frequency [Hz]."""
+    """Draw amplitudes [m], complex, as sizes [µm] and phases over a speed or frequency."""
     for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
-        size.plot(hertz, 1e6 * np.abs(values), ls=line, color=color, lw=1.4, label=name)
-        phase.plot(hertz, _phase(values), ls=line, color=color, lw=1.4)
+        size.plot(over, 1e6 * np.abs(values), ls=line, color=color, lw=1.4, label=name)
+        phase.plot(over, _phase(values), ls=line, color=color, lw=1.4)
     size.set_yscale("log" if log else "linear")
     size.set_ylabel("amplitude [µm]")
     phase.set_ylabel("phase [deg]")

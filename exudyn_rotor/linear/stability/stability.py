@@ -32,6 +32,7 @@ from exudyn_rotor.linear.periodic.verified import verified
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.units import Units
 
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
 _MODES = 10  # of a large SolidRotor
@@ -84,32 +85,50 @@ class Stability(Result):
         super().__post_init__()
         checks.number(self.tolerance, "tolerance", least=0.0)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the growth over the spin speed; unstable speeds are shaded."""
+    def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
+        """Draw the growth over the spin speed; unstable speeds are shaded.
+
+        `units` are 'Hz', 'rpm' or 'SI', rad/s.
+        """
+        shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
-        hertz = self.speeds / (2.0 * np.pi)
-        ax.plot(hertz, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
+        speeds = shown.speeds(self.speeds)
+        ax.plot(speeds, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
         low, high = ax.get_ylim()
         ax.fill_between(
-            hertz, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
+            speeds, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
         )
         ax.set_ylim(low, high)
         ax.axhline(0.0, color="0.3", lw=0.8)
-        ax.set_xlabel("spin speed [Hz]")
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel("growth of the least stable motion [1/s]")
         ax.grid(alpha=0.3)
         return ax
 
-    def table(self) -> str:
-        """Return speed, growth, frequency of the least stable motion and verdict as text."""
-        lines = ["speed [rad/s]   growth [1/s]   frequency [rad/s]   verdict"]
-        for speed, exponent, stable in zip(
-            self.speeds, self.exponents[:, 0], self.stable, strict=True
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of :meth:`plot`."""
+        shown = Units.of(units)
+        least = np.abs(self.exponents[:, 0].imag)
+        return {
+            f"speed [{shown.speed}]": shown.speeds(self.speeds),
+            "growth [1/s]": self.exponents[:, 0].real,
+            f"frequency in the rotor frame [{shown.frequency}]": shown.frequencies(least),
+            "stable": self.stable,
+        }
+
+    def table(self, *, units: str = "SI") -> str:
+        """Return speed, growth, frequency of the least stable motion and verdict as text.
+
+        `units` are those of :meth:`plot`.
+        """
+        shown = Units.of(units)
+        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
+        lines = [f"{speed:>13}   growth [1/s]   {frequency:>17}   verdict"]
+        for at, exponent, stable in zip(
+            shown.speeds(self.speeds), self.exponents[:, 0], self.stable, strict=True
         ):
-            verdict = "stable" if stable else "unstable"
-            lines.append(
-                f"{speed:13.4f}   {exponent.real:12.5g}   {abs(exponent.imag):17.5g}   {verdict}"
-            )
+            verdict, heard = "stable" if stable else "unstable", shown.frequencies(exponent.imag)
+            lines.append(f"{at:13.4f}   {exponent.real:12.5g}   {abs(heard):17.5g}   {verdict}")
         return "\n".join(lines)
 
 

@@ -20,6 +20,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.stability import check_method, excess_growth, held_space
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.sweep import sweep
+from exudyn_rotor.units import Units
 
 _RESIDUAL = 1e-7  # of a large SolidRotor
 
@@ -55,6 +56,17 @@ class StabilityMap(Result):
     growth: np.ndarray = numbers("x", "y")
     stable: np.ndarray = numbers("x", "y", dtype=bool)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each point; `units` change nothing."""
+        Units.of(units)
+        first, second = self.labels
+        return {
+            first: np.repeat(self.x, len(self.y)),
+            second: np.tile(self.y, len(self.x)),
+            "growth [1/s]": self.growth.ravel(),
+            "stable": self.stable.ravel(),
+        }
 
     def table(self) -> str:
         """Return the growth [1/s] at every point as lines of text; '*' marks instability."""

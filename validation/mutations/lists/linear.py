@@ -280,4 +280,20 @@ LINEAR = [
             "T @ y_t - self.speed * T1 @ y",
         ),
     ),
+    *mutations(
+        "linear/modal/excitation.py",
+        "test_export.py",
+        ("crossings of the spin speed for all orders", "line = order * np", "line = 1.0 * np"),
+        ("broken lines crossed", "np.nonzero(crossed & continued[1:])", "np.nonzero(crossed)"),
+        (
+            "crossing on the wrong side",
+            "speeds[rows] + share * np.diff(speeds)[rows]",
+            "speeds[rows + 1] - share * np.diff(speeds)[rows]",
+        ),
+        (
+            "margin on the wrong side",
+            "((1.0 - margins[0]) * low, low)",
+            "(low, (1.0 + margins[0]) * low)",
+        ),
+    ),
 ]

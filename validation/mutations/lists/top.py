@@ -15,6 +15,21 @@ TOP = [
         ),
     ),
     *mutations(
+        "storage.py",
+        "test_export.py::test_a_file_is_replaced_by_a_complete_one_only",
+        ("draft left where saving failed", "        draft.unlink(missing_ok=True)", "        pass"),
+    ),
+    *mutations(
+        "units.py",
+        "test_export.py::test_three_thousand_turns_a_minute_are_fifty_hertz",
+        ("frequencies in rpm beside speeds", '"rpm": ("rpm", "Hz")', '"rpm": ("rpm", "rpm")'),
+    ),
+    *mutations(
+        "export.py",
+        "test_export.py::test_csv_holds_every_number_as_it_is",
+        ("first row of a table left out", "zip(*(values.tolist()", "zip(*(values[1:].tolist()"),
+    ),
+    *mutations(
         "plotting.py",
         "test_surface.py",
         (

@@ -1,0 +1,64 @@
+"""Tables of results for other programs: CSV files, pandas and xarray, both optional."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import io
+from collections.abc import Mapping
+from os import PathLike
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from exudyn_rotor.storage import write_text
+
+
+def write_csv(path: str | PathLike, columns: Mapping[str, np.ndarray]) -> None:
+    """Write columns of one length to a CSV file (RFC 4180, UTF-8), numbers so that none is lost.
+
+    A file of that name is replaced only by a complete one.
+
+    Raises
+    ------
+    TypeError, OSError
+        See :func:`exudyn_rotor.storage.write_arrays`.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(columns)
+    writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+    write_text(path, text.getvalue())
+
+
+def data_frame(columns: Mapping[str, np.ndarray]) -> Any:
+    """Return columns of one length as a ``pandas.DataFrame``.
+
+    Raises
+    ------
+    ImportError
+        Without pandas.
+    """
+    return _optional("pandas", "to_dataframe").DataFrame(dict(columns))
+
+
+def data_set(values: Mapping[str, tuple[tuple[str, ...], np.ndarray]], attributes: Mapping) -> Any:
+    """Return arrays with the names of their dimensions as an ``xarray.Dataset``.
+
+    Raises
+    ------
+    ImportError
+        Without xarray.
+    """
+    return _optional("xarray", "to_xarray").Dataset(dict(values), attrs=dict(attributes))
+
+
+def _optional(name: str, method: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ImportError(
+            f'{method}: needs {name}, which is not installed: pip install "exudyn-rotor[{name}]"; '
+            "to_csv needs nothing more"
+        ) from error

@@ -1,0 +1,215 @@
+"""Critical speeds over the stiffness of supports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal import excitation
+from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, checked, critical_speeds
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
+from exudyn_rotor.linear.models.supports import Support, checked_supports
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.sweep import sweep
+from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.units import Units
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class CriticalSpeedMap(Result):
+    """Critical speeds over the stiffness of supports.
+
+    Attributes
+    ----------
+    stiffnesses : ndarray, shape (s,)
+        [N/m]
+    speeds : ndarray, shape (s, c)
+        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
+    whirl_codes : ndarray of int, shape (s, c)
+        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
+    order : float
+
+    Examples
+    --------
+    >>> from exudyn_rotor import CriticalSpeedMap
+    >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
+    critical speeds of order 1 [rad/s]
+      stiffness [N/m]
+      10000            50 forward
+      40000            100 forward
+    """
+
+    stiffnesses: np.ndarray = numbers("stiffnesses")
+    speeds: np.ndarray = numbers("stiffnesses", "speeds", finite=False)
+    whirl_codes: np.ndarray = numbers(
+        "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
+    )
+    order: float
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each critical speed; see :meth:`table`."""
+        shown = Units.of(units)
+        rows, places = np.nonzero(self.whirl_codes >= 0)
+        return {
+            "stiffness [N/m]": self.stiffnesses[rows],
+            f"critical speed [{shown.speed}]": shown.speeds(self.speeds[rows, places]),
+            "whirl": np.array(WHIRLS)[self.whirl_codes[rows, places]],
+        }
+
+    def table(self, *, units: str = "SI") -> str:
+        """Return the critical speeds at every stiffness as lines of text.
+
+        Parameters
+        ----------
+        units : {'SI', 'rpm', 'Hz'}
+            'SI' rad/s.
+        """
+        shown = Units.of(units)
+        lines = [f"critical speeds of order {self.order:g} [{shown.speed}]", "  stiffness [N/m]"]
+        for stiffness, speeds, codes in zip(
+            self.stiffnesses, shown.speeds(self.speeds), self.whirl_codes, strict=True
+        ):
+            entries = (
+                f"{speed:.6g} {WHIRLS[code]}"
+                for speed, code in zip(speeds, codes, strict=True)
+                if code >= 0
+            )
+            lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
+        return "\n".join(lines)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        units: str = "Hz",
+        operating_range: ArrayLike | None = None,
+        margins: ArrayLike | None = None,
+    ) -> Axes:
+        """Draw the critical speeds over the stiffness, both logarithmic.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            A new figure by default.
+        units : {'Hz', 'rpm', 'SI'}
+        operating_range, margins : two floats, optional
+            Shaded; see :meth:`Campbell.plot`.
+        """
+        shown = Units.of(units)
+        limits = excitation.checked_range(operating_range)
+        shares = excitation.checked_margins(margins, limits is not None)
+        ax = plotting.axes_or_new(ax)
+        styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
+        for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
+            color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
+            drawn = np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan)
+            lines = ax.loglog(self.stiffnesses, drawn, marker, color=color, ms=3.5)
+            lines[0].set_label(WHIRLS[code])
+        if limits is not None:
+            excitation.shade_range(ax, limits, shares, shown, across=True)
+        ax.set_xlabel("support stiffness [N/m]")
+        ax.set_ylabel(f"critical speed of order {self.order:g} [{shown.speed}]")
+        ax.grid(alpha=0.3, which="both")
+        plotting.legend_above(ax, 4)
+        return ax
+
+
+def critical_speed_map(
+    target: ReducedRotor | SolidRotor,
+    interfaces: Sequence[str] | str,
+    stiffnesses: ArrayLike,
+    *,
+    supports: Sequence[Support] = (),
+    order: float = 1.0,
+    max_speed: float | None = None,
+    nodal_diameters: Sequence[int] = (1,),
+    stiffening: str = "tilt",
+    executor: Executor | None = None,
+    progress: bool = False,
+) -> CriticalSpeedMap:
+    """Compute the undamped critical speeds over the stiffness of isotropic supports.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+    interfaces : str or sequence of str
+        Where a support of each stiffness is put, the same at all of them.
+    stiffnesses : array_like, shape (s,)
+        Positive [N/m].
+    supports : sequence of Support, optional
+        Further supports that do not change.
+    order, max_speed, nodal_diameters, stiffening
+        See :func:`critical_speeds`.
+    executor : concurrent.futures.Executor, optional
+        Computes the stiffnesses.
+    progress : bool, optional
+        Show a progress bar.
+
+    Raises
+    ------
+    ValueError
+        For stiffnesses that are not positive and finite, or an unknown interface.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, critical_speed_map
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> critical_speed_map(rotor, ["left", "right"], [5e3, 2e4]).speeds.round(6)
+    array([[ 50.,  50.,  50.,  50.],
+           [100., 100., 100., 100.]])
+    """
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    values = np.atleast_1d(checks.array(stiffnesses, "stiffnesses", "N/m"))
+    if values.ndim != 1 or values.size == 0 or np.any(values <= 0.0):
+        raise ValueError(
+            "stiffnesses: needs positive finite numbers [N/m], got " + checks.shown(stiffnesses)
+        )
+    names = checks.labels(interfaces, "interfaces", target.interfaces)
+    if not names:
+        raise ValueError("interfaces: needs at least one name, got none")
+    supports = checked_supports(supports)
+    order, max_speed, _ = checked(order, max_speed, nodal_diameters)
+    checks.choice(stiffening, "stiffening", LEVELS)
+    options.check_sweep(executor, progress)
+    given = {
+        "order": order,
+        "max_speed": max_speed,
+        "nodal_diameters": nodal_diameters,
+        "stiffening": stiffening,
+    }
+    task = partial(_at_stiffness, target, names, supports, given)
+    solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
+    most = max(len(entry.speeds) for entry in solved)
+    speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
+    for row, entry in enumerate(solved):
+        count = len(entry.speeds)
+        speeds[row, :count] = entry.speeds
+        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
+    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), order)
+
+
+def _at_stiffness(
+    target: ReducedRotor | SolidRotor,
+    names: tuple[str, ...],
+    supports: tuple[Support, ...],
+    given: dict,
+    stiffness: float,
+) -> CriticalSpeeds:
+    varied = tuple(Support(name, stiffness) for name in names)
+    return critical_speeds(target, supports=supports + varied, **given)

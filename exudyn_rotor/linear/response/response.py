@@ -1,0 +1,373 @@
+"""What responses have in common: harmonics of a steady motion at places of the rotor."""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
+from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
+from exudyn_rotor.linear.response.refinement import peak_between
+from exudyn_rotor.plotting import axes_or_new, figure
+from exudyn_rotor.results import Result, numbers, words
+from exudyn_rotor.units import Units
+
+DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
+CIRCULAR = ("forward", "backward")
+# neighbours of a peak below this share of it: it may be higher between them
+_RESOLVED = 0.7
+_DRAWN = (*DIRECTIONS, *CIRCULAR)
+HERTZ = 1.0 / (2.0 * np.pi)
+
+
+@dataclass(frozen=True, eq=False)
+class Response(Result, ABC):
+    """Steady motion ``u(t) = Re Σ_n a_n exp(i rate_n t)`` at places of the rotor.
+
+    Attributes
+    ----------
+    places : tuple of str
+        Interfaces and nodes (p), 'node 12'.
+    orders : ndarray of int, shape (h,)
+        The harmonics n that matter.
+    motion : ndarray of complex, shape (s, p, h, 6)
+        Amplitudes a_n of the displacement along (n1, n2, e) [m] and the rotation about them [rad];
+        rotations of a node are NaN.
+    frame : {'inertial', 'rotor'}
+        Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
+    """
+
+    places: tuple[str, ...] = words("places")
+    orders: np.ndarray = numbers("orders", dtype=int)
+    motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
+    frame: str
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.choice(self.frame, "frame", FRAMES)
+
+    @property
+    @abstractmethod
+    def abscissa(self) -> np.ndarray:
+        """What the response was computed over, shape (s,) [rad/s]."""
+
+    @abstractmethod
+    def rates(self, order: int) -> np.ndarray:
+        """Return the angular frequencies of a harmonic, shape (s,) [rad/s]."""
+
+    @property
+    def main_order(self) -> int:
+        """The harmonic with the largest displacement anywhere."""
+        return int(self.orders[np.abs(self.motion[..., :3]).max(axis=(0, 1, 3)).argmax()])
+
+    def phasor(
+        self, place: str | None = None, direction: str = "n1", order: int | None = None
+    ) -> np.ndarray:
+        """Return complex amplitudes, shape (s,): the size and, as ``np.angle``, the phase.
+
+        Parameters
+        ----------
+        place : str, optional
+            The first one by default.
+        direction : {'n1', 'n2', 'e', 'tilt n1', 'tilt n2', 'twist'}
+        order : int, optional
+            :attr:`main_order` by default.
+
+        Raises
+        ------
+        ValueError
+            For an unknown place or direction, or a harmonic that does not matter.
+        """
+        checks.choice(direction, "direction", DIRECTIONS)
+        return self._harmonic(place, order)[:, DIRECTIONS.index(direction)]
+
+    def whirl(
+        self, place: str | None = None, order: int | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the circular components (forward, backward), each (s,) complex [m].
+
+        ``u_n1 + i u_n2 = forward exp(i|rate|t) + backward exp(−i|rate|t)``; forward is from n1 to
+        n2, the sense of a positive spin.
+        """
+        order = self._order(order)
+        motion = self._harmonic(place, order)
+        turned = (self.rates(order) < 0.0)[:, None]
+        a, b = np.where(turned, motion.conj(), motion)[:, :2].T
+        return 0.5 * (a + 1j * b), 0.5 * (a - 1j * b).conj()
+
+    def semi_axes(
+        self, place: str | None = None, order: int | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the semi-axes of the orbit across e, each (s,) [m].
+
+        The minor one is negative where the rotor whirls backward.
+        """
+        forward, backward = np.abs(self.whirl(place, order))
+        return forward + backward, forward - backward
+
+    def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
+        """Return the highest resonance: where the major semi-axis is largest [rad/s], its size [m].
+
+        Between three points by a parabola of 1/size². A warning tells where they are too far
+        apart to show a resonance; ``refine=True`` of the analysis adds points there.
+
+        Raises
+        ------
+        ValueError
+            If the motion has no maximum between the first and the last point.
+        """
+        major, _ = self.semi_axes(place, order)
+        inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
+        if inner.size == 0:
+            raise ValueError(
+                f"{self._place(place)}: the motion has no peak between {self.abscissa[0]:g} and "
+                f"{self.abscissa[-1]:g} rad/s; extend the range, or compute with refine=True"
+            )
+        index = int(inner[major[inner].argmax()])
+        near = slice(index - 1, index + 2)
+        if major[near].min() < _RESOLVED * major[index]:
+            warnings.warn(
+                f"{self._place(place)}: the points around the peak at {self.abscissa[index]:g} "
+                "rad/s are too far apart to give its size; compute with refine=True",
+                UserWarning,
+                stacklevel=2,
+            )
+        return peak_between(self.abscissa[near], major[near])
+
+    def orbit(
+        self, value: float, place: str | None = None, order: int | None = None, points: int = 181
+    ) -> np.ndarray:
+        """Return one revolution of a harmonic across e, shape (points, 2) [m].
+
+        Parameters
+        ----------
+        value : float
+            Speed or frequency [rad/s]; the nearest computed one is taken.
+        place, order
+            See :meth:`phasor`.
+        points : int, optional
+        """
+        value = checks.number(value, "value", "rad/s")
+        points = checks.count(points, "points", least=2)
+        index = int(np.argmin(np.abs(self.abscissa - value)))
+        order = self._order(order)
+        motion = self._harmonic(place, order)[index, :2]
+        sense = -1.0 if self.rates(order)[index] < 0.0 else 1.0
+        angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
+        return (motion * np.exp(1j * angle)[:, None]).real
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return sizes and phases as columns: one row for each point, place and harmonic.
+
+        `units` are those of :meth:`table`.
+        """
+        shown = self._shown(units)
+        cases = [(place, int(order)) for place in self.places for order in self.orders]
+        parts = [self._columns(place, order, *shown) for place, order in cases]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def _columns(
+        self, place: str, order: int, values: np.ndarray, unit: str
+    ) -> dict[str, np.ndarray]:
+        """Return the columns of one place and harmonic."""
+        count = len(values)
+        found = {
+            f"{self._what} [{unit}]": values,
+            "place": np.full(count, place),
+            "order": np.full(count, order),
+        }
+        for name in ("n1", "n2", "e"):
+            phasor = self.phasor(place, name, order)
+            found |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": _degrees(phasor)}
+        forward, backward = np.abs(self.whirl(place, order))
+        return found | {"forward [m]": forward, "backward [m]": backward}
+
+    def _shown(self, units: str) -> tuple[np.ndarray, str]:
+        """Return what the response was computed over in its unit, and that unit."""
+        return Units.of(units).speeds(self.abscissa), Units.of(units).speed
+
+    def table(
+        self, place: str | None = None, order: int | None = None, *, units: str = "SI"
+    ) -> str:
+        """Return sizes and phases at one place as text.
+
+        Parameters
+        ----------
+        place, order
+            See :meth:`phasor`.
+        units : {'SI', 'Hz', 'rpm'}
+            'SI' rad/s; 'rpm' is for spin speeds, frequencies are in Hz then.
+        """
+        place, order = self._place(place), self._order(order)
+        values, unit = self._shown(units)
+        a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
+        forward, backward = self.whirl(place, order)
+        lines = [
+            f"{place}, order {order}, {self.frame} frame",
+            f"{self._what:>16}  {'n1':>11} {'phase':>7}  {'n2':>11} {'phase':>7}  "
+            f"{'forward':>11} {'backward':>11}",
+            f"{'[' + unit + ']':>16}  {'[m]':>11} {'[deg]':>7}  {'[m]':>11} {'[deg]':>7}  "
+            f"{'[m]':>11} {'[m]':>11}",
+        ]
+        for row in zip(values, a, b, forward, backward, strict=True):
+            at, x, y, f, g = row
+            lines.append(
+                f"{at:16.6g}  {abs(x):11.4e} {_degrees(x):7.1f}  {abs(y):11.4e} {_degrees(y):7.1f}"
+                f"  {abs(f):11.4e} {abs(g):11.4e}"
+            )
+        return "\n".join(lines)
+
+    def plot(
+        self,
+        place: str | None = None,
+        *,
+        directions: Sequence[str] = ("n1", "n2"),
+        order: int | None = None,
+        ax: Sequence[Axes] | None = None,
+        log: bool = True,
+        units: str = "Hz",
+    ) -> np.ndarray:
+        """Draw size and phase of the displacement over speed or frequency (Bode diagram).
+
+        Parameters
+        ----------
+        place : str, optional
+            The first one by default.
+        directions : sequence of {'n1', 'n2', 'e', 'forward', 'backward'}
+        order : int, optional
+            Harmonic; the main one by default.
+        ax : two matplotlib Axes, optional
+            For size and phase; a new figure by default.
+        log : bool, optional
+            Logarithmic sizes.
+        units : {'Hz', 'rpm', 'SI'}
+            See :meth:`table`.
+
+        Returns
+        -------
+        ndarray of matplotlib.axes.Axes, shape (2,)
+            Size and phase, as ``plt.subplots(2)`` returns them.
+        """
+        names = checks.labels(directions, "directions", _DRAWN)
+        checks.flag(log, "log")
+        values, unit = self._shown(units)
+        place, order = self._place(place), self._order(order)
+        if ax is None:
+            ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
+        pair = checks.instances(ax, "ax", Axes)
+        if len(pair) != 2:
+            raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
+        curves = {name: self._drawn(name, place, order) for name in names}
+        draw_bode(*pair, values, curves, log)
+        pair[0].set_title(self._title(place, order), loc="right", fontsize=10)
+        pair[1].set_xlabel(f"{self._what} [{unit}]")
+        return np.array(pair)
+
+    def plot_polar(
+        self,
+        place: str | None = None,
+        *,
+        direction: str = "n1",
+        order: int | None = None,
+        ax: Axes | None = None,
+        marks: int = 5,
+    ) -> Axes:
+        """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
+
+        A damped resonance is a loop; its place across from the start is the critical speed.
+
+        Parameters
+        ----------
+        place, order
+            See :meth:`plot`.
+        direction : {'n1', 'n2', 'e', 'forward', 'backward'}
+        ax : matplotlib.axes.Axes, optional
+            A new figure by default.
+        marks : int, optional
+            How many points are labelled with their speed or frequency [Hz].
+        """
+        checks.choice(direction, "direction", _DRAWN)
+        marks = checks.count(marks, "marks")
+        place, order = self._place(place), self._order(order)
+        ax = axes_or_new(ax, (5.5, 5.5))
+        draw_polar(ax, HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
+        ax.set_xlabel(f"in phase, {direction} [µm]")
+        ax.set_title(self._title(place, order), loc="right", fontsize=10)
+        return ax
+
+    def plot_orbit(
+        self,
+        value: float,
+        *,
+        places: Sequence[str] | None = None,
+        order: int | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw one revolution of the orbits [µm] at a speed or frequency [rad/s].
+
+        A dot marks t = 0 and an arrow the sense of the motion.
+
+        Parameters
+        ----------
+        value : float
+            The nearest computed speed or frequency is taken.
+        places : sequence of str, optional
+            All by default.
+        order : int, optional
+            Harmonic; the main one by default.
+        ax : matplotlib.axes.Axes, optional
+            A new figure by default.
+        """
+        value = checks.number(value, "value", "rad/s")
+        names = self.places
+        if places is not None:
+            names = checks.labels(places, "places", self.places)
+        order = self._order(order)
+        ax = axes_or_new(ax, (5.5, 5.5))
+        draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
+        nearest = self.abscissa[np.argmin(np.abs(self.abscissa - value))]
+        ax.set_title(f"{self._what} {HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
+        return ax
+
+    def _drawn(self, name: str, place: str, order: int) -> np.ndarray:
+        """Return the amplitudes along a direction, or of a circular component, shape (s,)."""
+        if name in CIRCULAR:
+            return self.whirl(place, order)[CIRCULAR.index(name)]
+        return self.phasor(place, name, order)
+
+    def _title(self, place: str, order: int) -> str:
+        return f"{place}, order {order}, {self.frame} frame"
+
+    @property
+    @abstractmethod
+    def _what(self) -> str:
+        """What the response was computed over, as a picture names it."""
+
+    def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
+        """Return the amplitudes (s, 6) of one harmonic at one place."""
+        index = list(self.orders).index(self._order(order))
+        return self.motion[:, self.places.index(self._place(place)), index]
+
+    def _place(self, place: str | None) -> str:
+        """Return the name of a place, the first one by default."""
+        return self.places[0] if place is None else checks.choice(place, "place", self.places)
+
+    def _order(self, order: int | None) -> int:
+        """Return a harmonic that matters, the main one by default."""
+        if order is None:
+            return self.main_order
+        order = checks.whole_number(order, "order")
+        if order not in self.orders:
+            known = ", ".join(str(n) for n in self.orders)
+            raise ValueError(f"order: there is no harmonic {order}; there are {known}")
+        return order
+
+
+def _degrees(values: np.ndarray) -> np.ndarray:
+    return np.degrees(np.angle(values))
