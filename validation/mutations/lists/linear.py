@@ -172,7 +172,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/response/responses.py",
+        "linear/response/response.py",
         "test_response.py",
         (
             "forward and backward whirl exchanged",
