@@ -179,6 +179,10 @@ LINEAR = [
             "return 0.5 * (a + 1j * b), 0.5 * (a - 1j * b).conj()",
             "return 0.5 * (a - 1j * b), 0.5 * (a + 1j * b).conj()",
         ),
+    ),
+    *mutations(
+        "linear/response/responses.py",
+        "test_response.py",
         (
             "harmonic of the spin at the wrong side of the force",
             'return self.frequencies + checks.whole_number(order, "order") * self.speed',
