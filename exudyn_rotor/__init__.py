@@ -43,6 +43,7 @@ from exudyn_rotor.results import Result, load_result
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.rigid_disc import RigidDisc
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.strength.field import StressField
 from exudyn_rotor.strength.history import StressHistory, stress_history
@@ -77,6 +78,7 @@ __all__ = [
     "Proposal",
     "ReducedRotor",
     "Result",
+    "RigidDisc",
     "RotorBody",
     "RunCheck",
     "SolidRotor",

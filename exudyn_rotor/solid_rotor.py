@@ -61,6 +61,8 @@ class SolidRotor(FiniteElementRotor):
         by :meth:`with_damping`.
     structural_damping : scipy.sparse.csr_array or None
         H = Σ η K [N/m] over the materials, of loss factors η; set by :meth:`with_damping`.
+    discs : tuple of RigidDisc
+        What :meth:`add_disc` placed.
 
     Examples
     --------
@@ -100,7 +102,8 @@ class SolidRotor(FiniteElementRotor):
         Parameters
         ----------
         mesh : ngsolve.Mesh
-            Gets mid nodes (``SecondOrder``) if `order` is 2 and it has none yet. Node numbers are
+            Gets mid nodes on the geometry (``SecondOrder``) if `order` is 2 and it has none yet;
+            they replace the curved elements of ``mesh.Curve``, as a warning says. Node numbers are
             those of the Netgen mesh and of Exudyn's FEMinterface, counted from zero.
         materials : mapping
             Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
@@ -408,5 +411,5 @@ class SolidRotor(FiniteElementRotor):
         )
 
     def summary(self) -> str:
-        """Return size, mass, supports, interfaces and point masses as lines of text."""
+        """Return size, mass, supports, parts, materials, interfaces, masses and discs as text."""
         return summary(self)

@@ -97,7 +97,7 @@ def static_prestress(
         yield_stress=yield_stress,
         constant_stress=rest_stress,
         load=load,
-        hub=state.hub,
+        hub=state.rigid,
     )
 
 
@@ -164,6 +164,11 @@ class _StaticState:
         """Nodes that the hub holds."""
         return np.setdiff1d(self.supported.elements.held, self.rotor.elements.held)
 
+    @property
+    def rigid(self) -> np.ndarray:
+        """Nodes that feel forces of the hub or of rigid discs."""
+        return np.unique(np.concatenate([self.hub, *(disc.nodes for disc in self.rotor.discs)]))
+
     def stressed(self, constant: sp.csr_array) -> _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
         free = matrices.without_nodes(constant, self.supported.elements.held)
@@ -183,7 +188,11 @@ class _StaticState:
         displacement = self.solve(load)
         matrix = self.rotor.elements.geometric_stiffness(displacement)
         forces = self.stiffness @ displacement - load
-        return displacement, matrix + _hub_stiffness(self.rotor, self.hub, forces)
+        matrix = matrix + _hub_stiffness(self.rotor, self.hub, forces)
+        for disc in self.rotor.discs:
+            springs = disc.stiffness_matrix(self.rotor.node_count)
+            matrix = matrix + _hub_stiffness(self.rotor, disc.nodes, -(springs @ displacement))
+        return displacement, matrix
 
 
 def _support(rotor: FiniteElementRotor, clamped: Sequence[str]) -> _StaticState:

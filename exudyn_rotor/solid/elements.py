@@ -74,6 +74,8 @@ class NgsolveElements:
         [kg/m³].
     held : ndarray of int, optional
         Nodes that are clamped: their rows and columns are zero in every matrix.
+    free : scipy.sparse.csr_array, optional
+        Takes held directions of nodes out of displacements, shape (3n, 3n).
     """
 
     mesh: ngs.Mesh
@@ -82,6 +84,7 @@ class NgsolveElements:
     lame: np.ndarray
     densities: np.ndarray
     held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    free: sp.csr_array | None = None
 
     def materials_at(self, nodes: np.ndarray) -> tuple[str, ...]:
         """Return the names of the regions whose elements have any of these nodes."""
@@ -105,6 +108,25 @@ class NgsolveElements:
     def holding(self, nodes: np.ndarray) -> NgsolveElements:
         """Return the elements with more nodes clamped."""
         return replace(self, held=np.union1d(self.held, nodes))
+
+    def holding_directions(self, free: sp.csr_array) -> NgsolveElements:
+        """Return the elements with more directions held, which the projection `free` takes out."""
+        return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
+
+    def described(self) -> list[tuple[str, float, float, float, float]]:
+        """Return name, mass [kg], Young's modulus [Pa], Poisson's ratio and density by region."""
+        self._check_mesh()
+        one = ngs.CoefficientFunction(1.0)
+        volumes = ngs.Integrate(one, self.mesh, order=2 * self.order, region_wise=True)
+        first, second = self.lame.T
+        young = second * (3.0 * first + 2.0 * second) / (first + second)
+        ratio = 0.5 * first / (first + second)
+        masses = self.densities * np.array(volumes)
+        columns = (masses, young, ratio, self.densities)
+        return [
+            (name, *(float(column[i]) for column in columns))
+            for i, name in enumerate(self.mesh.GetMaterials())
+        ]
 
     def geometric_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV`` with σ⁰ of a displacement, shape (3n, 3n).
@@ -201,6 +223,8 @@ class NgsolveElements:
             )
 
     def _without_held(self, matrix: sp.csr_array) -> sp.csr_array:
+        if self.free is not None:
+            matrix = sp.csr_array(self.free.T @ matrix @ self.free)
         return matrix if self.held.size == 0 else matrices.without_nodes(matrix, self.held)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -83,6 +84,15 @@ def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
         )
     # a second call would add the mid nodes once more and leave the first ones without elements
     if order == 2 and not is_quadratic:
+        curved = mesh.GetCurveOrder()
+        if curved > 1:
+            warnings.warn(
+                f"mesh: its curved elements (mesh.Curve({curved})) are replaced by mid nodes on "
+                "the geometry, of mesh.ngmesh.SecondOrder(); make it second order before this call "
+                "instead of curving it",
+                UserWarning,
+                stacklevel=4,
+            )
         mesh.ngmesh.SecondOrder()
 
 

@@ -13,12 +13,16 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.solid.clamp import checked_directions, held_directions
 from exudyn_rotor.solid.elements import NgsolveElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
 from exudyn_rotor.solid.parts import check_connected
 from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
+from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
+from exudyn_rotor.solid.section import outer_section
+from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 from exudyn_rotor.theory.axis import SpinAxis
 
 AxisLike = SpinAxis | str | ArrayLike
@@ -47,6 +51,7 @@ class FiniteElementRotor:
     carried_prestress: Prestress | None = None
     mass_damping: sp.csr_array | None = None
     structural_damping: sp.csr_array | None = None
+    discs: tuple[RigidDisc, ...] = ()
 
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
@@ -59,6 +64,7 @@ class FiniteElementRotor:
             "triangles": matrices.as_triangles(self.triangles, len(nodes)),
             "point_masses": checks.instances(self.point_masses, "point_masses", PointMass),
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
+            "discs": checks.instances(self.discs, "discs", RigidDisc),
         }
         for name in ("damping", "mass_damping", "structural_damping"):
             if getattr(self, name) is not None:
@@ -176,6 +182,99 @@ class FiniteElementRotor:
         added = _interface(name, self.nodes, nodes, weights)
         return replace(self, interfaces={**self.interfaces, name: added})
 
+    def interface_at(self: Rotor, name: str, position: float, width: float) -> Rotor:
+        """Return the rotor with one more interface, on its outer surface in a band.
+
+        The weights are area shares. The reference point is on the spin axis in the middle of the
+        band, wherever the mesh has its nodes.
+
+        Parameters
+        ----------
+        name : str
+        position : float
+            Middle of the band along the axis, from :attr:`SpinAxis.point` [m].
+        width : float
+            Width of the band along the axis [m]; it must hold nodes, corner or mid ones.
+
+        Raises
+        ------
+        TypeError
+            If the name is no text, or a length no number.
+        ValueError
+            If the name is taken, the rotor has no surface, or no node of it is in the band.
+        """
+        added = self._section(name, position, width)
+        return replace(self, interfaces={**self.interfaces, name: added})
+
+    def _section(self, name: str, position: float, width: float) -> Interface:
+        if checks.label(name, "name") in self.interfaces:
+            raise ValueError(f"interface {name!r} exists already; choose another name")
+        position = checks.number(position, "position", "m")
+        width = checks.number(width, "width", "m", above=0.0)
+        numbers, weights = outer_section(self.nodes, self.triangles, self.axis, position, width)
+        center = self.axis.point + position * self.axis.direction
+        return _interface(name, self.nodes, numbers, weights).centered_on(center)
+
+    def add_disc(
+        self: Rotor,
+        position: float,
+        mass: float,
+        inertia: ArrayLike,
+        width: float,
+        *,
+        name: str | None = None,
+    ) -> Rotor:
+        """Return the rotor with a rigid disc that is not meshed, e.g. a wheel on a shaft.
+
+        The disc holds the outer surface rigid in a band, as a wheel that is shrunk on; its mass
+        and inertia have all gyroscopic and centrifugal terms. It carries its own centrifugal load
+        and stresses the rotor by its motion alone. Its centre is on the spin axis in the middle of
+        the band; unbalance is added by :meth:`add_point_mass`.
+
+        Parameters
+        ----------
+        position : float
+            Middle of the band along the axis, from :attr:`SpinAxis.point` [m].
+        mass : float
+            [kg]
+        inertia : array_like, shape (2,) or (3, 3)
+            Polar and transverse moment of inertia, or the tensor in mesh axes, about its centre
+            [kg m²].
+        width : float
+            Width of the band [m].
+        name : str, optional
+            Makes the section an interface, see :meth:`interface_at`.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of another kind.
+        ValueError
+            If the mass is not positive, the inertia none of a body, the name is taken, the band
+            holds too few nodes, it touches another disc, or the rotor carries a prestress.
+        """
+        check_unstressed(self)
+        section = self._section("disc" if name is None else name, position, width)
+        center, nodes = section.reference, section.nodes
+        taken = [disc for disc in self.discs if np.isin(disc.nodes, nodes).any()]
+        if taken:
+            place = taken[0].center
+            raise ValueError(
+                f"position: the section at {position:g} m shares nodes with the disc at "
+                f"{np.round(place, 9).tolist()} m; add one disc with the inertia of both, or use "
+                "narrower bands"
+            )
+        disc = disc_on(self.nodes, self.stiffness, self.axis, center, nodes, mass, inertia)
+        count = self.node_count
+        added = {} if name is None else {name: section}
+        return replace(
+            self,
+            mass=matrices.frozen(sp.csr_array(self.mass + disc.mass_matrix(count))),
+            stiffness=matrices.frozen(sp.csr_array(self.stiffness + disc.stiffness_matrix(count))),
+            interfaces={**self.interfaces, **added},
+            discs=(*self.discs, disc),
+        )
+
     def center_interfaces(self: Rotor, names: Iterable[str] | None = None) -> Rotor:
         """Return the rotor with the reference points of interfaces moved onto the spin axis.
 
@@ -198,7 +297,9 @@ class FiniteElementRotor:
             moved[name] = interface.centered_on(self.axis.project(interface.center))
         return replace(self, interfaces={**self.interfaces, **moved})
 
-    def clamped(self: Rotor, names: str | Sequence[str]) -> Rotor:
+    def clamped(
+        self: Rotor, names: str | Sequence[str], directions: str | Sequence[str] | None = None
+    ) -> Rotor:
         """Return the rotor with all nodes of interfaces held fixed, e.g. a blade at its root.
 
         The rotor is then grounded in its own frame: it needs a frame whose motion is prescribed.
@@ -207,35 +308,51 @@ class FiniteElementRotor:
         Parameters
         ----------
         names : str or sequence of str
+        directions : str or sequence of str, optional
+            Hold these directions only: of {'x', 'y', 'z'}, mesh axes, or of {'radial',
+            'tangential', 'axial'} about the spin axis. All by default.
 
         Raises
         ------
         ValueError
-            If an interface is unknown, none is given, all its nodes are on one line, or the rotor
-            carries a prestress.
+            If an interface or direction is unknown, none is given, all its nodes are on one line
+            and held in all directions, or the rotor carries a prestress.
         """
         check_unstressed(self)
         names = checks.labels(names, "names", self.interfaces)
+        chosen = checked_directions(directions)
         if not names:
             raise ValueError(
                 f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
-        if rigid_basis(self.nodes[held]).shape[1] < 6:
+        whole = len(chosen) == 3
+        if whole and rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
             )
-        springs = np.zeros((self.node_count, 3))
-        springs[held] = _CLAMP * self.stiffness.diagonal().max()
-        free = matrices.without_nodes(self.stiffness, held)
-        stiffness = matrices.frozen(sp.csr_array(free + sp.diags_array(springs.ravel())))
+        columns = held_directions(self.nodes, self.axis, held, chosen)
+        free = sp.csr_array(sp.eye_array(self.nodes.size) - columns @ columns.T)
+        spring = _CLAMP * self.stiffness.diagonal().max()
+        stiffness = matrices.frozen(
+            sp.csr_array(free @ self.stiffness @ free + spring * (columns @ columns.T))
+        )
+        elements = self.elements
+        if elements is not None:
+            elements = elements.holding(held) if whole else elements.holding_directions(free)
         return replace(
             self,
             stiffness=stiffness,
-            rigid_motions=count_rigid_motions(self.nodes, stiffness),
-            elements=None if self.elements is None else self.elements.holding(held),
+            rigid_motions=self._left_free(columns),
+            elements=elements,
         )
+
+    def _left_free(self, held: sp.csr_array) -> int:
+        """Return how many rigid motions stay free where the directions `held` (3n, d) are."""
+        free = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
+        sizes = np.linalg.svd(held.T @ free, compute_uv=False)
+        return self.rigid_motions - int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(free, 2)))
 
     def __repr__(self) -> str:
         return (

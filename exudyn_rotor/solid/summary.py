@@ -7,11 +7,12 @@ import numpy as np
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.parts import describe_parts, loose_parts
 from exudyn_rotor.solid.point_mass import PointMass
+from exudyn_rotor.solid.rigid_disc import RigidDisc
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 
 
 def summary(rotor: FiniteElementRotor) -> str:
-    """Return size, mass, supports, interfaces and point masses of `rotor` as lines of text."""
+    """Return what `rotor` consists of and is held by, as lines of text."""
     axis = rotor.axis
     support = "grounded" if rotor.grounded else "not supported"
     lines = [
@@ -25,8 +26,11 @@ def summary(rotor: FiniteElementRotor) -> str:
     if parts:
         described = describe_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
         lines.append(f"loose parts      {len(parts)}: {described}")
+    if rotor.elements is not None:
+        lines += [_material_line(*region) for region in rotor.elements.described()]
     lines += [_interface_line(rotor, interface) for interface in rotor.interfaces.values()]
     lines += [_point_mass_line(point_mass) for point_mass in rotor.point_masses]
+    lines += [_disc_line(rotor, disc) for disc in rotor.discs]
     return "\n".join(lines)
 
 
@@ -48,6 +52,23 @@ def _point_mass_line(point_mass: PointMass) -> str:
     return (
         f"point mass       {point_mass.mass:.6g} kg at {_vector(point_mass.position)} m, "
         f"on node {point_mass.node}, {point_mass.distance:.3g} m away"
+    )
+
+
+def _material_line(name: str, mass: float, young: float, ratio: float, density: float) -> str:
+    return (
+        f"material         {name}: {mass:.6g} kg, E {young:.5g} Pa, ν {ratio:.4g}, "
+        f"ρ {density:.5g} kg/m³"
+    )
+
+
+def _disc_line(rotor: FiniteElementRotor, disc: RigidDisc) -> str:
+    e = rotor.axis.direction
+    polar = e @ disc.inertia @ e
+    across = 0.5 * (np.trace(disc.inertia) - polar)
+    return (
+        f"rigid disc       {disc.mass:.6g} kg at {_vector(disc.center)} m, polar {polar:.5g}, "
+        f"transverse {across:.5g} kg m², on {disc.nodes.size} nodes"
     )
 
 

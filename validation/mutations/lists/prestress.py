@@ -80,4 +80,13 @@ PRESTRESS = [
             "inertia = 2.0 * turns.T @ (rotor.mass @ turns)",
         ),
     ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_sections.py::test_disc_whirls_as_a_meshed_stiff_one",
+        (
+            "forces of a rigid disc with the wrong sign",
+            "disc.nodes, -(springs @ displacement)",
+            "disc.nodes, springs @ displacement",
+        ),
+    ),
 ]

@@ -94,4 +94,54 @@ SOLID = [
             "by_name.get(region, [*by_name.values()][0])",
         ),
     ),
+    *mutations(
+        "solid/section.py",
+        "test_sections.py::test_interface_at_takes_the_outer_surface_of_a_band",
+        ("bores belong to the surface", "result[part] = distance <=", "result[part] = distance >="),
+        (
+            "a band of twice the width",
+            "low, high = position - 0.5 * width",
+            "low, high = position - width",
+        ),
+        ("faces across the axis count", "_RADIAL = 0.7", "_RADIAL = 2.0"),
+    ),
+    *mutations(
+        "solid/rigid_disc.py",
+        "test_sections.py::test_disc_adds_its_mass_and_moments",
+        (
+            "moments of inertia for second moments",
+            "return 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia",
+            "return np.trace(self.inertia) * np.eye(3) - self.inertia",
+        ),
+        ("mass twice", "scalar = self.mass *", "scalar = 2.0 * self.mass *"),
+    ),
+    *mutations(
+        "solid/rigid_disc.py",
+        "test_sections.py::test_disc_whirls_as_a_meshed_stiff_one",
+        ("a soft section", "_STIFF = 1e4", "_STIFF = 1e-2"),
+        (
+            "polar and transverse moments swapped",
+            "polar, transverse = values",
+            "transverse, polar = values",
+        ),
+    ),
+    *mutations(
+        "solid/clamp.py",
+        "test_sections.py::test_clamps_hold_the_named_directions "
+        "test_sections.py::test_waves_in_a_bar_held_in_one_direction",
+        (
+            "radial and tangential swapped",
+            "np.stack([radial, np.cross(along, radial), along]",
+            "np.stack([np.cross(along, radial), radial, along]",
+        ),
+    ),
+    *mutations(
+        "solid/rotor.py",
+        "test_sections.py::test_waves_in_a_bar_held_in_one_direction",
+        (
+            "held directions keep their springs to others",
+            "free @ self.stiffness @ free + spring",
+            "self.stiffness + 1e-12 * spring",
+        ),
+    ),
 ]

@@ -1,0 +1,203 @@
+"""Rigid discs on a rotor: mass and inertia of wheels that are not meshed.
+
+A disc holds the nodes of a section rigid: stiff springs resist what is no rigid motion of these
+nodes. Its mass is that of a body which moves with them. With the mean displacement ``a·u`` and the
+mean gradient ``b_k·u`` of some of the nodes, its kinetic energy is
+
+    ½ m |a·u̇|² + ½ Σ E_kl (b_k·u̇)·(b_l·u̇),    E = ½ tr(J) I − J,
+
+J the inertia tensor and E the second moments of the mass. All directions have the same coefficients
+(I₃ blocks (24)), so that gyroscopic and centrifugal terms follow as for every other mass: the
+moments of a rotation ``φ × x`` are those of J.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.solid.matrices import as_node_numbers
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import rotations, translations
+
+# springs of a rigid section over its own stiffness: it strains by less than 1e-4 of what it would
+_STIFF = 1e4
+# nodes that tell the mean motion; a rigid section needs no more
+_MEAN_NODES = 12
+# of the largest second moment, and of the largest arm: rounding of what was given
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class RigidDisc:
+    """A rigid disc on the nodes of a section, made by :meth:`SolidRotor.add_disc`.
+
+    Attributes
+    ----------
+    center : ndarray, shape (3,)
+        On the spin axis, mesh coordinates [m].
+    mass : float
+        [kg]
+    inertia : ndarray, shape (3, 3)
+        About `center`, mesh axes [kg m²].
+    nodes : ndarray of int, shape (k,)
+        Nodes that it holds rigid.
+    positions : ndarray, shape (k, 3)
+        Of these nodes [m].
+    spring : float
+        Stiffness by which it does so [N/m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of another kind, the inertia is none of a body, or the nodes do not hold
+        its rotations.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import RigidDisc
+    >>> corners = [[1, 1, 0.1], [-1, -1, 0.1], [-1, 1, -0.1], [1, -1, -0.1]]
+    >>> disc = RigidDisc([0, 0, 0], 2.0, np.diag([3, 3, 4]), [4, 5, 6, 7], corners, 1e9)
+    >>> matrix = disc.mass_matrix(8)[::3, ::3]
+    >>> round(matrix.sum(), 9)
+    2.0
+    """
+
+    center: np.ndarray
+    mass: float
+    inertia: np.ndarray
+    nodes: np.ndarray
+    positions: np.ndarray
+    spring: float
+
+    def __post_init__(self) -> None:
+        nodes = as_node_numbers("disc", self.nodes)
+        checked = {
+            "center": checks.vector(self.center, "center", "m"),
+            "mass": checks.number(self.mass, "mass", "kg", above=0.0),
+            "inertia": _checked_inertia(self.inertia),
+            "nodes": nodes,
+            "positions": checks.array(self.positions, "positions", "m", shape=(nodes.size, 3)),
+            "spring": checks.number(self.spring, "spring", "N/m", above=0.0),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        self._check_arms()
+
+    @property
+    def second_moments(self) -> np.ndarray:
+        """``E = ½ tr(J) I − J``, shape (3, 3) [kg m²]."""
+        return 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia
+
+    @cached_property
+    def _some(self) -> np.ndarray:
+        """Places in `nodes` of those that tell the mean motion: far from each other."""
+        arms = self.positions - self.center
+        chosen = [int(np.argmax(np.linalg.norm(arms, axis=1)))]
+        distance = np.linalg.norm(arms - arms[chosen[0]], axis=1)
+        while len(chosen) < min(_MEAN_NODES, self.nodes.size):
+            chosen.append(int(np.argmax(distance)))
+            distance = np.minimum(distance, np.linalg.norm(arms - arms[chosen[-1]], axis=1))
+        return np.array(chosen)
+
+    @cached_property
+    def _affine(self) -> np.ndarray:
+        """a and b_1 … b_3 on these nodes, shape (4, s): least squares of ``u = t + F (x − c)``."""
+        arms = self.positions[self._some] - self.center
+        fields = np.column_stack([np.ones(len(arms)), arms])
+        return np.linalg.pinv(fields, rcond=_ROUNDING)
+
+    def _checked_count(self, node_count: int) -> int:
+        return checks.count(node_count, "node_count", least=int(self.nodes.max()) + 1)
+
+    def _check_arms(self) -> None:
+        arms = (self.positions - self.center)[self._some]
+        if np.linalg.matrix_rank(self._rigid(self._some), tol=_ROUNDING) < 6:
+            raise ValueError(
+                f"nodes: the {self.nodes.size} nodes of the section lie on one line and do not "
+                "hold the rotations of a disc; use a wider band"
+            )
+        fields = np.column_stack([np.ones(len(arms)), arms])
+        seen = self._affine @ fields
+        moments = seen[1:, 1:] @ self.second_moments @ seen[1:, 1:].T
+        loss = np.abs(moments - self.second_moments).max()
+        if loss > 1e-6 * np.abs(self.second_moments).max():
+            raise ValueError(
+                f"width: the {self.nodes.size} nodes of the section lie in one plane, and the "
+                "inertia is that of a disc with a thickness; use a wider band"
+            )
+
+    def _rigid(self, places: np.ndarray) -> np.ndarray:
+        """Return the six rigid motions of some nodes, arms over the largest one, (3s, 6)."""
+        largest = np.linalg.norm(self.positions - self.center, axis=1).max() or 1.0
+        turns = rotations(self.positions[places], self.center) / largest
+        return np.hstack([translations(len(places)), turns])
+
+    def mass_matrix(self, node_count: int) -> sp.csr_array:
+        """Return what the disc adds to the mass matrix, shape (3n, 3n) [kg]."""
+        node_count = self._checked_count(node_count)
+        a, b = self._affine[0], self._affine[1:]
+        scalar = self.mass * np.outer(a, a) + b.T @ self.second_moments @ b
+        some = self.nodes[self._some]
+        rows, columns = np.meshgrid(some, some, indexing="ij")
+        entries = scalar.ravel(), (rows.ravel(), columns.ravel())
+        matrix = sp.csr_array(entries, shape=(node_count, node_count))
+        return sp.csr_array(sp.kron(matrix, sp.eye_array(3), format="csr"))
+
+    def stiffness_matrix(self, node_count: int) -> sp.csr_array:
+        """Return the springs that hold the section rigid, shape (3n, 3n) [N/m]."""
+        node_count = self._checked_count(node_count)
+        every = np.arange(self.nodes.size)
+        follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
+        own = sp.eye_array(3 * self.nodes.size, format="csr")
+        some = (3 * self._some[:, None] + np.arange(3)).ravel()
+        strain = sp.csr_array(own - sp.csr_array(follow) @ own[some])
+        rows = (3 * self.nodes[:, None] + np.arange(3)).ravel()
+        strain = strain @ sp.eye_array(3 * node_count, format="csr")[rows]
+        matrix = self.spring * (strain.T @ strain)
+        return sp.csr_array(0.5 * (matrix + matrix.T))
+
+
+def disc_on(
+    nodes: np.ndarray,
+    stiffness: sp.csr_array,
+    axis: SpinAxis,
+    center: np.ndarray,
+    section: np.ndarray,
+    mass: float,
+    inertia: ArrayLike,
+) -> RigidDisc:
+    """Return a disc on the nodes `section` of a model; `inertia` as in ``SolidRotor.add_disc``."""
+    values = checks.array(inertia, "inertia", "kg m²")
+    if values.shape == (2,):
+        polar, transverse = values
+        along = np.outer(axis.direction, axis.direction)
+        values = polar * along + transverse * (np.eye(3) - along)
+    elif values.shape != (3, 3):
+        raise ValueError(
+            "inertia: needs two numbers, polar and transverse, or a tensor of the shape (3, 3) "
+            f"[kg m²], got the shape {values.shape}"
+        )
+    own = stiffness.diagonal().reshape(-1, 3)[section].max()
+    return RigidDisc(center, mass, values, section, nodes[section], _STIFF * own)
+
+
+def _checked_inertia(inertia: np.ndarray) -> np.ndarray:
+    values = checks.array(inertia, "inertia", "kg m²", shape=(3, 3))
+    values = checks.symmetric(values, "inertia", "kg m²", size=3)
+    moments = np.linalg.eigvalsh(values)
+    if moments[0] < 0.0 or moments[2] <= 0.0:
+        raise ValueError(f"inertia: needs moments above zero [kg m²], got {moments.tolist()}")
+    # a polar moment of twice the transverse one is that of a thin disc
+    if moments[2] > (moments[0] + moments[1]) * (1.0 + _ROUNDING):
+        raise ValueError(
+            f"inertia: no moment can be larger than the sum of the two others, got "
+            f"{moments.tolist()} kg m²; a disc has polar ≤ 2 × transverse"
+        )
+    return values
