@@ -260,8 +260,10 @@ class SolidRotor(FiniteElementRotor):
             bore on a rigid shaft. The hub moves with the rotor afterwards; a rotor that is held
             in its frame needs :meth:`clamped`.
         initial_displacement : bool, optional
-            Also the stiffness from the change of shape by u⁰: the rest of what is linear in u⁰ in
-            St. Venant–Kirchhoff elasticity. Of the order of the static strain.
+            Also the stiffness from the change of shape by u⁰, per ω² and per ω⁴: the tangent of
+            St. Venant–Kirchhoff elasticity about the linear static state, which K_G alone misses
+            by the order of the static strain or, where parts turn with the static deflection
+            (blades), of that rotation. What is left is the second-order part of the static state.
         euler : bool, optional
             Also the stiffness from the stress of an angular acceleration. Without it the
             rigid-body part of that is used, which is all of it for a rotor that nothing holds.

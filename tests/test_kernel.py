@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from point_rotors import SKEW_AXIS, random_invariants, ring_rotor
+from point_rotors import SKEW_AXIS, random_invariants, random_spd, ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -58,7 +58,8 @@ FORMULATIONS = {
 def motion_of(formulation: Formulation, seed: int, gravity: float) -> Motion:
     """Return a motion whose invariants have no zeros: all its coordinates are coupled."""
     invariants, _, _ = random_invariants(seed, 3)
-    terms = stiffening(invariants, "tilt")
+    displaced = random_spd(np.random.default_rng([seed, 2]), 3)
+    terms = replace(stiffening(invariants, "tilt"), K4=displaced)
     return Motion(
         invariants, formulation, terms, ORIENTATION, gravity=gravity * np.array([1.0, -2.0, 3.0])
     )

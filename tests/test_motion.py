@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from point_rotors import SKEW_AXIS, random_arrays, random_invariants, ring_rotor
+from point_rotors import SKEW_AXIS, random_arrays, random_invariants, random_spd, ring_rotor
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
@@ -97,6 +97,41 @@ def test_jacobians(formulation, full):
         for block in blocks_of(formulation, motion.size):
             scale = max(np.abs(numeric[block]).max(initial=0.0), 1e-3)
             np.testing.assert_allclose(analytic[block], numeric[block], rtol=0, atol=1e-8 * scale)
+
+
+def with_static_displacement(motion: Motion) -> tuple[Motion, np.ndarray]:
+    """Return the motion with a stiffness per ω⁴, and that matrix."""
+    K4 = random_spd(np.random.default_rng(9), motion.invariants.size)
+    terms = replace(stiffening(motion.invariants, "tilt"), K4=K4)
+    return Motion(motion.invariants, motion.formulation, terms, ORIENTATION, gravity=GRAVITY), K4
+
+
+@pytest.mark.parametrize("coupling", ["full", "frozen"])
+@pytest.mark.parametrize("spin", SPINS.values(), ids=SPINS)
+def test_stiffness_of_a_static_displacement(spin, coupling):
+    """A force ``−ω⁴K4ζ``, and on a free spin the torque that takes its power away."""
+    form = Formulation("none", spin)
+    if spin == "free":
+        form = replace(form, spin_coupling=coupling)
+    plain, _, _ = motion_of(form)
+    motion, K4 = with_static_displacement(plain)
+    t = 0.7
+    q, v = random_state(motion.size, 2)
+    omega = v[0] if form.has_spin else form.spin.rate(t)
+    zeta, rate = q[motion.modes], v[motion.modes]
+    added = motion.forces(t, q, v) - plain.forces(t, q, v)
+    assert added[motion.modes] == pytest.approx(-(omega**4) * K4 @ zeta, rel=1e-10)
+    if form.has_spin:
+        assert added @ v == pytest.approx(0.0, abs=1e-12 * np.abs(added).max())
+    torques = [each.drive_torque(t, q, v, 0.0 * zeta) for each in (plain, motion)]
+    expected = -(omega**3) * zeta @ K4 @ rate
+    assert torques[1] - torques[0] == pytest.approx(expected, rel=1e-10)
+    by_q, by_v = motion.jacobian(t, q, v)
+    # polynomials up to the fifth degree, of which 1e-3 leaves 1e-12
+    numeric_q = gradient(lambda point: motion.forces(t, point, v), q, 1e-3)
+    numeric_v = gradient(lambda point: motion.forces(t, q, point), v, 1e-3)
+    assert_relative(by_q, numeric_q, 1e-8)
+    assert_relative(by_v, numeric_v, 1e-8)
 
 
 def blocks_of(formulation: Formulation, size: int) -> list:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from exudyn_rotor import campbell, spinning_modes
 from validation.stiffening import nonlinear, overhung, spun_up_blade
 
 
@@ -32,6 +33,48 @@ def test_with_the_initial_displacement_the_tangents_agree(rows):
     assert rows[1]["full, initial displacement"] < 1e-5
     assert rows[1]["full"] < 1e-4
     assert rows[1]["none"] > 1e-2
+
+
+SOLIDS = {
+    "thin blade": (nonlinear.thin_blade_mesh, "root"),
+    "bladed disc": (lambda: nonlinear.bladed_disc_mesh(0.1, blades=2), "bore"),
+}
+
+
+@pytest.mark.parametrize(("make", "face"), SOLIDS.values(), ids=SOLIDS)
+def test_tangent_of_blades_that_turn_locally(make, face):
+    """Rounding of a matrix whose entries are 1e5 times its lowest eigenvalues; 1e-6 is wanted."""
+    solid = nonlinear.ClampedSolid.of(make(), face)
+    exact, *tangents = (
+        solid.linear_preload(600.0),
+        *(solid.linear_tangent(level, 600.0) for level in nonlinear.LEVELS[1:]),
+    )
+    basis = solid.basis(exact, 12)
+    expected, alone, all_of_it = (
+        solid.frequencies(tangent, 600.0, basis)[:6] for tangent in (exact, *tangents)
+    )
+    assert all_of_it == pytest.approx(expected, rel=1e-7)
+    assert np.abs(alone / expected - 1.0).max() > 3e-4
+
+
+@pytest.fixture(scope="module")
+def thin_blade() -> nonlinear.ClampedSolid:
+    return nonlinear.ClampedSolid.of(nonlinear.thin_blade_mesh(), "root")
+
+
+def test_linear_analyses_have_the_whole_tangent(thin_blade):
+    """Full and reduced model; the tangent is projected on the motions that the full model found."""
+    speed = 600.0
+    prestress = thin_blade.clamped.prestress(initial_displacement=True)
+    rotor = thin_blade.clamped.with_prestress(prestress)
+    found = campbell(rotor, [speed], stiffening="full", modes=4)
+    motions = found.vectors[0][thin_blade.free]
+    basis = np.linalg.qr(np.hstack([motions.real, motions.imag]))[0]
+    expected = thin_blade.frequencies(thin_blade.linear_preload(speed), speed, basis)[:4]
+    assert found.frequencies_rotor[0] == pytest.approx(expected, rel=1e-6)
+    modes = rotor.reduce(spinning_modes(rotor, 8, [speed]))
+    reduced = campbell(modes, [speed], stiffening="full").frequencies_rotor[0, :4]
+    assert reduced == pytest.approx(expected, rel=1e-5)
 
 
 def test_orders_in_the_square_of_the_speed(rows):

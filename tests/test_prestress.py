@@ -183,7 +183,7 @@ def test_both_parts_are_the_derivative_of_the_tangent(beam):
 
 def test_rotation_turns_shape_and_force_together(unbalanced):
     # g(R(x + u) − x) = R g(u) of elastic forces g, linear in the angle and in u
-    matrix = unbalanced.prestress(initial_displacement=True).matrix
+    matrix = unbalanced.prestress(initial_displacement=True).per_square
     displacement = unbalanced.prestress().displacement.reshape(-1, 3)
     load = balanced_load(unbalanced).reshape(-1, 3)
     turns = rotations(unbalanced.nodes, unbalanced.center_of_mass)
@@ -193,11 +193,31 @@ def test_rotation_turns_shape_and_force_together(unbalanced):
         np.testing.assert_allclose(matrix @ turn, expected, rtol=0, atol=1e-9 * abs(force).max())
 
 
+def test_turned_static_state_is_not_strained(unbalanced):
+    """``E`` of the deformed rotor is that of the turned one, in every power of the displacement.
+
+    ``a × (x + u⁰)`` gives ``K_uu (a × x) = −K_u (a × u⁰)`` and ``K_uu (a × u⁰) = 0``.
+    """
+    prestress = unbalanced.prestress(initial_displacement=True)
+    K_u, K_uu = prestress.initial_displacement
+    displacement = prestress.displacement.reshape(-1, 3)
+    turns = rotations(unbalanced.nodes, unbalanced.center_of_mass)
+    for axis, turn in zip(np.eye(3), turns.T, strict=True):
+        turned = np.cross(axis, displacement).ravel()
+        expected = -K_u @ turned
+        limit = 1e-9 * np.abs(expected).max()
+        np.testing.assert_allclose(K_uu @ turn, expected, rtol=0, atol=limit)
+        rounding = 1e-12 * abs(K_uu).max() * np.abs(turned).max()
+        assert np.abs(K_uu @ turned).max() < rounding
+
+
 def test_initial_displacement_is_added_when_asked_for(disc):
     plain, more = disc.prestress(), disc.prestress(initial_displacement=True)
     part = disc.elements.initial_displacement_stiffness(plain.displacement)
-    assert more.initial_displacement
-    assert abs(more.matrix - plain.matrix - part).max() < 1e-11 * abs(part).max()
+    assert plain.initial_displacement is None
+    assert plain.per_fourth_power is None
+    assert abs(more.matrix - plain.matrix).max() == 0.0
+    assert abs(more.per_square - plain.per_square - part).max() < 1e-11 * abs(part).max()
 
 
 # ------------------------------------------------------------------ stress at rest
@@ -321,6 +341,23 @@ def test_imported_matrix_is_taken_as_it_is(disc):
     assert abs(imported.matrix - computed.matrix).max() == 0.0
     assert abs(imported.euler - computed.matrix).max() == 0.0
     assert imported.displacement is None
+    assert imported.per_fourth_power is None
+    K_u, K_uu = 2.0 * computed.matrix, 3.0 * computed.matrix
+    more = Prestress.from_matrix(computed.matrix, disc.nodes, initial_displacement=(K_u, K_uu))
+    assert abs(more.per_square - 3.0 * computed.matrix).max() < 1e-12 * abs(K_u).max()
+    assert abs(more.per_fourth_power - K_uu).max() == 0.0
+    assert "initial displacement" in repr(more)
+
+
+def test_initial_displacement_needs_both_matrices(disc):
+    matrix = disc.prestress().matrix
+    for given, error, message in (
+        (matrix, TypeError, r"needs the two matrices \(K_u, K_uu\)"),
+        (True, TypeError, "got True"),
+        ((matrix, np.eye(5)), ValueError, "initial_displacement: K_uu: the shape must be"),
+    ):
+        with pytest.raises(error, match=message):
+            Prestress.from_matrix(matrix, disc.nodes, initial_displacement=given)
 
 
 @pytest.mark.parametrize(

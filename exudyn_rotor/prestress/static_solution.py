@@ -5,6 +5,17 @@ The centrifugal load per ω², ``f_c = M x_⊥``, deforms the rotor statically b
 ``vᵀ K_G u = ∫ σ⁰ : (∇uᵀ∇v) dV``. Inertia relief balances the load where nothing holds the rotor.
 A stress at rest has a K_G of its own, part of the K that the centrifugal load deforms.
 
+The tangent of a St. Venant–Kirchhoff solid with ``W = ½ E : C : E``, ``E = ε + ½ ∇uᵀ∇u``, at the
+displacement ω²u⁰ with the stress ω²σ⁰ is ``K + ω² (K_G + K_u) + ω⁴ K_uu``,
+
+    vᵀ K_u u = ∫ ε(v) : C : E₁(u) + E₁(v) : C : ε(u) dV,    E₁(v) = sym(∇u⁰ᵀ ∇v),
+    vᵀ K_uu u = ∫ E₁(v) : C : E₁(u) dV.
+
+Where u⁰ turns a part by the angle θ without straining it, ``E₁`` is of the order of θ; what K_u
+changes is then the strain of the turned part, and K_uu takes most of that back: one without the
+other errs more than K_G alone. With both, frequencies err by the second-order part of the static
+state itself, stress and displacement.
+
 Nodes held by a massless rigid hub feel its forces R, which turn with the hub. K_G takes them for
 dead loads; by equilibrium ``K_G (a×x) = a×(f_c + R)``, a false stiffness of rotations. With the
 mean translation t and rotation ``φ = Φu`` of these nodes, ``u = t + φ×y + ψ``, y from the centre of
@@ -79,8 +90,12 @@ def static_prestress(
 
     load = centrifugal_load(rotor)
     displacement, matrix = state.stiffening(load)
+    initial = None
     if initial_displacement:
-        matrix = matrix + elements.initial_displacement_stiffness(displacement)
+        initial = (
+            elements.initial_displacement_stiffness(displacement),
+            elements.squared_displacement_stiffness(displacement),
+        )
     by_spin = rotor.stress_recovery(displacement[:, None])[:, :, 0]
     if speed is not None:
         total = speed**2 * by_spin + (0.0 if rest_stress is None else rest_stress)
@@ -92,7 +107,7 @@ def static_prestress(
         displacement=displacement,
         stress=by_spin,
         constant=constant,
-        initial_displacement=initial_displacement,
+        initial_displacement=initial,
         balanced=not clamped,
         yield_stress=yield_stress,
         constant_stress=rest_stress,

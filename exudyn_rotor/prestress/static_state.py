@@ -118,7 +118,7 @@ def _known_loads(
     programs may balance it as a whole, and not at every node.
     """
     resists, displacement = prestress.constant, prestress.displacement
-    if rotor.grounded and not prestress.initial_displacement:
+    if rotor.grounded:
         load = centrifugal_load(rotor)
         if resists is None:
             yield "matrix", prestress.matrix, load, 0.0
@@ -134,8 +134,6 @@ def _check_strains(rotor: FiniteElementRotor, prestress: Prestress) -> None:
     K_G acts on each direction alike and ``K_G x = f``, so that ``(A x)ᵀ K_G (B x) = (A x) · (B f)``
     for all A and B; rotations are the part of this that the elastic stiffness does not resist.
     """
-    if prestress.initial_displacement:
-        return
     positions = rotor.nodes - rotor.center_of_mass
     virial = positions.T @ _balanced(rotor, centrifugal_load(rotor)).reshape(-1, 3)
     fields = np.kron(positions, np.eye(3))

@@ -10,7 +10,7 @@ Q is a combination of the columns of
 
     KQ − MQΛ,   MẽQ,   M eeᵀQ,   K_G Q,   DQ
 
-each less ``MQ`` times its work on Q. The static responses ``K⁺L`` to these loads L, with those to
+(K_G with K_u where that is carried) each less ``MQ`` times its work on Q. The static responses ``K⁺L`` to these loads L, with those to
 loads at the interfaces (:mod:`exudyn_rotor.reduction.attachment`), are what the basis lacks first:
 the lowest left-out modes, weighted by how much the motions in the basis excite them. Beside Q they
 make a finer rotor, and by it the error of the basis is estimated
@@ -85,7 +85,7 @@ def _loads(rotor: FiniteElementRotor, basis: np.ndarray, stiffness: np.ndarray) 
     loads.append(own / frequencies)
     carried = rotor.carried_prestress
     if carried is not None:
-        loads.append(speed * (carried.matrix @ basis))
+        loads.append(speed * (carried.per_square @ basis))
     if rotor.damping is not None:
         loads.append(rotor.damping @ columns)
     if rotor.structural_damping is not None:

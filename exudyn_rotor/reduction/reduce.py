@@ -23,7 +23,10 @@ from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
+
+_NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
 
@@ -42,7 +45,8 @@ def reduce_rotor(
     checks.flag(keep_shapes, "keep_shapes")
     checks.tolerance(rank_tolerance, "rank_tolerance")
     rotor = with_chosen_prestress(rotor, prestress)
-    return _reduced(rotor, _component_modes(rotor, modes), stress, keep_shapes, rank_tolerance)
+    component = _with_turned_displacement(rotor, _component_modes(rotor, modes))
+    return _reduced(rotor, component, stress, keep_shapes, rank_tolerance)
 
 
 def _reduced(
@@ -159,6 +163,33 @@ def _rigid_motions(
     return free, (ModeKind.FREE,) * rotor.rigid_motions
 
 
+def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -> ModeBasis:
+    """Add ``a × u⁰`` for the rotations a that are free, where K_u and K_uu are carried.
+
+    A rotor that turns takes its static deformation along. ``a × (x + ω²u⁰)`` strains nothing, but
+    K_uu resists ``a × x`` alone, like a stress of the order of the local rotation by u⁰.
+    """
+    carried = rotor.carried_prestress
+    if carried is None or carried.initial_displacement is None or carried.displacement is None:
+        return component
+    center = rotor.center_of_mass
+    rigid, _ = _rigid_motions(rotor, center)
+    motions = np.hstack([translations(rotor.node_count), rotations(rotor.nodes, center)])
+    turns = np.linalg.lstsq(motions, rigid, rcond=None)[0][3:].T
+    turns = turns[np.linalg.norm(turns, axis=1) > _NO_TURN * np.abs(turns).max(initial=0.0)]
+    if not len(turns):
+        return component
+    static = carried.displacement.reshape(-1, 3)
+    columns = np.stack([np.cross(turn, static).ravel() for turn in turns], axis=1)
+    columns = columns / np.sqrt(np.einsum("ik,ik->k", columns, rotor.mass @ columns))
+    labels = tuple(f"static displacement turned {i + 1}" for i in range(len(turns)))
+    stress = component.stress
+    if stress is not None:
+        stress = np.concatenate([stress, rotor.stress_recovery(columns)], axis=2)
+    matrix = np.hstack([component.matrix, columns])
+    return ModeBasis(matrix, component.labels + labels, rotor.nodes, stress=stress)
+
+
 def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
     stiffness = np.maximum(np.diag(invariants.K), 0.0)
@@ -190,9 +221,12 @@ def _stiffened(rotor: FiniteElementRotor, invariants: Invariants, basis: np.ndar
     carried = rotor.carried_prestress
     if carried is None:
         return invariants
-    K2 = basis.T @ (carried.matrix @ basis)
-    B = None if carried.euler is None else basis.T @ (carried.euler @ basis)
-    return with_prestress(invariants, K2, B, relief_rotations(rotor))
+    K2 = basis.T @ (carried.per_square @ basis)
+    B, K4 = (
+        None if matrix is None else basis.T @ (matrix @ basis)
+        for matrix in (carried.euler, carried.per_fourth_power)
+    )
+    return with_prestress(invariants, K2, B, relief_rotations(rotor), K4)
 
 
 def _centrifugal(rotor: FiniteElementRotor) -> Centrifugal | None:

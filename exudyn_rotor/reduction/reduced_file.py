@@ -19,7 +19,7 @@ Rotor = TypeVar("Rotor")  # ReducedRotor, which has the methods that call this m
 
 _KIND = "reduced rotor"
 _INVARIANTS = ("direction", "center", "J", "S", "P", "M", "K", "D", "G", "C")
-_OPTIONAL_INVARIANTS = ("K2", "B", "H")
+_OPTIONAL_INVARIANTS = ("K2", "B", "K4", "H")
 _INTERFACE = ("reference", "center", "motion")
 _SHAPES = ("nodes", "matrix")
 _CENTRIFUGAL = ("displacement", "stress", "constant_stress")
@@ -122,7 +122,7 @@ def _invariants(entries: Entries) -> Invariants:
         **entries.arrays(*_INVARIANTS),
         **entries.arrays(*_OPTIONAL_INVARIANTS, optional=True),
     )
-    for name in ("K", "C", "J", "H"):
+    for name in ("K", "C", "J", "K4", "H"):
         if getattr(invariants, name) is not None:
             _definite(getattr(invariants, name), f"invariants.{name}")
     entries.close()

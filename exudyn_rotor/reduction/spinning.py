@@ -25,7 +25,7 @@ def spinning_modes(
 ) -> ModeBasis:
     """Return the lowest eigenmodes at rest and those at spin speeds, as one basis.
 
-    At a speed Ω these are the modes φ of ``A = K + Ω²(K_G − ẽᵀMẽ)``, and the static responses
+    At a speed Ω these are the modes φ of ``A = K + Ω²(K2 − ẽᵀMẽ) + Ω⁴K4``, and the static responses
     ``A⁻¹Mẽφ`` to the Coriolis forces of those that move across the axis: a blade that swings in
     the plane of rotation is stretched by them, and the stretch is far above all bending modes. A
     blade whose tension has changed its mode shapes needs fewer columns of this basis than of modes
@@ -100,8 +100,9 @@ def _spin_terms(rotor: FiniteElementRotor) -> SpinTerms:
     identity = sp.eye_array(rotor.nodes.size, format="csr")
     matrices = (rotor.mass, rotor.stiffness, None)
     invariants = Invariants.of(rotor.nodes, *matrices, identity, rotor.axis.direction)
-    K_G = rotor.carried_prestress.matrix
-    return SpinTerms.of(invariants, Stiffening(K_G, 0.0 * K_G))
+    carried = rotor.carried_prestress
+    K2 = carried.per_square
+    return SpinTerms.of(invariants, Stiffening(K2, 0.0 * K2, carried.per_fourth_power))
 
 
 def _modes_at(

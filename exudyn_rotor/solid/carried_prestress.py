@@ -17,11 +17,14 @@ from exudyn_rotor.solid import matrices
 class Prestress:
     """Stiffness of a rotor from its static stress; made by :meth:`SolidRotor.prestress`.
 
+    Vibrations have the stiffness ``K + ω² (K_G + K_u) + ω⁴ K_uu``, see
+    :mod:`exudyn_rotor.prestress.static_solution`.
+
     Attributes
     ----------
     matrix : scipy.sparse.csr_array, shape (3n, 3n)
         Stiffness per ω², ordered x0 y0 z0 x1 …: K_G of the centrifugal stress, with that of a
-        hub's forces and the initial-displacement stiffness if these were asked for [N s²/m].
+        hub's forces [N s²/m].
     nodes : ndarray, shape (n, 3)
         Positions of the mesh it belongs to [m].
     euler : scipy.sparse.csr_array or None
@@ -34,8 +37,8 @@ class Prestress:
         K_G of a stress that does not depend on the speed [N/m].
     constant_stress : ndarray or None, shape (n, 6)
         That stress at the nodes, in equilibrium, components as in `stress` [Pa].
-    initial_displacement : bool
-        Whether `matrix` holds the initial-displacement stiffness.
+    initial_displacement : tuple of two scipy.sparse.csr_array, or None
+        K_u per ω² and K_uu per ω⁴ of the static displacement [N s²/m, N s⁴/m].
     balanced : bool
         True if inertia forces balance the load on every rigid motion that the rotor's stiffness
         leaves free; False if held nodes take it up.
@@ -69,7 +72,7 @@ class Prestress:
     displacement: np.ndarray | None = None
     stress: np.ndarray | None = None
     constant: sp.csr_array | None = None
-    initial_displacement: bool = False
+    initial_displacement: tuple[sp.csr_array, sp.csr_array] | None = None
     balanced: bool = True
     yield_stress: float | None = None
     constant_stress: np.ndarray | None = None
@@ -82,12 +85,13 @@ class Prestress:
         checked = {
             "nodes": nodes,
             "matrix": matrices.as_matrix("prestress matrix", self.matrix, count),
-            "initial_displacement": checks.flag(self.initial_displacement, "initial_displacement"),
             "balanced": checks.flag(self.balanced, "balanced"),
         }
         for name in ("euler", "constant"):
             if getattr(self, name) is not None:
                 checked[name] = matrices.as_matrix(f"{name} matrix", getattr(self, name), count)
+        if self.initial_displacement is not None:
+            checked["initial_displacement"] = _pair(self.initial_displacement, count)
         shapes = {
             "displacement": (3 * count,),
             "load": (3 * count,),
@@ -106,9 +110,27 @@ class Prestress:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
+    @property
+    def per_square(self) -> sp.csr_array:
+        """Stiffness per ω², ``K_G + K_u``."""
+        if self.initial_displacement is None:
+            return self.matrix
+        return self.matrix + self.initial_displacement[0]
+
+    @property
+    def per_fourth_power(self) -> sp.csr_array | None:
+        """Stiffness per ω⁴, ``K_uu``."""
+        return None if self.initial_displacement is None else self.initial_displacement[1]
+
     @classmethod
     def from_matrix(
-        cls, matrix: Any, nodes: ArrayLike, euler: Any = None, *, balanced: bool = True
+        cls,
+        matrix: Any,
+        nodes: ArrayLike,
+        euler: Any = None,
+        *,
+        initial_displacement: tuple[Any, Any] | None = None,
+        balanced: bool = True,
     ) -> Prestress:
         """Take the geometric stiffness of an imported model.
 
@@ -121,6 +143,9 @@ class Prestress:
             Positions of the mesh, those of the rotor [m].
         euler : array_like or sparse, shape (3n, 3n), optional
             The same for the Euler load ``−M ẽx`` of an angular acceleration of 1 rad/s².
+        initial_displacement : tuple of two such matrices, optional
+            ``K_u`` and ``K_uu``, the parts of the tangent stiffness for 1 rad/s that are linear
+            and quadratic in the static displacement [N s²/m, N s⁴/m].
         balanced : bool, optional
             False if the stress was computed with nodes held fixed, not with inertia relief; the
             rotor must then be one that holds them, see :meth:`exudyn_rotor.SolidRotor.clamped`.
@@ -132,11 +157,27 @@ class Prestress:
         ValueError
             If a shape does not fit, a matrix is not symmetric, or an entry is not finite.
         """
-        return cls(matrix, nodes, euler, balanced=balanced)
+        return cls(
+            matrix, nodes, euler, initial_displacement=initial_displacement, balanced=balanced
+        )
 
     def __repr__(self) -> str:
         parts = [f"{len(self.nodes)} nodes"]
         parts += [name for name in ("euler", "constant") if getattr(self, name) is not None]
-        parts += ["initial displacement"] if self.initial_displacement else []
+        parts += [] if self.initial_displacement is None else ["initial displacement"]
         parts += [] if self.balanced else ["clamped"]
         return f"Prestress({', '.join(parts)})"
+
+
+def _pair(given: Any, count: int) -> tuple[sp.csr_array, sp.csr_array]:
+    """Return the matrices K_u and K_uu of an initial displacement."""
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise TypeError(
+            "initial_displacement: needs the two matrices (K_u, K_uu), got "
+            f"{checks.shown(given)}; rotor.prestress(initial_displacement=True) computes them"
+        )
+    names = ("K_u", "K_uu")
+    return tuple(
+        matrices.as_matrix(f"initial_displacement: {name}", matrix, count)
+        for name, matrix in zip(names, given, strict=True)
+    )

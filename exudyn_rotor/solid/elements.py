@@ -177,6 +177,18 @@ class NgsolveElements:
         form += ngs.InnerProduct(self._hooke(ngs.Sym(static.trans * u)), ngs.Sym(v)) * ngs.dx
         return self._without_held(node_by_node(assembled(form)))
 
+    def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
+        """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
+
+        Symbols and parameters of :meth:`initial_displacement_stiffness`.
+        """
+        static = ngs.grad(self._displacement(displacement))
+        space = nodal_space(self.mesh, self.order) ** 3
+        u, v = (ngs.Sym(static.trans * ngs.grad(function)) for function in space.TnT())
+        form = ngs.BilinearForm(space)
+        form += ngs.InnerProduct(self._hooke(u), v) * ngs.dx
+        return self._without_held(node_by_node(assembled(form)))
+
     def _of_stress(self, stress: ngs.CoefficientFunction) -> sp.csr_array:
         """Return K_G of a stress tensor; it acts on each direction by itself, the same on all."""
         space = nodal_space(self.mesh, self.order)

@@ -53,6 +53,8 @@ class Invariants:
     K2, B : shape (k, k), optional
         Stiffness per ω² and per ω̇ of a static prestress, see
         :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
+    K4 : shape (k, k), optional
+        Stiffness per ω⁴ of a static displacement, as there.
     H : shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness
         ``K + i sign(ν) H``. Only analyses in the frequency domain can use it.
@@ -61,8 +63,8 @@ class Invariants:
     ------
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
-        definite, the direction is no unit vector, M, K, C, J, K2, B or H is not symmetric, or G not
-        skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
+        definite, the direction is no unit vector, M, K, C, J, K2, B, K4 or H is not symmetric, or G
+        not skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
         checked them: of them only shape and entries are looked at.
 
     Examples
@@ -92,6 +94,7 @@ class Invariants:
     C: Matrix
     K2: Matrix | None = None
     B: Matrix | None = None
+    K4: Matrix | None = None
     H: Matrix | None = None
 
     def __post_init__(self) -> None:
@@ -110,7 +113,7 @@ class Invariants:
             "D": checks.matrix(self.D, "D", shape=(size, size)),
             "G": checks.symmetric(self.G, "G", size=size, sign=-1),
         }
-        for name in ("M", "K", "C", "K2", "B", "H"):
+        for name in ("M", "K", "C", "K2", "B", "K4", "H"):
             matrix = getattr(self, name)
             if matrix is not None or name in "MKC":
                 checked[name] = checks.symmetric(matrix, name, size=size)
@@ -217,7 +220,7 @@ class Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))
         projected = {"D": T.T @ (self.D @ T), "G": _mean(T.T @ (self.G @ T), -1)}
-        for name in ("M", "K", "C", "K2", "B", "H"):
+        for name in ("M", "K", "C", "K2", "B", "K4", "H"):
             if getattr(self, name) is not None:
                 projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)

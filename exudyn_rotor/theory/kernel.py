@@ -9,10 +9,10 @@ unbalance ``u = mχ* + S*ζ`` (65), one matrix product gives the rows
     Coriolis        2Gζ̇         2S*ζ̇
 
 of mass matrix and forces, and ``(ω², −ω̇, −ω)`` times these rows the inertia forces on the modes
-(87) and, turned by A, on the translations (66). What depends on the angle is linear in
-``(1, cosθ, sinθ)``: one more product. What is linear with constant coefficients is not here at all:
-:func:`constant_part` hands it to the host as matrices. Tests hold both modules together to
-round-off.
+(87) and, turned by A, on the translations (66); a static displacement adds ``−ω⁴K4ζ``. What
+depends on the angle is linear in ``(1, cosθ, sinθ)``: one more product. What is linear with
+constant coefficients is not here at all: :func:`constant_part` hands it to the host as matrices.
+Tests hold both modules together to round-off.
 """
 
 from __future__ import annotations
@@ -142,6 +142,7 @@ class Kernel:
         self._centrifugal, self._spin_coupling = self._products[:2, :count]
         self._unbalance = self._products[1, count + 1 :]
         frozen = motion.formulation.has_frozen_spin
+        self._K4, self._displaced = terms.K4, np.zeros(count)
         self._B = terms.B if np.any(terms.B) and not frozen else None
         self._share = 1.0 if frozen else 2.0  # of ω(h + Ĉζ)ᵀζ̇ in the torque (86)
         self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
@@ -194,6 +195,8 @@ class Kernel:
             torque = -self._share * omega * float(self._centrifugal.dot(self._rate))
             if self._B is not None:
                 torque -= self._rate.dot(self._B.dot(self._rate))
+            if self._K4 is not None:
+                torque += omega**3 * float(self._displaced.dot(self._rate))
         if turning.has_body_force:
             if self.has_modal_forces:
                 self._modal_force += turning.modal
@@ -221,6 +224,8 @@ class Kernel:
             by = (-factor_q * squared, -factor_q * euler, factor_v * omega)
             block = np.dot(by, self._by_state)
             matrix[first:, first:] = block.reshape(self._count, self._count)
+            if self._K4 is not None:
+                matrix[first:, first:] += factor_q * squared**2 * self._K4
         if self._spin is not None:
             self._add_spin_columns(omega, factor_q, factor_v)
         if self._motion.is_coupled:
@@ -238,6 +243,11 @@ class Kernel:
         if self._B is not None:
             row += (2.0 * factor_v) * self._B.dot(rate)
         corner = share * factor_v * centrifugal.dot(rate)
+        if self._K4 is not None:
+            displaced, by_rate = self._displaced, self._K4.dot(rate)
+            column += (4.0 * factor_v * omega**3) * displaced
+            row -= omega**3 * (factor_q * by_rate + factor_v * displaced)
+            corner -= 3.0 * factor_v * omega**2 * float(displaced.dot(rate))
         if turning.has_body_force:
             modal, by_deflection, torque = turning.slope()
             column -= factor_q * modal
@@ -285,6 +295,9 @@ class Kernel:
             factors[1] = -spin.acceleration(t)
         factors[0], factors[2] = omega * omega, -omega
         np.dot(factors, self._products, out=self._loads)
+        if self._K4 is not None:
+            np.dot(self._K4, self._zeta, out=self._displaced)
+            self._loads[: self._count] -= factors[0] ** 2 * self._displaced
         return omega
 
 

@@ -1,9 +1,9 @@
 """What a spin adds to the linear equations of the modal coordinates; every term stands here once.
 
-    M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
+    M ζ̈ + (D + 2ωG) ζ̇ + (K − ω²Ĉ + ω⁴K4 + ω̇W) ζ = f + ω²h − ω̇g        (105), (109)
 
 With centrifugal stiffening (:mod:`exudyn_rotor.theory.stiffening`) ``Ĉ = C − K2`` and
-``W = G + B``; the paper's equations are K2 = B = 0.
+``W = G + B``; the paper's equations are K2 = B = K4 = 0.
 
 Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 """
@@ -33,6 +33,8 @@ class SpinTerms:
         ``G + B``, and the stiffness of the Euler field per ω̇.
     h, g : ndarray, shape (k,)
         Centrifugal load per ω² (83), and mass moment of the Euler load per −ω̇ (82).
+    K4 : shape (k, k) or None
+        Stiffness per ω⁴ of a static displacement; None where it is left out.
 
     Examples
     --------
@@ -54,6 +56,7 @@ class SpinTerms:
     B: Matrix
     h: np.ndarray
     g: np.ndarray
+    K4: Matrix | None = None
 
     @classmethod
     def of(cls, invariants: Invariants, second_order: Stiffening) -> SpinTerms:
@@ -74,6 +77,7 @@ class SpinTerms:
             B=second_order.B,
             h=invariants.h,
             g=invariants.g,
+            K4=second_order.K4,
         )
 
     def damping(self, speed: float) -> Matrix:
@@ -81,8 +85,10 @@ class SpinTerms:
         return 2.0 * speed * self.G
 
     def stiffness(self, speed: float, acceleration: float = 0.0) -> Matrix:
-        """Return ``−ω²Ĉ + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
+        """Return ``−ω²Ĉ + ω⁴K4 + ω̇W`` at a spin speed [rad/s] and acceleration [rad/s²]."""
         centrifugal = -(speed**2) * self.C_hat
+        if self.K4 is not None:
+            centrifugal = centrifugal + speed**4 * self.K4
         return centrifugal + acceleration * self.W if acceleration else centrifugal
 
     def load(self, speed: float, acceleration: float = 0.0) -> np.ndarray:

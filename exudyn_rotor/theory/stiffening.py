@@ -14,7 +14,8 @@ Levels
 ``'full'``
     The geometric stiffness of the static centrifugal stress, which stiffens flexible modes, too
     (blades, discs), and contains ``'tilt'``: a stress in equilibrium does the work of its load.
-    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.static_solution`).
+    Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.static_solution`). With
+    its initial displacement there is a stiffness per ω⁴ as well.
 
 Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
 φ about the centre of mass and a flexible rest ψ; composing them gives
@@ -54,6 +55,8 @@ class Stiffening:
     B : ndarray, shape (k, k)
         Symmetric matrix of the Euler field: stiffness ``ω̇ B`` and, where θ is a coordinate,
         ``(Bζ)ᵀ`` added to ``M_θζ``. Zero for the tilts of an axisymmetric rotor.
+    K4 : ndarray, shape (k, k), optional
+        Stiffness per ω⁴ of the static displacement, ``ΨᵀK_uuΨ``.
 
     Raises
     ------
@@ -79,12 +82,14 @@ class Stiffening:
 
     K2: np.ndarray
     B: np.ndarray
+    K4: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         K2 = checks.matrix(self.K2, "K2")
-        for name in ("K2", "B"):
-            matrix = checks.symmetric(getattr(self, name), name, size=K2.shape[0])
-            object.__setattr__(self, name, matrix)
+        for name in ("K2", "B", "K4"):
+            if getattr(self, name) is not None:
+                matrix = checks.symmetric(getattr(self, name), name, size=K2.shape[0])
+                object.__setattr__(self, name, matrix)
 
 
 def stiffening(invariants: Invariants, level: str) -> Stiffening:
@@ -120,11 +125,15 @@ def _full(invariants: Invariants) -> Stiffening:
     B = invariants.B
     if B is None:  # of the Euler field only what rigid rotations feel
         B = _work_hessian(_rigid_split(invariants), skew(invariants.direction))
-    return Stiffening(invariants.K2, B)
+    return Stiffening(invariants.K2, B, invariants.K4)
 
 
 def with_prestress(
-    invariants: Invariants, K2: np.ndarray, B: np.ndarray | None, relief: np.ndarray
+    invariants: Invariants,
+    K2: np.ndarray,
+    B: np.ndarray | None,
+    relief: np.ndarray,
+    K4: np.ndarray | None = None,
 ) -> Invariants:
     """Return the invariants with the stiffness of a static prestress.
 
@@ -133,12 +142,14 @@ def with_prestress(
     invariants : Invariants
         Dense.
     K2 : ndarray, shape (k, k)
-        ``ΨᵀK_GΨ`` per ω².
+        ``Ψᵀ(K_G + K_u)Ψ`` per ω².
     B : ndarray or None, shape (k, k)
         The same per ω̇.
     relief : ndarray, shape (2, 3)
         Angular accelerations per ω² and ω̇ whose inertia balanced the two loads. That part of a
         load strains nothing, and does the work on rigid rotations that ``'tilt'`` gives it.
+    K4 : ndarray, shape (k, k), optional
+        ``ΨᵀK_uuΨ`` per ω⁴.
     """
     split = _rigid_split(invariants)
 
@@ -149,6 +160,7 @@ def with_prestress(
         invariants,
         K2=relieved(K2, relief[0]),
         B=None if B is None else relieved(B, relief[1]),
+        K4=None if K4 is None else 0.5 * (K4 + K4.T),
     )
 
 

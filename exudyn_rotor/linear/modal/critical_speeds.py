@@ -117,8 +117,9 @@ def critical_speeds(
         Excitation order p ≥ 0 in the inertial frame; 1 for unbalance, 0 for a load at rest.
     max_speed : float, optional
         Largest speed of interest [rad/s]; needed for a scene, for a large SolidRotor and for
-        supports that depend on the speed: there the zeros are bracketed at 200 speeds up to it,
-        and two of one mode that are closer than a 200th of it may be missed.
+        supports that depend on the speed or an initial displacement: there the zeros are
+        bracketed at 200 speeds up to it, and two of one mode that are closer than a 200th of it
+        may be missed.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
     stiffening : {'tilt', 'none', 'full'}

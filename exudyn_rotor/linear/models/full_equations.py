@@ -56,7 +56,8 @@ def _second_order(
         if rotor.carried_prestress is None:
             raise ValueError(NO_PRESTRESS)
         factors = relief_factors(invariants, relief_rotations(rotor)[0])
-        return replace(invariants, K2=rotor.carried_prestress.matrix), factors
+        carried = rotor.carried_prestress
+        return replace(invariants, K2=carried.per_square, K4=carried.per_fourth_power), factors
     V, W = tilt_factors(invariants)
     return invariants, (V, W if level == "tilt" else 0.0 * W)
 
@@ -74,7 +75,7 @@ class FullEquations(SupportedRotor):
     motions : tuple of scipy.sparse.csr_array, each (6, 3n)
         Interface motion of every support along (n1, n2, e).
     invariants : Invariants
-        Sparse, about the foot of the centre of mass on the axis; K2 only at the level 'full'.
+        Sparse, about the foot of the centre of mass on the axis; K2 and K4 only at 'full'.
     tilt : tuple of ndarray, (6, 3n) and (6, 6)
         V and W of the centrifugal stiffening ``K2 + VᵀWV`` per Ω².
     rotor : SolidRotor
@@ -142,7 +143,7 @@ class FullEquations(SupportedRotor):
     ) -> dict[int, np.ndarray]:
         """Return what modes leave of the equations, per harmonic (3n, k) [N].
 
-        ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C)) X_n + supports`` with ``s = λ + inΩ``. K
+        ``r_n = (s²M + s(D + 2ΩG) + K + Ω²(K2 − C) + Ω⁴K4) X_n + supports``, ``s = λ + inΩ``. K
         is applied to `strained`, the stack itself by default; without free rigid motions in it,
         rounding does not make forces of them. `torsion` is of :meth:`LinearRotor.steady_torsion`.
         """
@@ -154,7 +155,7 @@ class FullEquations(SupportedRotor):
                 inv.M @ (X * rate**2)
                 + (inv.D @ X + speed * (coriolis @ X)) * rate
                 + inv.K @ strained[n]
-                + speed**2 * self._centrifugal(X)
+                + self._spin_stiffness(X, speed)
             )
             if torsion:
                 left[n] += torsion * np.outer(self.spin.momentum, self.spin.amount(X))
@@ -177,12 +178,13 @@ class FullEquations(SupportedRotor):
                         residual += self._pulled(index, force)
         return left
 
-    def _centrifugal(self, X: np.ndarray) -> np.ndarray:
-        """Return ``(K2 − C) X``, shape (3n, k)."""
-        (V, W), matrix = self.tilt, self._per_speed[1]
+    def _spin_stiffness(self, X: np.ndarray, speed: float) -> np.ndarray:
+        """Return ``(Ω²(K2 − C) + Ω⁴K4) X``, shape (3n, k)."""
+        (V, W), matrix, K4 = self.tilt, self._per_speed[1], self.invariants.K4
 
         def apply(Y: np.ndarray) -> np.ndarray:
-            return matrix @ Y + V.T @ (W @ (V @ Y))
+            force = speed**2 * (matrix @ Y + V.T @ (W @ (V @ Y)))
+            return force if K4 is None else force + speed**4 * (K4 @ Y)
 
         return apply(X) if self.spin is None else self.spin.uncoupled(apply, X)
 

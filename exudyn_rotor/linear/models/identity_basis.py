@@ -49,4 +49,6 @@ def _invariants(rotor: SolidRotor) -> Invariants:
     if carried is None:
         return invariants
     euler = None if carried.euler is None else carried.euler.toarray()
-    return with_prestress(invariants, carried.matrix.toarray(), euler, relief_rotations(rotor))
+    K4 = None if carried.per_fourth_power is None else carried.per_fourth_power.toarray()
+    K2 = carried.per_square.toarray()
+    return with_prestress(invariants, K2, euler, relief_rotations(rotor), K4)

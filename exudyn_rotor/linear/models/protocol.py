@@ -125,7 +125,7 @@ class LinearModel(Protocol):
     gives_all : bool
         True where analyses give all modes, False where only the lowest ones.
     stiffness_varies : bool or None
-        Whether supports depend on the speed; None where that is not known.
+        Whether the stiffness depends on the speed other than by Ω²; None where that is not known.
 
     Examples
     --------

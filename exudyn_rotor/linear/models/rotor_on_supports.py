@@ -80,6 +80,7 @@ class LinearRotor(SupportedRotor):
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
         terms = SpinTerms.of(invariants, second_order(invariants, stiffening))
+        invariants = replace(invariants, K4=terms.K4)
         linear = cls(rotor, tuple(supports), invariants, terms)
         if ModeKind.SPIN in rotor.kinds:
             spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
@@ -123,11 +124,19 @@ class LinearRotor(SupportedRotor):
         return turn @ self.rotor.interfaces[name].motion
 
     @cached_property
-    def _centrifugal(self) -> np.ndarray:
-        matrix = self.terms.stiffness(1.0)
+    def _spin_terms(self) -> SpinTerms:
+        """The terms, of whose stiffness the spin feels nothing."""
         if self.spin is None:
-            return matrix
-        return self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
+            return self.terms
+        given = {"C_hat": self.terms.C_hat, "K4": self.terms.K4}
+        return replace(
+            self.terms,
+            **{
+                name: self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
+                for name, matrix in given.items()
+                if matrix is not None
+            },
+        )
 
     def _supported_motion(self, index: int) -> np.ndarray:
         """Return the motion (6, k) at a support, which a free spin does not displace."""
@@ -141,7 +150,7 @@ class LinearRotor(SupportedRotor):
         inv = self.invariants
         M = {0: inv.M}
         D = {0: inv.D + self.terms.damping(speed)}
-        K = {0: inv.K + speed**2 * self._centrifugal}
+        K = {0: inv.K + self._spin_terms.stiffness(speed)}
         for index, support in enumerate(self.supports):
             U = self._supported_motion(index)
             damping, stiffness = support.terms(speed)
@@ -160,7 +169,7 @@ class LinearRotor(SupportedRotor):
         """
         motions = [self._supported_motion(index) for index in range(len(self.supports))]
         pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
-        K = self.invariants.K + speed**2 * self._centrifugal
+        K = self.invariants.K + self._spin_terms.stiffness(speed)
         for U, pull in zip(motions, pulls, strict=True):
             K = K + U.T @ pull @ U
         rest = self.spin.rest()

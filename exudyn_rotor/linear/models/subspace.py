@@ -80,7 +80,7 @@ class Subspace:
         self._factor = SparseCholesky(self._shifted)
         self.basis = np.zeros((full.size, 0))
         self._small: LinearRotor | None = None
-        given = tuple(name for name in ("K2", "H") if getattr(inv, name) is not None)
+        given = tuple(name for name in ("K2", "K4", "H") if getattr(inv, name) is not None)
         names = ("M", "K", "D", "G", "C", *given)
         self._projected = {name: np.zeros((0, 0)) for name in names}
         # one by one, so that each stays a column of its own: a free one is told by its stiffness
@@ -299,7 +299,8 @@ class Subspace:
         spin = full.spin and replace(full.spin, motion=unit, momentum=unit)
         tilt = V @ self.basis
         K2 = tilt.T @ W @ tilt + blocks.get("K2", 0.0)
-        terms = SpinTerms.of(invariants, Stiffening(0.5 * (K2 + K2.T), 0.0 * K2))
+        levels = Stiffening(0.5 * (K2 + K2.T), 0.0 * K2, blocks.get("K4"))
+        terms = SpinTerms.of(invariants, levels)
         return LinearRotor(reduced, full.supports, invariants, terms, spin)
 
     def solve(self, forces: np.ndarray) -> np.ndarray:

@@ -28,7 +28,8 @@ class SupportedRotor:
     rotor : ReducedRotor or SolidRotor
     supports : tuple of Support
     invariants : Invariants
-        In these coordinates, about the foot of the centre of mass on the axis.
+        In these coordinates, about the foot of the centre of mass on the axis; K4 only where the
+        level of stiffening has it.
     spin : Spin, optional
         The spin as a coordinate.
     """
@@ -75,8 +76,9 @@ class SupportedRotor:
 
     @property
     def stiffness_varies(self) -> bool:
-        """True where the stiffness of a support depends on the speed."""
-        return any(support.stiffness_varies for support in self.supports)
+        """True where supports or a static displacement have a stiffness that is not in Ω²."""
+        varies = any(support.stiffness_varies for support in self.supports)
+        return varies or self.invariants.K4 is not None
 
     @property
     def has_structural_damping(self) -> bool:

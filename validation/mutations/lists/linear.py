@@ -13,8 +13,8 @@ LINEAR = [
         ),
         (
             "centrifugal stiffness grows with the speed",
-            "K = {0: inv.K + speed**2 * self._centrifugal}",
-            "K = {0: inv.K + speed * self._centrifugal}",
+            "K = {0: inv.K + self._spin_terms.stiffness(speed)}",
+            "K = {0: inv.K + self._spin_terms.stiffness(abs(speed) ** 0.5)}",
         ),
     ),
     *mutations(

@@ -22,6 +22,11 @@ THEORY = [
             "W=invariants.G + 0.0 * second",
         ),
         ("Euler load forwards", "- acceleration * self.g", "+ acceleration * self.g"),
+        (
+            "stiffness of a static displacement reversed",
+            "centrifugal + speed**4 * self.K4",
+            "centrifugal - speed**4 * self.K4",
+        ),
     ),
     *mutations(
         "theory/motion.py",
@@ -40,6 +45,16 @@ THEORY = [
             "h once in the moment of inertia",
             "(self.spin_terms.h + self._centrifugal(zeta)) @ zeta",
             "self._centrifugal(zeta) @ zeta",
+        ),
+        (
+            "static displacement: torque reversed",
+            "force[self._spin] += now.omega**3",
+            "force[self._spin] -= now.omega**3",
+        ),
+        (
+            "static displacement: torque left out of the drive",
+            "torque -= now.omega**3 *",
+            "torque -= 0.0 *",
         ),
         ("gravity turned with the rotor", "rotation.T @ acceleration", "rotation @ acceleration"),
         (
@@ -102,6 +117,8 @@ THEORY = [
         "test_kernel.py::test_kernel_equals_the_plain_equations",
         ("Coriolis torque halved", "torque = -self._share * omega", "torque = -omega"),
         ("Euler force forwards", "factors[1] = -spin", "factors[1] = spin"),
+        ("static displacement: force reversed", "-= factors[0] ** 2 *", "+= factors[0] ** 2 *"),
+        ("static displacement: torque reversed", "torque += omega**3", "torque -= omega**3"),
         ("gravity turned the wrong way", '"rb,abv,ca->rcv"', '"rb,bav,ca->rcv"'),
         (
             "deflection's centrifugal force on the frame reversed",
