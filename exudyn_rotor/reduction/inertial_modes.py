@@ -10,11 +10,11 @@ Q is a combination of the columns of
 
     KQ − MQΛ,   MẽQ,   M eeᵀQ,   K_G Q,   DQ
 
-(K_G with K_u where that is carried) each less ``MQ`` times its work on Q. The static responses ``K⁺L`` to these loads L, with those to
-loads at the interfaces (:mod:`exudyn_rotor.reduction.attachment`), are what the basis lacks first:
-the lowest left-out modes, weighted by how much the motions in the basis excite them. Beside Q they
-make a finer rotor, and by it the error of the basis is estimated
-(:mod:`exudyn_rotor.linear.models.left_out`).
+(with K_u beside K_G where that is carried), each less ``MQ`` times its work on Q. The static
+responses ``K⁺L`` to these loads L, with those to loads at the interfaces
+(:mod:`exudyn_rotor.reduction.attachment`), are what the basis lacks first: the lowest left-out
+modes, weighted by how much the motions in the basis excite them. Beside Q they make a finer rotor,
+and by it the error of the basis is estimated (:mod:`exudyn_rotor.linear.models.left_out`).
 """
 
 from __future__ import annotations
