@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from exudyn_rotor.solid.elements import NgsolveElements
 from exudyn_rotor.solid.rigid import leaves_free
@@ -21,9 +21,10 @@ def loose_parts(nodes: np.ndarray, stiffness: sp.csr_array) -> list[np.ndarray]:
     # a node has three rows: every third row pointer starts a node
     pointers, columns = stiffness.indptr[::3].copy(), stiffness.indices // 3
     graph = sp.csr_array((np.ones(columns.size), columns, pointers), shape=2 * (len(nodes),))
-    count, numbers = connected_components(graph, directed=False)
-    if count == 1:
+    # the pattern is symmetric; one search is a tenth of the cost of all components
+    if len(breadth_first_order(graph, 0, return_predecessors=False)) == len(nodes):
         return []
+    _, numbers = connected_components(graph, directed=False)
     order = np.argsort(numbers, kind="stable")
     parts = np.split(order, np.cumsum(np.bincount(numbers))[:-1])
     parts.sort(key=len, reverse=True)
