@@ -18,12 +18,13 @@ Markers are known when the system is assembled. Importing this module therefore 
 
 from __future__ import annotations
 
-import functools
+from collections.abc import Callable
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
+from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
@@ -141,21 +142,10 @@ def _is_marker_body(mbs: exudyn.MainSystem, number: int) -> bool:
     return not (item["computeFFRFterms"] or item["massMatrixUserFunction"])
 
 
-def _install() -> None:
-    """Put the condensation in front of ``MainSystem.Assemble``, once."""
-    assemble = exudyn.MainSystem.Assemble
-    if getattr(assemble, "condenses_markers", False):
-        return
-
-    @functools.wraps(assemble)
-    def Assemble(mbs: exudyn.MainSystem) -> None:
-        for number, tilts in mbs.sys.get(_BODIES, {}).items():
-            if tilts is not None and _is_marker_body(mbs, number):
-                condense_markers(mbs, number, tilts)
-        return assemble(mbs)
-
-    Assemble.condenses_markers = True
-    exudyn.MainSystem.Assemble = Assemble
-
-
-_install()
+@wraps_method("Assemble")
+def _assemble(assemble: Callable, mbs: exudyn.MainSystem) -> None:
+    """Condense the markers of rotors first."""
+    for number, tilts in mbs.sys.get(_BODIES, {}).items():
+        if tilts is not None and _is_marker_body(mbs, number):
+            condense_markers(mbs, number, tilts)
+    assemble(mbs)

@@ -3,20 +3,19 @@
 Exudyn refuses to put objects with user functions into a dictionary, unless
 ``exudyn.special.exceptions.dictionaryNonCopyable`` is False. Those of a rotor hold nothing that
 belongs to one ``mbs``, so that ``SetDictionary`` of another one in the same process gives the same
-motion. :func:`install` therefore lets ``GetDictionary`` put that setting aside where rotors of this
+motion. ``GetDictionary`` therefore puts that setting aside where rotors of this
 package alone have user functions. Other objects are refused as before, and so is pickling:
 functions that are made at run time cannot go to another process.
 """
 
 from __future__ import annotations
 
-from functools import wraps
+from collections.abc import Callable
 
 import exudyn
 
 from exudyn_rotor.multibody.mark import mark_of
-
-_get_dictionary = exudyn.MainSystem.GetDictionary
+from exudyn_rotor.multibody.wrapping import wraps_method
 
 
 def _only_rotors_have_functions(mbs: exudyn.MainSystem) -> bool:
@@ -31,18 +30,13 @@ def _only_rotors_have_functions(mbs: exudyn.MainSystem) -> bool:
     return True
 
 
-@wraps(_get_dictionary)
-def GetDictionary(self: exudyn.MainSystem) -> dict:
+@wraps_method("GetDictionary")
+def _get_dictionary(get_dictionary: Callable, mbs: exudyn.MainSystem) -> dict:
     """Return all data of the system as Exudyn does; the functions of rotors are no obstacle."""
     exceptions = exudyn.special.exceptions
     refused = exceptions.dictionaryNonCopyable
-    exceptions.dictionaryNonCopyable = refused and not _only_rotors_have_functions(self)
+    exceptions.dictionaryNonCopyable = refused and not _only_rotors_have_functions(mbs)
     try:
-        return _get_dictionary(self)
+        return get_dictionary(mbs)
     finally:
         exceptions.dictionaryNonCopyable = refused
-
-
-def install() -> None:
-    """Put :func:`GetDictionary` in the place of Exudyn's."""
-    exudyn.MainSystem.GetDictionary = GetDictionary

@@ -12,8 +12,9 @@ from exudyn.FEM import FEMinterface
 from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
+import exudyn_rotor.multibody.copying  # noqa: F401 (its GetDictionary)
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import copying, inputs
+from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.later_stress import StressConversion, accept_stress_modes
 from exudyn_rotor.multibody.swapped_body import (
     Additions,
@@ -180,4 +181,3 @@ def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.n
 
 
 install()
-copying.install()

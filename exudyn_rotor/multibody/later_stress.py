@@ -7,9 +7,8 @@ mass-orthonormal, and virtual nodes, so such columns are converted to its coordi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import wraps
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -21,6 +20,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.mark import mark_of
 from exudyn_rotor.multibody.marker_body import stress_columns
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 _PARAMETER = "outputVariableModeBasis"
@@ -104,17 +104,15 @@ def _converted(mbs: exudyn.MainSystem, number: object, value: object) -> object:
     return value
 
 
-_set_object_parameter = exudyn.MainSystem.SetObjectParameter
-
-
-@wraps(_set_object_parameter)
-def SetObjectParameter(
-    self: exudyn.MainSystem, objectNumber: object, parameterName: str, value: object
+@wraps_method("SetObjectParameter")
+def _set_object_parameter(
+    set_parameter: Callable,
+    mbs: exudyn.MainSystem,
+    objectNumber: object,
+    parameterName: str,
+    value: object,
 ) -> None:
     """Set a parameter as Exudyn does; stress modes for a fixed-axis rotor are converted."""
-    if parameterName == _PARAMETER and self in _accepting:
-        value = _converted(self, objectNumber, value)
-    _set_object_parameter(self, objectNumber, parameterName, value)
-
-
-exudyn.MainSystem.SetObjectParameter = SetObjectParameter
+    if parameterName == _PARAMETER and mbs in _accepting:
+        value = _converted(mbs, objectNumber, value)
+    set_parameter(mbs, objectNumber, parameterName, value)

@@ -10,13 +10,12 @@ supports that are alike in all directions) is left as it is.
 
 from __future__ import annotations
 
-import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
 import exudyn
 import numpy as np
-from exudyn.misc.extensionRegistry import extends, install
 
 from exudyn_rotor.multibody.evaluation import (
     constraint_rows,
@@ -26,6 +25,7 @@ from exudyn_rotor.multibody.evaluation import (
 )
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.theory.formulation import start_values
 
 Body = TypeVar("Body", bound=RotorItems)
@@ -139,32 +139,21 @@ def _unheld(
     return force - directions @ np.linalg.lstsq(directions, force, rcond=1e-12)[0]
 
 
-def _install() -> None:
-    """Put the check behind ``MainSystem.SolveStatic``, once."""
-    solve = exudyn.MainSystem.SolveStatic
-    if getattr(solve, "checks_rotors", False):
-        return
-
-    @functools.wraps(solve)
-    def SolveStatic(mbs: exudyn.MainSystem, *given: object, **options: object) -> bool:
-        if _ROTORS not in mbs.sys:
-            return solve(mbs, *given, **options)
-        if not mbs.systemIsConsistent and options.get("autoAssemble", True):
-            mbs.Assemble()
-        saved = saved_states(mbs)
-        solved = solve(mbs, *given, **options)
-        try:
-            if solved:
-                check_static(mbs)
-        except ValueError:
-            restore_states(mbs, saved)
-            raise
-        return solved
-
-    SolveStatic.checks_rotors = True
-    # registered, or Exudyn's own would be put back with the next extension
-    extends(exudyn.MainSystem, "SolveStatic")(SolveStatic)
-    install()
-
-
-_install()
+@wraps_method("SolveStatic")
+def _solve_static(
+    solve: Callable, mbs: exudyn.MainSystem, *given: object, **options: object
+) -> bool:
+    """Solve as Exudyn does, then refuse what holds at one angle only."""
+    if _ROTORS not in mbs.sys:
+        return solve(mbs, *given, **options)
+    if not mbs.systemIsConsistent and options.get("autoAssemble", True):
+        mbs.Assemble()
+    saved = saved_states(mbs)
+    solved = solve(mbs, *given, **options)
+    try:
+        if solved:
+            check_static(mbs)
+    except ValueError:
+        restore_states(mbs, saved)
+        raise
+    return solved
