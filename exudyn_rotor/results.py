@@ -34,6 +34,7 @@ def numbers(
     finite: bool = True,
     least: float | None = None,
     most: float | None = None,
+    optional: bool = False,
 ) -> Any:
     """Describe an array of a result, for the body of its class.
 
@@ -47,6 +48,8 @@ def numbers(
         False where NaN or infinity mean something.
     least, most : float, optional
         Limits of every value.
+    optional : bool, optional
+        True for an array that may be None, and is by default.
 
     Examples
     --------
@@ -60,7 +63,7 @@ def numbers(
     Track(time=array(2,), place=array(2, 3))
     """
     told = {"shape": shape, "dtype": dtype, "finite": finite, "least": least, "most": most}
-    return field(metadata=told)
+    return field(metadata=told, **({"default": None, "kw_only": True} if optional else {}))
 
 
 def words(size: int | str, default: Any = MISSING) -> Any:
@@ -124,7 +127,8 @@ class Result:
 
     def __repr__(self) -> str:
         """Return the fields in one line: arrays by their shape, long words and tuples cut."""
-        parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in fields(self)]
+        in_order = sorted(fields(self), key=lambda item: item.kw_only)  # as the constructor
+        parts = [f"{f.name}={_short(getattr(self, f.name))}" for f in in_order]
         return f"{type(self).__name__}({', '.join(parts)})"
 
     def save(self, path: str | PathLike) -> None:

@@ -192,6 +192,8 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "RotorBody.add_marker": lambda w: {"where": [0, 1, 2, 3], "weights": [1.0, 1.0, 1.0, 2.0]},
     "RotorBody.add_node_sensor": lambda w: _sensor(node=0),
     "RotorBody.start_from": lambda w: {"state": w.steady.state()},
+    "HarmonicResponse.state": lambda w: {"frequency": w.harmonic.frequencies[0], "body": w.body},
+    "UnbalanceResponse.state": lambda w: {"speed": w.unbalance.speeds[0], "body": w.body},
     "SteadyState.interface_motion": lambda w: {"interface": "left"},
     "SteadyState.state": lambda w: {},
     "RotorBody.marker": lambda w: {"interface": "left"},

@@ -91,11 +91,9 @@ class LinearScene(SceneCoordinates):
         _check(mbs, body)
         checks.choice(about, "about", ABOUT)
         rotor = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
-        rest = np.array(mbs.systemData.GetODE2Coordinates(), dtype=float)
-        others = np.setdiff1d(np.arange(len(rest)), rotor)
-        unknowns = rotor[_without_spin(body)]
-        rest[unknowns[body.motion.formulation.translation_count :]] = 0.0
-        free = np.r_[unknowns, others]
+        alone = SceneCoordinates.of(body)
+        rest = alone.rest
+        free = np.r_[alone.free, np.setdiff1d(np.arange(len(rest)), rotor)]
         with probing(SceneCoordinates(body, free, np.eye(len(free)), rest), 0.0) as probe:
             C = [probe.constraints(angle) for angle in (0.0, 1.0, 2.5)]
         if any(X.shape != C[0].shape or np.abs(X - C[0]).max(initial=0.0) > 1e-6 for X in C):
@@ -349,12 +347,6 @@ def _nullspace(C: np.ndarray) -> np.ndarray:
     N[untouched, np.arange(len(untouched))] = 1.0
     N[touched, len(untouched) :] = kernel
     return N
-
-
-def _without_spin(body: RotorBody) -> np.ndarray:
-    """Return the rotor's unknowns among its node coordinates: translations, then modes."""
-    count = body.motion.formulation.translation_count
-    return np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
 
 
 def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:

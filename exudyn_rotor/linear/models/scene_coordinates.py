@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
@@ -32,6 +33,15 @@ class SceneCoordinates:
     free: np.ndarray
     N: np.ndarray
     rest: np.ndarray
+
+    @classmethod
+    def of(cls, body: RotorBody) -> SceneCoordinates:
+        """Return the unknowns of the rotor alone, everything else as it is now."""
+        rotor = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
+        rest = np.array(body.mbs.systemData.GetODE2Coordinates(), dtype=float)
+        free = rotor[without_spin(body)]
+        rest[free[body.motion.formulation.translation_count :]] = 0.0
+        return cls(body, free, np.eye(len(free)), rest)
 
     @property
     def size(self) -> int:
@@ -89,3 +99,28 @@ class SceneCoordinates:
             T[:c, :c] = motion.free_directions.T @ turned @ self.axes[:, :c]
             blocks.append(T @ self.N)
         return tuple(blocks)
+
+    def state(self, y: np.ndarray, y_t: np.ndarray, angle: float, speed: float) -> StartState:
+        """Return the state of the whole scene; what is no unknown is at rest.
+
+        Parameters
+        ----------
+        y, y_t : ndarray, shape (k,)
+            The unknowns and their rates.
+        angle, speed : float
+            Of the spin [rad], [rad/s].
+        """
+        T, T1, _ = self.turn(angle)
+        q, q_t = self.rest.copy(), np.zeros(len(self.rest))
+        q[self.free] += T @ y
+        q_t[self.free] = T @ y_t + speed * T1 @ y
+        spin = self.spin_coordinate
+        if spin is not None:
+            q[spin], q_t[spin] = self.spin_sign * angle, self.spin_sign * speed
+        return StartState(q, q_t, angle, speed)
+
+
+def without_spin(body: RotorBody) -> np.ndarray:
+    """Return the rotor's unknowns among its node coordinates: translations, then modes."""
+    count = body.motion.formulation.translation_count
+    return np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])

@@ -7,10 +7,18 @@ phase lies one, or a place without motion, and halving such intervals finds it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Protocol
 
 import numpy as np
 
 Motion = Mapping[int, np.ndarray]
+
+
+class Seen(Protocol):
+    """A solution, its motion harmonics (p, 6) of what is looked at."""
+
+    motion: Motion
+
 
 # phase between neighbours [rad]; at the peak of one mode 0.3 rad leave 1 − cos(0.15), 1 %, between
 _MOST_TURN = 0.3
@@ -23,36 +31,36 @@ _MOST_ADDED = 4000
 
 
 def refined(
-    solve: Callable[[np.ndarray], list[Motion]], values: np.ndarray, motions: list[Motion]
-) -> tuple[np.ndarray, list[Motion]]:
+    solve: Callable[[np.ndarray], list[Seen]], values: np.ndarray, solutions: list[Seen]
+) -> tuple[np.ndarray, list[Seen]]:
     """Add points until the phase of every motion turns little between neighbours.
 
     Parameters
     ----------
     solve : callable
-        Gives the motions, harmonics (p, 6), at an array of speeds or frequencies.
+        Gives the solutions at an array of speeds or frequencies.
     values : ndarray, shape (s,)
         Ascending speeds or frequencies [rad/s].
-    motions : list of s mappings
-        The motions there.
+    solutions : list of s solutions
+        Those there.
 
     Returns
     -------
     ndarray, list
-        All speeds or frequencies, and their motions.
+        All speeds or frequencies, and their solutions.
     """
     narrowest, start = _NARROWEST * np.ptp(values), len(values)
     for _ in range(_MOST_ROUNDS):
         wide = np.diff(values) > narrowest
-        between = np.flatnonzero(wide & (_turns(motions) > _MOST_TURN))
+        between = np.flatnonzero(wide & (_turns([one.motion for one in solutions]) > _MOST_TURN))
         if between.size == 0 or len(values) - start > _MOST_ADDED:
             break
         added = 0.5 * (values[between] + values[between + 1])
         solved = solve(added)
         values = np.insert(values, between + 1, added)
-        for count, (place, motion) in enumerate(zip(between, solved, strict=True)):
-            motions.insert(place + 1 + count, motion)
-    return values, motions
+        for count, (place, one) in enumerate(zip(between, solved, strict=True)):
+            solutions.insert(place + 1 + count, one)
+    return values, solutions
 
 
 def _turns(motions: list[Motion]) -> np.ndarray:

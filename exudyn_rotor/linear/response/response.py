@@ -14,8 +14,9 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
 from exudyn_rotor.linear.response.refinement import peak_between
+from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
-from exudyn_rotor.results import Result, numbers, words
+from exudyn_rotor.results import numbers, words
 from exudyn_rotor.units import Units
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
@@ -27,7 +28,7 @@ HERTZ = 1.0 / (2.0 * np.pi)
 
 
 @dataclass(frozen=True, eq=False)
-class Response(Result, ABC):
+class Response(RunStart, ABC):
     """Steady motion ``u(t) = Re Σ_n a_n exp(i rate_n t)`` at places of the rotor.
 
     Attributes

@@ -8,6 +8,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import Response
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import StartState, spin_at_start
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.units import Units
 
@@ -45,6 +47,39 @@ class UnbalanceResponse(Response):
     def rates(self, order: int) -> np.ndarray:
         """Return nΩ, shape (s,) [rad/s]."""
         return checks.whole_number(order, "order") * self.speeds
+
+    def state(self, speed: float, body: RotorBody, *, angle: float | None = None) -> StartState:
+        """Return the state of a scene in which a run begins in this steady motion.
+
+        The scene's supports and unbalances must be those of the response; there is no transient
+        then but for the integrator's error and what linear equations leave out. Loads such as
+        gravity are not in a response: :func:`exudyn_rotor.steady_state` has them.
+
+        Parameters
+        ----------
+        speed : float
+            One of :attr:`speeds` [rad/s].
+        body : RotorBody
+            Of the reduced rotor that the response is of, or in the scene that it is of; the system
+            is assembled. Bodies that the response does not know stand still as they are.
+        angle : float, optional
+            Spin angle θ [rad]; the one with which the rotor starts by default.
+
+        Returns
+        -------
+        StartState
+            For :meth:`RotorBody.start_from`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a response of a SolidRotor or of another rotor, a speed at which it was not
+            computed, or a system that is not assembled.
+        """
+        speed = checks.number(speed, "speed", "rad/s")
+        checks.instance(body, "body", RotorBody, "add_rotor returned it")
+        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        return self._start(speed, body, angle, speed)
 
     @property
     def _what(self) -> str:
@@ -87,6 +122,27 @@ class HarmonicResponse(Response):
     def rates(self, order: int) -> np.ndarray:
         """Return ω + nΩ, shape (s,) [rad/s]."""
         return self.frequencies + checks.whole_number(order, "order") * self.speed
+
+    def state(self, frequency: float, body: RotorBody) -> StartState:
+        """Return the state of a scene in which a run begins in this steady motion.
+
+        It is that of t = 0 and θ = 0, where the loads have the real parts of their amplitudes; see
+        :meth:`UnbalanceResponse.state`.
+
+        Parameters
+        ----------
+        frequency : float
+            One of :attr:`frequencies` [rad/s].
+        body : RotorBody
+            With the spin speed of the response.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As :meth:`UnbalanceResponse.state`.
+        """
+        frequency = checks.number(frequency, "frequency", "rad/s")
+        return self._start(frequency, body, 0.0, self.speed)
 
     @property
     def _what(self) -> str:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.models.protocol import Space
+from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_inertial_frame
 from exudyn_rotor.linear.response.harmonic_loads import (
@@ -28,6 +28,7 @@ from exudyn_rotor.linear.response.harmonic_loads import (
 from exudyn_rotor.linear.response.places import At, Place, checked_places, places
 from exudyn_rotor.linear.response.refinement import refined
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
@@ -127,21 +128,20 @@ def unbalance_response(
     observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
     space = model.space(_MODES, values[-1], loads=[load], residual=residual)
-    observation = _Observation.of(observed, frame, tolerance)
+    observation = _Observation.of(observed, frame, tolerance, model)
     task = _UnbalanceTask(space.prepared(values[values > 0.0]), load, observation)
     workers = None if space.is_shared else executor
     given = {"executor": workers, "progress": progress, "label": "unbalance response"}
-    motions = sweep(task, values, **given)
+    solved = sweep(task, values, **given)
     if refine:
 
-        def solve(added: np.ndarray) -> list[Motion]:
+        def solve(added: np.ndarray) -> list[_Solved]:
             return sweep(replace(task, space=space.prepared(added)), added, **given)
 
-        values, motions = refined(solve, values, motions)
+        values, solved = refined(solve, values, solved)
     labels = tuple(one.label for one in observed)
-    return UnbalanceResponse(
-        labels, *_collected(motions, observed, tolerance, model.radius), frame, values
-    )
+    collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
+    return UnbalanceResponse(labels, *collected, frame, values, **_kept(model, solved))
 
 
 def harmonic_response(
@@ -208,16 +208,24 @@ def harmonic_response(
     load = total(loads, model)
     fastest = max(values[-1], abs(speed))
     space = model.space(_MODES, fastest, loads=list(load.values()), residual=residual)
-    observation = _Observation.of(observed, frame, tolerance)
+    observation = _Observation.of(observed, frame, tolerance, model)
     task = _HarmonicTask(space.prepared([speed]), speed, load, observation)
     workers = None if space.is_shared else executor
     given = {"executor": workers, "progress": progress, "label": "harmonic response"}
-    motions = sweep(task, values, **given)
+    solved = sweep(task, values, **given)
     if refine:
-        values, motions = refined(partial(sweep, task, **given), values, motions)
+        values, solved = refined(partial(sweep, task, **given), values, solved)
     labels = tuple(one.label for one in observed)
-    collected = _collected(motions, observed, tolerance, model.radius)
-    return HarmonicResponse(labels, *collected, frame, values, speed)
+    collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
+    return HarmonicResponse(labels, *collected, frame, values, speed, **_kept(model, solved))
+
+
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """Harmonics (p, 6) of what is looked at, and (k,) of the coordinates if they are kept."""
+
+    motion: Motion
+    coordinates: Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,20 +235,24 @@ class _Observation:
     rows: np.ndarray
     frame: str
     tolerance: float
+    keeps: bool
 
     @classmethod
-    def of(cls, observed: Sequence[Place], frame: str, tolerance: float) -> _Observation:
-        return cls(np.array([one.motion for one in observed]), frame, tolerance)
+    def of(
+        cls, observed: Sequence[Place], frame: str, tolerance: float, model: LinearModel
+    ) -> _Observation:
+        rows = np.array([one.motion for one in observed])
+        return cls(rows, frame, tolerance, kept_basis(model) is not None)
 
-    def motion(
+    def solved(
         self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
-    ) -> Motion:
-        """Return the harmonics (p, 6) of the steady motion."""
-        solved = space.steady_motion(speed, loads, rate, self.tolerance)
-        seen = {n: self.rows @ x for n, x in solved.items()}
-        if self.frame == "rotor" or speed == 0.0:  # at θ = 0 the axes are the same
-            return seen
-        return into_inertial_frame(seen)
+    ) -> _Solved:
+        """Return the steady motion."""
+        found = space.steady_motion(speed, loads, rate, self.tolerance)
+        seen = {n: self.rows @ x for n, x in found.items()}
+        if self.frame == "inertial" and speed != 0.0:  # at θ = 0 the axes are the same
+            seen = into_inertial_frame(seen)
+        return _Solved(seen, found if self.keeps else {})
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,11 +263,14 @@ class _UnbalanceTask:
     load: np.ndarray
     observation: _Observation
 
-    def __call__(self, speed: float) -> Motion:
+    def __call__(self, speed: float) -> _Solved:
         if speed == 0.0:  # no load, and nothing that would have to hold the rotor
-            return {0: np.zeros(self.observation.rows.shape[:2])}
+            places, rows, size = self.observation.rows.shape
+            still = {0: np.zeros(size)} if self.observation.keeps else {}
+            return _Solved({0: np.zeros((places, rows))}, still)
         loads = {0: speed**2 * self.load + 0j}
-        return _folded(self.observation.motion(self.space, float(speed), loads, 0.0))
+        solved = self.observation.solved(self.space, float(speed), loads, 0.0)
+        return replace(solved, motion=_folded(solved.motion))
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,8 +282,8 @@ class _HarmonicTask:
     loads: Mapping[int, np.ndarray]
     observation: _Observation
 
-    def __call__(self, frequency: float) -> Motion:
-        return self.observation.motion(self.space, self.speed, self.loads, float(frequency))
+    def __call__(self, frequency: float) -> _Solved:
+        return self.observation.solved(self.space, self.speed, self.loads, float(frequency))
 
 
 def _folded(motion: Motion) -> Motion:
@@ -297,6 +312,18 @@ def _collected(
         keep[np.argmin(np.abs(orders))] = True
     full[:, [one.is_node for one in observed], :, 3:] = np.nan
     return np.array(orders)[keep], full[:, :, keep]
+
+
+def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray | str]:
+    """Return what a response keeps for runs that begin in it."""
+    if kept_basis(model) is None:
+        return {}
+    top = max(abs(n) for one in solved for n in one.coordinates)
+    kept = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
+    for row, one in zip(kept, solved, strict=True):
+        for n, x in one.coordinates.items():
+            row[top + n] = x
+    return {"coordinates": kept, "basis": kept_basis(model)}
 
 
 def _check(frame: str, tolerance: float, residual: float) -> None:

@@ -59,14 +59,7 @@ class SteadyState:
         turned = np.exp(1j * self.orders * angle)
         y = (turned @ self.harmonics).real
         y_t = (turned @ (1j * self.orders[:, None] * self.speed * self.harmonics)).real
-        T, T1, _ = scene.turn(angle)
-        q, q_t = scene.rest.copy(), np.zeros(len(scene.rest))
-        q[scene.free] += T @ y
-        q_t[scene.free] = T @ y_t + self.speed * T1 @ y
-        spin = scene.spin_coordinate
-        if spin is not None:
-            q[spin], q_t[spin] = scene.spin_sign * angle, scene.spin_sign * self.speed
-        return StartState(q, q_t, angle, self.speed)
+        return scene.state(y, y_t, angle, self.speed)
 
     def interface_motion(self, interface: str, angle: float | None = None) -> np.ndarray:
         """Return displacement [m] and rotation [rad] of an interface, shape (6,).

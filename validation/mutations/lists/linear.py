@@ -162,8 +162,8 @@ LINEAR = [
         ),
         (
             "motion in the inertial frame as in the rotor frame",
-            'if self.frame == "rotor" or speed == 0.0:',
-            'if self.frame == "inertial" or speed == 0.0:',
+            'if self.frame == "inertial" and speed != 0.0:',
+            'if self.frame == "rotor" and speed != 0.0:',
         ),
         (
             "harmonics folded to the wrong sense",
@@ -187,6 +187,36 @@ LINEAR = [
             "harmonic of the spin at the wrong side of the force",
             'return self.frequencies + checks.whole_number(order, "order") * self.speed',
             'return self.frequencies - checks.whole_number(order, "order") * self.speed',
+        ),
+    ),
+    *mutations(
+        "linear/response/run_start.py",
+        "test_run_start.py",
+        ("rates of a steady motion reversed", "(1j * rates[:, None]", "(-1j * rates[:, None]"),
+        (
+            "harmonics turned against the angle",
+            "np.exp(1j * orders * angle)",
+            "np.exp(-1j * orders * angle)",
+        ),
+        (
+            "frame of an eccentric rotor left on the axis",
+            "(A - motion.orientation) @ across",
+            "0.0 * across",
+        ),
+        (
+            "frame of an eccentric rotor without its velocity",
+            "q_t[places] += speed *",
+            "q_t[places] += 0.0 *",
+        ),
+        (
+            "rigid translation not scaled by the mass",
+            "@ f[: len(held)] / source.invariants.mass",
+            "@ f[: len(held)]",
+        ),
+        (
+            "spin of the frame about the centre of mass, not the origin",
+            "source.invariants.moved(origin - source.center_of_mass).g",
+            "source.invariants.g",
         ),
     ),
     *mutations(
@@ -276,12 +306,12 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/response/steady_state.py",
+        "linear/models/scene_coordinates.py",
         "test_steady_state.py",
         (
             "velocity of the turning axes reversed",
-            "T @ y_t + self.speed * T1 @ y",
-            "T @ y_t - self.speed * T1 @ y",
+            "T @ y_t + speed * T1 @ y",
+            "T @ y_t - speed * T1 @ y",
         ),
     ),
     *mutations(

@@ -1,0 +1,187 @@
+"""Runs that begin in the steady motion of a linear response.
+
+A response keeps the coordinates of its model in harmonics, seen from the rotor: those of the
+reduced rotor's basis x, or those of the scene y. Of a reduced rotor, ``x = F f + T ζ`` with the
+motions F of the frame that its formulation has, and the basis Ψ = Q T of its modal coordinates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import StartState
+from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.results import Result, numbers
+from exudyn_rotor.theory.nodal import skew
+
+BASES = ("rotor", "scene")
+_SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
+_SAME_MOTION = 1e-6  # share of the largest motion of an interface that is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class RunStart(Result):
+    """What a response keeps for runs that begin in its motion.
+
+    Attributes
+    ----------
+    coordinates : ndarray of complex, shape (s, 2 N + 1, k), optional
+        Harmonics −N … N of the model's coordinates, rotor frame; None for a SolidRotor.
+    basis : {'rotor', 'scene'}, optional
+        Whether these are of the reduced rotor's basis or of a scene.
+    """
+
+    coordinates: np.ndarray | None = numbers(
+        "abscissa", "harmonics", "coordinates", dtype=complex, optional=True
+    )
+    basis: str | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.coordinates is None) != (self.basis is None):
+            raise ValueError("coordinates, basis: need each other; give both, or none")
+        if self.basis is not None:
+            checks.choice(self.basis, "basis", BASES)
+            if self.coordinates.shape[1] % 2 == 0:
+                raise ValueError(
+                    "coordinates: need the harmonics −N … N, an odd number, got "
+                    f"{self.coordinates.shape[1]}"
+                )
+
+    def _start(self, value: float, body: RotorBody, angle: float, speed: float) -> StartState:
+        """Return the state of a scene at a computed speed or frequency."""
+        checks.instance(body, "body", RotorBody, "add_rotor returned it")
+        body.check_assembled()
+        index = self._computed_at(value)
+        scene = self._scene(body)
+        top = self.coordinates.shape[1] // 2
+        orders = np.arange(-top, top + 1)
+        turned = np.exp(1j * orders * angle)[:, None] * self.coordinates[index]
+        rates = np.array([self.rates(int(n))[index] for n in orders])
+        x, x_t = turned.sum(axis=0).real, (1j * rates[:, None] * turned).sum(axis=0).real
+        if self.basis == "scene":
+            state = scene.state(x, x_t, angle, speed)
+        else:
+            (y, turn), (y_t, turn_t) = (_in_body(body, one) for one in (x, x_t))
+            # a free spin departs from the mean rotation
+            state = scene.state(y, y_t, angle + turn, speed + turn_t)
+            state = replace(state, angle=angle, speed=speed)
+        return _with_carried_frame(scene, state, angle, speed)
+
+    def _computed_at(self, value: float) -> int:
+        """Return where a speed or frequency stands among the computed ones."""
+        if self.coordinates is None:
+            raise ValueError(
+                "state: this response was computed without component modes, on a SolidRotor; "
+                "compute it for the ReducedRotor that was added to the scene, or for the scene"
+            )
+        index = int(np.argmin(np.abs(self.abscissa - value)))
+        nearest = self.abscissa[index]
+        if abs(nearest - value) > _SAME_SPEED * abs(value):
+            raise ValueError(
+                f"state: the response was not computed at {value:g} rad/s, the nearest is "
+                f"{nearest:g} rad/s; compute it there, too"
+            )
+        return index
+
+    def _scene(self, body: RotorBody) -> SceneCoordinates:
+        """Return the coordinates of the scene, the rotor at rest, if the response is of it."""
+        if body.formulation.moves_origin:
+            raise ValueError(
+                f"body: rotor {body.name!r} follows a prescribed translation; a response has none"
+            )
+        if self.basis == "scene":
+            scene = LinearScene.of(body.mbs, body)
+            size, motion = scene.size, scene.interface_motion
+            known = scene.interfaces
+        else:
+            scene = SceneCoordinates.of(body)
+            source = body.selection.source
+            size, known = source.size, source.interfaces
+            axes = np.kron(np.eye(2), axes_of(source.axis).T)
+
+            def motion(name: str) -> np.ndarray:
+                return axes @ source.interfaces[name].motion
+
+        rest = scene.rest.copy()
+        rest[scene.free[: scene.count]] = 0.0
+        if self.coordinates.shape[2] == size and all(
+            self._is_motion(place, motion(name))
+            for place, name in enumerate(self.places)
+            if name in known
+        ):
+            return replace(scene, rest=rest)
+        raise ValueError(
+            f"body: the response is of another {self.basis} than that of rotor {body.name!r}, or "
+            "of another reduction; compute it with what was added to the scene"
+        )
+
+    def _is_motion(self, place: int, rows: np.ndarray) -> bool:
+        """Return whether coordinates and motion of a place agree, at θ = 0 where it is largest."""
+        seen = self.motion[:, place].sum(axis=1).real
+        index = int(np.abs(seen[:, :3]).max(axis=1).argmax())
+        x = self.coordinates[index].sum(axis=0).real
+        off = np.abs(seen[index] - rows @ x)[:3].max()
+        return bool(off <= _SAME_MOTION * np.abs(self.motion[:, place, :, :3]).max())
+
+
+def kept_basis(model: LinearModel) -> str | None:
+    """Return the basis of a model's coordinates that a response keeps; None to keep none."""
+    if isinstance(model, LinearScene):
+        return "scene"
+    return "rotor" if isinstance(model, LinearRotor) else None
+
+
+def _in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return the unknowns y of a rotor in axes that turn with it, and the turn of a free spin."""
+    selection, source = body.selection, body.selection.source
+    count = body.formulation.translation_count
+    held = [
+        index
+        for index, kind in enumerate(source.kinds)
+        if kind in (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2)[:count]
+        or (kind is ModeKind.AXIAL and count == 3)
+    ]
+    frame = [np.eye(source.size)[:, held]]
+    if body.formulation.has_spin:
+        frame.append(_unit_spin(source, selection.origin)[:, None])
+    f = np.linalg.lstsq(np.hstack([*frame, selection.T]), x, rcond=None)[0]
+    # displacement of a rigid translation by its columns, S/m
+    shift = source.invariants.S[:, held] @ f[: len(held)] / source.invariants.mass
+    turning = axes_of(source.axis)[:, : SceneCoordinates.of(body).count].T @ shift
+    zeta = f[len(f) - selection.T.shape[1] :]
+    spin = float(f[len(held)]) if body.formulation.has_spin else 0.0
+    return np.r_[turning, zeta], spin
+
+
+def _unit_spin(source: ReducedRotor, origin: np.ndarray) -> np.ndarray:
+    """Return a rotation of 1 rad about the axis through `origin`, in the reduced basis."""
+    return source.invariants.moved(origin - source.center_of_mass).g
+
+
+def _with_carried_frame(
+    scene: SceneCoordinates, state: StartState, angle: float, speed: float
+) -> StartState:
+    """Add the circle on which an eccentric rotor about its axis carries the frame's origin."""
+    body, count = scene.body, scene.count
+    if not count:
+        return state
+    motion = body.motion
+    across = body.axis.radial(body.frame.origin)
+    A = motion.orientation @ body.axis.rotation(angle)
+    e = skew(body.axis.direction)
+    q, q_t = state.q.copy(), state.q_t.copy()
+    places = scene.free[:count]
+    q[places] += motion.free_directions.T @ (A - motion.orientation) @ across
+    q_t[places] += speed * motion.free_directions.T @ A @ e @ across
+    return replace(state, q=q, q_t=q_t)
