@@ -31,9 +31,10 @@ def test_licence_is_the_one_of_the_file():
     assert read("LICENSE").startswith("BSD 3-Clause License")
 
 
-def test_public_names_are_there_and_sorted():
+def test_public_names_are_there_sorted_and_with_an_example():
     assert exudyn_rotor.__all__ == sorted(exudyn_rotor.__all__)
-    assert all(getattr(exudyn_rotor, name).__doc__ for name in exudyn_rotor.__all__)
+    for name in exudyn_rotor.__all__:
+        assert ">>> " in getattr(exudyn_rotor, name).__doc__, f"{name} lacks an example"
 
 
 def test_contributing_names_files_that_exist():

@@ -59,6 +59,15 @@ class RunCheck:
     instants : int
         How many instants were looked at; 1 if ``body.start_recording()`` was not called before the
         run, so that only the end state is known.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import RunCheck
+    >>> from exudyn_rotor.advice.check_result import CheckRow
+    >>> row = CheckRow("tilt", "largest tilt [rad]", 0.02, 0.01, "use a smaller unbalance")
+    >>> check = RunCheck((row,), instants=100)
+    >>> check.ok, check.failed[0].name
+    (False, 'tilt')
     """
 
     rows: tuple[CheckRow, ...]

@@ -54,6 +54,14 @@ class Proposal:
         Range of the spin speed that this holds for [rad/s].
     accuracy : float
     reasons : tuple of str
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Proposal
+    >>> modes, speeds = {"modes": (0, 1), "labels": ("a", "b"), "total": 2}, (20.0, 20.0)
+    >>> Proposal("none", 20.0, "tilt", **modes, error=0.0, step=1e-4, speeds=speeds,
+    ...          accuracy=1e-3, reasons=()).step
+    0.0001
     """
 
     translation: str

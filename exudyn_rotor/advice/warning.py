@@ -2,4 +2,14 @@
 
 
 class AssumptionWarning(UserWarning):
-    """An assumption of the model does not hold, or its error exceeds what was asked for."""
+    """An assumption of the model does not hold, or its error exceeds what was asked for.
+
+    Examples
+    --------
+    An error instead, for scripts that nobody watches:
+
+    >>> import warnings
+    >>> from exudyn_rotor import AssumptionWarning
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", AssumptionWarning)
+    """

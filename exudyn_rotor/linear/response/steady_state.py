@@ -26,6 +26,19 @@ class SteadyState:
     orders : ndarray of int, shape (h,)
     harmonics : ndarray of complex, shape (h, k)
         ``y = Re Σ y_n exp(inΩt)``.
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor, steady_state
+    >>> nodes = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]]
+    >>> rotor = SolidRotor.from_matrices(np.eye(6), 1e6 * np.eye(6), nodes, "z")
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(6), spin=10.0, translation="none")
+    >>> mbs.Assemble()
+    >>> steady_state(body)
+    SteadyState('rotor' at 10 rad/s)
     """
 
     scene: LinearScene
