@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from exudyn_rotor import checks
+from exudyn_rotor.threads import one_thread
 
 Value = TypeVar("Value")
 Result = TypeVar("Result")
@@ -20,6 +21,7 @@ Result = TypeVar("Result")
 _MOST_TASKS = 64
 
 
+@one_thread()
 def sweep(
     function: Callable[[Value], Result],
     values: Iterable[Value],
@@ -29,6 +31,8 @@ def sweep(
     label: str = "",
 ) -> list[Result]:
     """Return ``[function(value) for value in values]``, computed by `executor`.
+
+    Each value on one thread of BLAS and LAPACK, see :mod:`exudyn_rotor.threads`.
 
     Parameters
     ----------
@@ -110,6 +114,7 @@ def _result(future: Future, label: str) -> list[Result]:
         ) from error
 
 
+@one_thread()
 def _chunk(function: Callable, values: list, label: str) -> list[Result]:
     return [_named(function, value, label) for value in values]
 

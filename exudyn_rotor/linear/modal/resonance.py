@@ -27,6 +27,7 @@ from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.threads import one_thread
 
 # share of a mode's energy that must turn with the excitation
 _SHARE = 0.4
@@ -53,6 +54,7 @@ class Resonance:
     vectors: np.ndarray
 
 
+@one_thread()
 def resonances(
     model: LinearModel,
     content: WhirlContent,

@@ -10,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.linear.periodic.eigenvalues import groups
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.threads import one_thread
 
 # how strongly a jump in frequency counts against a likeness of shapes
 _JUMP_WEIGHT = 0.5
@@ -36,6 +37,7 @@ class Tracks:
     continued: np.ndarray
 
 
+@one_thread()
 def track(
     modes: Sequence[FloquetModes],
     speeds: np.ndarray,

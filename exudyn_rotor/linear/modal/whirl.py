@@ -10,11 +10,13 @@ Dynamics of Rotating Systems (2005).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
+from exudyn_rotor.threads import one_thread
 
 WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
 FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))
@@ -42,8 +44,8 @@ class WhirlContent:
     ----------
     orders : ndarray of int, shape (o,)
         The waves n, from −4 to 4.
-    waves : tuple of ndarray, each (p, c)
-        Amplitudes of wave n per coordinate; their squared norm is its energy.
+    waves : ndarray, shape (o, p, c)
+        Amplitudes of each wave per coordinate; their squared norm is its energy.
     axial, tangential, radial, whole : ndarray, shape (p, c)
         Amplitudes of the axial part of n = 0, of the motion along the circumference and along the
         radius, and of the whole motion.
@@ -54,7 +56,7 @@ class WhirlContent:
     """
 
     orders: np.ndarray
-    waves: tuple[np.ndarray, ...]
+    waves: np.ndarray
     axial: np.ndarray
     tangential: np.ndarray
     radial: np.ndarray
@@ -72,6 +74,7 @@ class WhirlContent:
         return cls.from_points(model.point_motions(_SAMPLES))
 
     @classmethod
+    @one_thread()
     def from_points(cls, points: PointMotions) -> WhirlContent:
         """Build the content from points and their motions."""
         return cls(*_operators(points.points, points.motion), points.rows, points.is_mesh)
@@ -82,14 +85,15 @@ class WhirlContent:
             return self
         V = self._chosen(basis[None])[0]
         parts = {
-            name: getattr(self, name) @ V for name in ("axial", "tangential", "radial", "whole")
+            name: getattr(self, name) @ V
+            for name in ("waves", "axial", "tangential", "radial", "whole")
         }
-        return replace(self, waves=tuple(wave @ V for wave in self.waves), rows=None, **parts)
+        return replace(self, rows=None, **parts)
 
     def energies(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of each wave (h, o, k) of `vectors` (h, c, k)."""
-        chosen = self._chosen(vectors)
-        return np.stack([_energy(wave, chosen) for wave in self.waves], axis=1)
+        moved = self.waves @ self._chosen(vectors)[:, None]
+        return np.sum(moved.real**2 + moved.imag**2, axis=2)
 
     def polarised(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
         """Turn modes (h, c, g) of one eigenvalue so that each holds waves of one sense.
@@ -103,9 +107,9 @@ class WhirlContent:
         if lengths[-1] < 1e-3 * lengths[0]:  # copies of a defective eigenvalue: one vector only
             return vectors
         chosen = self._chosen(span.reshape(shape))
-        mean = sum(
-            _gram(wave, chosen, orders + n) for n, wave in zip(self.orders, self.waves, strict=True)
-        )
+        moved = self.waves @ chosen[:, None]
+        seen = np.add.outer(orders, self.orders)
+        mean = np.einsum("ho,hopi,hopj->ij", seen, moved.conj(), moved)
         # 0.4 lies between the waves, so that axial motion parts from torsion
         mean = mean + _gram(self.axial, chosen, 0.4 + 0.0 * orders)
         whole = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
@@ -200,16 +204,7 @@ def _operators(points: np.ndarray, motion: np.ndarray) -> tuple:
     fits = wave_fits(points, _HIGHEST + 1)
     orders = np.arange(-_HIGHEST, _HIGHEST + 1)
     # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
-    waves = tuple(
-        np.vstack(
-            [
-                fits[1 - n] @ a,
-                fits[-1 - n] @ b,
-                fits[-n] @ ue,
-            ]
-        )
-        for n in orders
-    )
+    waves = _alike([np.vstack([fits[1 - n] @ a, fits[-1 - n] @ b, fits[-n] @ ue]) for n in orders])
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
     radial = np.cos(angle) * u1 + np.sin(angle) * u2
     tangential = np.cos(angle) * u2 - np.sin(angle) * u1
@@ -222,6 +217,15 @@ def _small(matrix: np.ndarray) -> np.ndarray:
     if matrix.shape[0] <= matrix.shape[1]:
         return matrix
     return np.linalg.qr(matrix, mode="r")
+
+
+def _alike(matrices: Sequence[np.ndarray]) -> np.ndarray:
+    """Return matrices with the same Gram matrices and equally many rows, in one array."""
+    small = [_small(X) for X in matrices]
+    result = np.zeros((len(small), max(map(len, small)), small[0].shape[1]), dtype=complex)
+    for rows, X in zip(result, small, strict=True):
+        rows[: len(X)] = X
+    return result
 
 
 def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
@@ -248,18 +252,16 @@ def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
         2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z), _AXIAL_TERMS - 1
     )
     direction = scaled * np.exp(1j * np.arctan2(y, x))
+    fields = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
     known = np.zeros((len(points), 0), dtype=complex)
-    spaces = {0: np.zeros((len(points), 0), dtype=complex)}
+    spaces: dict[int, np.ndarray] = {}
     for count in range(highest + 1):
-        turn = direction[:, None] ** count
-        forward = np.hstack(
-            [turn * along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)]
-        )
-        # both senses at once, so that neither is preferred
-        both = {count: forward, -count: forward.conj()}
-        for wave, fields in both.items():
-            spaces[wave] = _new_fields(fields, known)
-        known = np.linalg.qr(np.hstack([known, *(spaces[wave] for wave in both)]))[0]
+        forward = _new_fields(direction[:, None] ** count * fields, known)
+        # both senses at once, so that neither is preferred: one has the conjugate fields
+        spaces |= {count: forward, -count: forward.conj()}
+        added = [forward, forward.conj()] if count else [forward]
+        if count < highest:
+            known = np.linalg.qr(np.hstack([known, *added]))[0]
     fit = np.linalg.pinv(np.hstack(list(spaces.values())), rcond=1e-6)
     ends = np.cumsum([space.shape[1] for space in spaces.values()])
     return dict(zip(spaces, np.split(fit, ends[:-1]), strict=True))
