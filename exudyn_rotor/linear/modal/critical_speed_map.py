@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import excitation
-from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, checked, critical_speeds
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS
+from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, checked, critical_speeds_of
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
@@ -184,16 +185,12 @@ def critical_speed_map(
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
     supports = checked_supports(supports)
-    order, max_speed, _ = checked(order, max_speed, nodal_diameters)
+    order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", LEVELS)
     options.check_sweep(executor, progress)
-    given = {
-        "order": order,
-        "max_speed": max_speed,
-        "nodal_diameters": nodal_diameters,
-        "stiffening": stiffening,
-    }
-    task = partial(_at_stiffness, target, names, supports, given)
+    content = WhirlContent.of(linear_model(target, supports=supports, stiffening=stiffening))
+    given = {"content": content, "order": order, "waves": waves, "max_speed": max_speed}
+    task = partial(_at_stiffness, target, names, supports, stiffening, given)
     solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
     most = max(len(entry.speeds) for entry in solved)
     speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
@@ -208,8 +205,10 @@ def _at_stiffness(
     target: ReducedRotor | SolidRotor,
     names: tuple[str, ...],
     supports: tuple[Support, ...],
+    stiffening: str,
     given: dict,
     stiffness: float,
 ) -> CriticalSpeeds:
     varied = tuple(Support(name, stiffness) for name in names)
-    return critical_speeds(target, supports=supports + varied, **given)
+    model = linear_model(target, supports=supports + varied, stiffening=stiffening)
+    return critical_speeds_of(model.undamped(), **given)

@@ -15,6 +15,7 @@ from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
@@ -158,7 +159,24 @@ def critical_speeds(
     tolerance = options.accuracy(tolerance, "tolerance")
     residual = options.accuracy(residual, "residual")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
-    content = WhirlContent.of(model)
+    return critical_speeds_of(
+        model, WhirlContent.of(model), order, waves, max_speed, tolerance, residual
+    )
+
+
+def critical_speeds_of(
+    model: LinearModel,
+    content: WhirlContent,
+    order: float,
+    waves: Sequence[int],
+    max_speed: float | None,
+    tolerance: float = 1e-9,
+    residual: float = 1e-5,
+) -> CriticalSpeeds:
+    """Return the critical speeds of an undamped model; arguments as :func:`checked` returns them.
+
+    The `content` is that of the rotor, whatever its supports are.
+    """
     critical = resonances(model, content, order, waves, max_speed, tolerance, residual)
     return _collected(critical, content, order, model.size)
 
@@ -186,21 +204,27 @@ def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
 def _collected(
     critical: list[Resonance], content: WhirlContent, order: float, size: int
 ) -> CriticalSpeeds:
-    words, diameters, rotating, vectors = [], [], [], []
-    for entry in critical:
-        strongest = np.argmax(np.linalg.norm(entry.vectors, axis=1))
-        _, code, n = content.classify(
-            entry.vectors[:, :, None], entry.multiples, np.zeros(1), entry.speed
+    count = len(critical)
+    speeds = np.array([entry.speed for entry in critical])
+    codes, diameters = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
+    # together where the harmonics are the same, which is faster
+    alike: dict[bytes, list[int]] = {}
+    for index, entry in enumerate(critical):
+        alike.setdefault(entry.multiples.tobytes(), []).append(index)
+    for group in alike.values():
+        vectors = np.stack([critical[index].vectors for index in group], axis=2)
+        multiples = critical[group[0]].multiples
+        _, codes[group], diameters[group] = content.classify(
+            vectors, multiples, np.zeros(len(group)), speeds[group]
         )
-        words.append(WHIRLS[code[0]])
-        diameters.append(n[0])
-        rotating.append(abs(entry.multiples[strongest]) * entry.speed)
-        vectors.append(entry.vectors[strongest])
+    strongest = [np.argmax(np.linalg.norm(entry.vectors, axis=1)) for entry in critical]
+    rates = [abs(entry.multiples[row]) for entry, row in zip(critical, strongest, strict=True)]
+    shapes = [entry.vectors[row] for entry, row in zip(critical, strongest, strict=True)]
     return CriticalSpeeds(
         order=order,
-        speeds=np.array([entry.speed for entry in critical]),
-        frequencies_rotor=np.array(rotating),
-        whirl=tuple(words),
-        nodal_diameters=np.array(diameters, dtype=np.int64),
-        vectors=np.array(vectors, dtype=complex).reshape(-1, size).T,
+        speeds=speeds,
+        frequencies_rotor=np.array(rates) * speeds,
+        whirl=tuple(WHIRLS[code] for code in codes),
+        nodal_diameters=diameters,
+        vectors=np.array(shapes, dtype=complex).reshape(-1, size).T,
     )

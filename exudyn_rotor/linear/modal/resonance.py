@@ -311,30 +311,28 @@ def _turning(
     candidates: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
 ) -> list[Resonance]:
     """Keep motions that turn with the excitation; of a motion and its conjugate, one."""
-    chosen = []
+    if not candidates:
+        return []
     ascending = sorted(candidates, key=lambda entry: entry.speed)
-    for group in _same_speed(ascending, lambda entry: entry.speed):
-        multiples = group[0].multiples
-        vectors = np.stack([entry.vectors for entry in group], axis=2)
-        vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(group)), axis=0)
+    multiples = ascending[0].multiples
+    vectors = np.stack([entry.vectors for entry in ascending], axis=2)
+    vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(ascending)), axis=0)
+    for group in _same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
         if len(group) > 1:
-            vectors = content.polarised(vectors, multiples)
-        seen = multiples[:, None] + content.orders[None, :]
-        energy = content.energies(vectors)
-        total = np.maximum(content.whole_energy(vectors), 1e-300)
-        meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(
-            np.abs(content.orders), np.abs(waves)
-        )
-        turning = np.sum(energy * meets[..., None], axis=(0, 1))
-        mean = np.einsum("ho,hok->k", seen, energy)
-        for column, entry in enumerate(group):
-            conjugate = mean[column] < -_CONJUGATE * order * total[column]
-            if turning[column] >= _SHARE * total[column] and not conjugate:
-                chosen.append(Resonance(entry.speed, multiples, vectors[:, :, column]))
-    return chosen
+            vectors[:, :, group] = content.polarised(vectors[:, :, group], multiples)
+    seen = multiples[:, None] + content.orders[None, :]
+    energy = content.energies(vectors)
+    total = np.maximum(content.whole_energy(vectors), 1e-300)
+    meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(np.abs(content.orders), np.abs(waves))
+    turning = np.sum(energy * meets[..., None], axis=(0, 1))
+    conjugate = np.einsum("ho,hok->k", seen, energy) < -_CONJUGATE * order * total
+    return [
+        Resonance(ascending[column].speed, multiples, vectors[:, :, column])
+        for column in np.flatnonzero((turning >= _SHARE * total) & ~conjugate)
+    ]
 
 
-def _same_speed(entries: list[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
+def _same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
     """Return ascending entries in groups of one speed."""
     groups: list[list[Entry]] = []
     for entry in entries:

@@ -109,7 +109,8 @@ class WhirlContent:
         chosen = self._chosen(span.reshape(shape))
         moved = self.waves @ chosen[:, None]
         seen = np.add.outer(orders, self.orders)
-        mean = np.einsum("ho,hopi,hopj->ij", seen, moved.conj(), moved)
+        weighted = seen[:, :, None, None] * moved.conj()
+        mean = np.tensordot(weighted, moved, ((0, 1, 2), (0, 1, 2)))
         # 0.4 lies between the waves, so that axial motion parts from torsion
         mean = mean + _gram(self.axial, chosen, 0.4 + 0.0 * orders)
         whole = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
@@ -121,7 +122,7 @@ class WhirlContent:
         return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
 
     def classify(
-        self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float
+        self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float | np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return inertial frequency [rad/s], index into :data:`WHIRLS`, and nodal diameter.
 
@@ -132,7 +133,7 @@ class WhirlContent:
         orders : ndarray of int, shape (h,)
         nu : ndarray, shape (k,)
             Frequencies in the rotor frame, ≥ 0 [rad/s].
-        speed : float
+        speed : float, or ndarray of shape (k,)
             Ω [rad/s].
 
         Notes
@@ -144,8 +145,8 @@ class WhirlContent:
         energy = self.energies(vectors)  # (h, o, k)
         n = self.orders[None, :, None]
         seen = nu + (orders[:, None, None] + n) * speed
-        turns = np.sign(n * seen) * (np.sign(speed) or 1.0)
-        turns = np.where(np.abs(seen) <= _STATIC * abs(speed), 0.0, turns)
+        turns = np.sign(n * seen) * np.where(np.less(speed, 0.0), -1.0, 1.0)
+        turns = np.where(np.abs(seen) <= _STATIC * np.abs(speed), 0.0, turns)
         flat = energy.reshape(-1, energy.shape[2])
         best = np.argmax(flat, axis=0)
         columns = np.arange(flat.shape[1])

@@ -32,6 +32,7 @@ from exudyn_rotor.linear.periodic.verified import verified
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 _ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
@@ -232,6 +233,7 @@ class _Task:
     method: str
     tolerance: float
 
+    @one_thread()
     def __call__(self, speed: float) -> tuple[np.ndarray, float, float]:
         values, system = self.space.exponents(speed, self.method, self.tolerance)
         limits = _growth_limits(values, system, self.tolerance)
