@@ -8,6 +8,13 @@ from exudyn_rotor.advice.check_result import RunCheck
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.evaluation.level_one import (
+    StabilityLevelOne,
+    anticipated_cross_coupling,
+    stability_level_one,
+)
+from exudyn_rotor.evaluation.placement import bearing_masses, standard_unbalances
+from exudyn_rotor.evaluation.separation import SeparationMargins, separation_margins
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
@@ -81,9 +88,11 @@ __all__ = [
     "RigidDisc",
     "RotorBody",
     "RunCheck",
+    "SeparationMargins",
     "SolidRotor",
     "SpinAxis",
     "Stability",
+    "StabilityLevelOne",
     "StabilityMap",
     "StartState",
     "SteadyState",
@@ -94,6 +103,8 @@ __all__ = [
     "Unbalance",
     "UnbalanceResponse",
     "add_rotor",
+    "anticipated_cross_coupling",
+    "bearing_masses",
     "campbell",
     "check_run",
     "craig_bampton_modes",
@@ -108,10 +119,13 @@ __all__ = [
     "propose",
     "recommended_settings",
     "select_modes",
+    "separation_margins",
     "spinning_modes",
     "stability",
+    "stability_level_one",
     "stability_map",
     "stability_threshold",
+    "standard_unbalances",
     "steady_state",
     "stress_history",
     "unbalance_response",

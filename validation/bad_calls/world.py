@@ -205,6 +205,17 @@ class World:
         return er.stability(self.reduced, SPEEDS, supports=self.supports)
 
     @cached_property
+    def separation(self) -> er.SeparationMargins:
+        """The peaks of `unbalance`."""
+        return er.separation_margins(self.unbalance, (500.0, 800.0))
+
+    @cached_property
+    def level_one(self) -> er.StabilityLevelOne:
+        """Log decrements over a cross-coupling."""
+        given = {"at": "left", "supports": self.supports}
+        return er.stability_level_one(self.reduced, 300.0, 1e4, **given)
+
+    @cached_property
     def stability_map(self) -> er.StabilityMap:
         """Growth over stiffness and speed."""
         return er.stability_map(self.build, [1e6, 2e6], SPEEDS)

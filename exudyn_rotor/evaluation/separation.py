@@ -1,0 +1,300 @@
+"""Amplification factors and separation margins of an unbalance response.
+
+Source: API RP 684, 2nd ed. (2005), standard paragraphs SP6.8.2.1 (amplification factor) and
+SP6.8.2.10 (separation margins); API 617 asks for the same.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+from scipy.signal import find_peaks
+
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
+from exudyn_rotor.linear.response.refinement import peak_between
+from exudyn_rotor.linear.response.responses import UnbalanceResponse
+from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.units import Units
+
+_CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
+_RIPPLE = 1e-3  # share of its size by which a peak stands above the valleys beside it
+_HALF_POWER = np.sqrt(0.5)
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class SeparationMargins(Result):
+    """Peaks of an unbalance response, how sharp they are, and how far from the operating speeds.
+
+    Attributes
+    ----------
+    places : tuple of str, length p
+        Where each peak was seen.
+    peaks, sizes : ndarray, shape (p,)
+        Critical speed N_c [rad/s] and major semi-axis of the orbit there [m].
+    half_power : ndarray, shape (p, 2)
+        Speeds N₁ and N₂ beside the peak where the size is 0.707 of it [rad/s]; NaN where the
+        response does not fall so far before it ends or rises again.
+    amplification : ndarray, shape (p,)
+        ``AF = N_c / (N₂ − N₁)``; by one side alone, twice its distance, where the other is NaN;
+        NaN where both are.
+    required, actual : ndarray, shape (p,)
+        Separation margins, as shares of the lowest operating speed for peaks below it, of the
+        highest for peaks above. Within the operating speeds the actual margin is 0.
+    operating_range : ndarray, shape (2,)
+        Lowest and highest operating speed [rad/s].
+    observed : tuple of str, length o
+        Places of the curves.
+    speeds : ndarray, shape (s,)
+        Speeds of the curves [rad/s].
+    curves : ndarray, shape (o, s)
+        Major semi-axes [m].
+
+    Examples
+    --------
+    >>> from exudyn_rotor import SeparationMargins
+    >>> result = SeparationMargins(
+    ...     ("left",), [300.0], [1e-5], [[290.0, 310.0]], [15.0], [0.157], [0.25], [400.0, 500.0],
+    ...     ("left",), [200.0, 300.0, 500.0], [[1e-6, 1e-5, 2e-6]])
+    >>> print(result.table(units="SI"))
+    operating range 400 to 500 rad/s
+      peak [rad/s]  size [µm]      AF   N1, N2 [rad/s]     margin  required  verdict  place
+             300.0         10    15.0     290.0, 310.0     25.0 %    15.7 %  ok       left
+    """
+
+    places: tuple[str, ...] = words("peaks")
+    peaks: np.ndarray = numbers("peaks")
+    sizes: np.ndarray = numbers("peaks", least=0.0)
+    half_power: np.ndarray = numbers("peaks", 2, finite=False)
+    amplification: np.ndarray = numbers("peaks", finite=False)
+    required: np.ndarray = numbers("peaks", least=0.0)
+    actual: np.ndarray = numbers("peaks", least=0.0)
+    operating_range: np.ndarray = numbers(2, least=0.0)
+    observed: tuple[str, ...] = words("observed")
+    speeds: np.ndarray = numbers("speeds")
+    curves: np.ndarray = numbers("observed", "speeds", least=0.0)
+
+    @property
+    def within(self) -> np.ndarray:
+        """Which peaks lie within the operating speeds, shape (p,)."""
+        low, high = self.operating_range
+        return (self.peaks >= low) & (self.peaks <= high)
+
+    @property
+    def accepted(self) -> np.ndarray:
+        """Which peaks are critically damped, AF < 2.5, or far enough away, shape (p,)."""
+        damped = self.amplification < _CRITICALLY_DAMPED
+        apart = ~self.within & (self.actual >= self.required) & ~np.isnan(self.amplification)
+        return damped | apart
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns, one row for each peak."""
+        shown = Units.of(units)
+        return {
+            "place": np.array(self.places, dtype=str),
+            f"peak [{shown.speed}]": shown.speeds(self.peaks),
+            "size [m]": self.sizes,
+            f"N1 [{shown.speed}]": shown.speeds(self.half_power[:, 0]),
+            f"N2 [{shown.speed}]": shown.speeds(self.half_power[:, 1]),
+            "amplification factor": self.amplification,
+            "margin": self.actual,
+            "required": self.required,
+            "accepted": self.accepted,
+        }
+
+    def table(self, *, units: str = "rpm") -> str:
+        """Return the peaks as lines of text; `units` are 'rpm', 'Hz' or 'SI', rad/s."""
+        shown = Units.of(units)
+        low, high = shown.speeds(self.operating_range)
+        head = f"  {'peak [' + shown.speed + ']':>12}  size [µm]      AF"
+        lines = [
+            f"operating range {low:.6g} to {high:.6g} {shown.speed}",
+            f"{head}  {'N1, N2 [' + shown.speed + ']':>15}     margin  required  verdict  place",
+        ]
+        for i, place in enumerate(self.places):
+            sides = ", ".join(f"{speed:.1f}" for speed in shown.speeds(self.half_power[i]))
+            verdict = "ok" if self.accepted[i] else "fails"
+            lines.append(
+                f"  {shown.speeds(self.peaks[i]):12.1f}  {1e6 * self.sizes[i]:9.4g}"
+                f"  {self.amplification[i]:6.1f}  {sides:>15}  {100.0 * self.actual[i]:7.1f} %"
+                f"  {100.0 * self.required[i]:6.1f} %  {verdict:7}  {place}"
+            )
+        if not self.places:
+            lines.append("  no peak")
+        return "\n".join(lines)
+
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
+        """Draw the response with its peaks, the operating range and the margins asked for."""
+        shown = Units.of(units)
+        ax = plotting.axes_or_new(ax)
+        for i, (place, curve) in enumerate(zip(self.observed, self.curves, strict=True)):
+            style = {"color": plotting.COLORS[i % 5], "ls": plotting.LINES[i % 5], "lw": 1.4}
+            ax.semilogy(shown.speeds(self.speeds), 1e6 * curve, label=place, **style)
+        for peak, size, sides, factor in zip(
+            self.peaks, self.sizes, self.half_power, self.amplification, strict=True
+        ):
+            ax.plot(shown.speeds(sides), [1e6 * _HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
+            ax.annotate(f"AF {factor:.1f}", (shown.speeds(peak), 1e6 * size),
+                        textcoords="offset points", xytext=(4, 3), fontsize=8)  # fmt: skip
+        low, high = self.operating_range
+        sides = [self.required[self.peaks < low], self.required[self.peaks > high]]
+        largest = np.array([side.max(initial=0.0) for side in sides])
+        shade_range(ax, self.operating_range, largest, shown)
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel("major semi-axis [µm]")
+        ax.grid(alpha=0.3, which="both")
+        plotting.legend_above(ax, 4)
+        return ax
+
+
+def separation_margins(
+    response: UnbalanceResponse,
+    operating_range: ArrayLike,
+    *,
+    places: Sequence[str] | str | None = None,
+) -> SeparationMargins:
+    """Evaluate the peaks of an unbalance response by API RP 684.
+
+    ======================  =========================================  ===================
+    peak                    margin that is required                    as a share of
+    ======================  =========================================  ===================
+    AF < 2.5                none
+    below the operation     17 % (1 − 1/(AF − 1.5)), at most 16 %      the lowest speed
+    above the operation     10 % + 17 % (1 − 1/(AF − 1.5)), ≤ 26 %     the highest speed
+    within it               AF < 2.5
+    ======================  =========================================  ===================
+
+    Parameters
+    ----------
+    response : UnbalanceResponse
+        Over speeds that reach beyond the operating range, with ``refine=True``.
+    operating_range : two floats
+        Lowest operating speed and maximum continuous speed [rad/s].
+    places : sequence of str, optional
+        Where to look, as at vibration probes; all places of the response by default.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of another kind, or a place is unknown.
+
+    Warns
+    -----
+    UserWarning
+        If the speeds are too far apart to show a peak.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, Unbalance, separation_margins
+    >>> from exudyn_rotor import unbalance_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=20.0) for name in ("left", "right")]  # ζ = 0.05
+    >>> response = unbalance_response(rotor, np.linspace(0, 200, 21), [Unbalance("left", 1e-4)],
+    ...                               supports=supports, refine=True)
+    >>> separation_margins(response, (130.0, 150.0), places="left").amplification.round(1)
+    array([9.9])
+    """
+    how = "unbalance_response makes one"
+    checks.instance(response, "response", UnbalanceResponse, how)
+    limits = checked_range(operating_range)
+    if limits is None:
+        raise TypeError("operating_range: needs the lowest and the highest speed, got None")
+    names = response.places
+    if places is not None:
+        given = (places,) if isinstance(places, str) else places
+        names = checks.labels(given, "places", response.places)
+    speeds, found = response.speeds, []
+    curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
+    for name, curve in zip(names, curves, strict=True):
+        rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
+        found += [(name, *_peak(speeds, curve, int(row), name)) for row in rows]
+    found.sort(key=lambda entry: entry[1])
+    peaks = np.array([entry[1] for entry in found])
+    factors = np.array([_amplification(entry[1], entry[3]) for entry in found])
+    required, actual = _margins(peaks, factors, *limits)
+    return SeparationMargins(
+        places=tuple(entry[0] for entry in found),
+        peaks=peaks,
+        sizes=np.array([entry[2] for entry in found]),
+        half_power=np.array([entry[3] for entry in found]).reshape(-1, 2),
+        amplification=factors,
+        required=required,
+        actual=actual,
+        operating_range=limits,
+        observed=tuple(names),
+        speeds=speeds,
+        curves=curves,
+    )
+
+
+def required_margin(amplification: ArrayLike, above: bool) -> np.ndarray:
+    """Return the separation margins of SP6.8.2.10, as shares; 0 for an unknown factor."""
+    factors = np.asarray(amplification, dtype=float)
+    sharp = factors >= _CRITICALLY_DAMPED
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margin = 0.17 * (1.0 - 1.0 / (factors - 1.5))
+    margin = np.minimum(0.10 + margin, 0.26) if above else np.minimum(margin, 0.16)
+    return np.where(sharp, margin, 0.0)
+
+
+def _margins(
+    peaks: np.ndarray, factors: np.ndarray, low: float, high: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the margins required and the actual ones, each (p,)."""
+    above = peaks > high
+    required = np.where(above, required_margin(factors, True), required_margin(factors, False))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        actual = np.where(above, peaks / high - 1.0, np.where(peaks < low, 1.0 - peaks / low, 0.0))
+    return required, actual
+
+
+def _peak(
+    speeds: np.ndarray, curve: np.ndarray, row: int, name: str
+) -> tuple[float, float, tuple[float, float]]:
+    """Return place, size and half-power speeds of the maximum at a row."""
+    near = slice(row - 1, row + 2)
+    if curve[near].min() < _HALF_POWER * curve[row]:
+        warnings.warn(
+            f"{name}: the speeds around the peak at {speeds[row]:g} rad/s are too far apart to "
+            "give its amplification; compute the response with refine=True",
+            UserWarning,
+            stacklevel=3,
+        )
+    place, size = peak_between(speeds[near], curve[near])
+    lower = _half_power(speeds[: row + 2][::-1], curve[: row + 2][::-1], size)
+    upper = _half_power(speeds[row - 1 :], curve[row - 1 :], size)
+    return place, size, (lower, upper)
+
+
+def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
+    """Return where a curve falls below 0.707 of a peak; NaN where it rises or ends before.
+
+    The second point is the peak, from which speeds go away to one side. 1/size² is taken for a
+    parabola, as it is near a resonance.
+    """
+    for end in range(2, len(curve)):
+        if curve[end] > curve[end - 1]:
+            return np.nan
+        if curve[end] < _HALF_POWER * size:
+            at, levels = speeds[end - 2 : end + 1], (size / curve[end - 2 : end + 1]) ** 2
+            roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
+            between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]
+            line = at[1] + (at[2] - at[1]) * (2.0 - levels[1]) / (levels[2] - levels[1])
+            return float(min(between, key=lambda x: abs(x - line), default=line))
+    return np.nan
+
+
+def _amplification(peak: float, sides: tuple[float, float]) -> float:
+    distances = np.abs(np.array(sides) - peak)
+    known = distances[~np.isnan(distances)]
+    return float(peak / (2.0 * known.mean())) if known.size else np.nan

@@ -1,0 +1,59 @@
+"""Evaluation by standards: amplification, margins, placement of unbalance, stability level I."""
+
+from validation.mutations.mutation import mutations
+
+EVALUATION = [
+    *mutations(
+        "evaluation/separation.py",
+        "test_evaluation.py",
+        (
+            "half power taken for half the size",
+            "_HALF_POWER = np.sqrt(0.5)",
+            "_HALF_POWER = 0.5",
+        ),
+        (
+            "margin above without its 10 %",
+            "np.minimum(0.10 + margin, 0.26)",
+            "np.minimum(margin, 0.26)",
+        ),
+        (
+            "margin below as a share of the critical speed",
+            "1.0 - peaks / low",
+            "low / peaks - 1.0",
+        ),
+        (
+            "margin above as a share of the critical speed",
+            "peaks / high - 1.0",
+            "1.0 - high / peaks",
+        ),
+        ("one side of a peak taken for both", "peak / (2.0 * known.mean())", "peak / known.sum()"),
+        ("half power beyond a valley", "if curve[end] > curve[end - 1]:", "if False:"),
+    ),
+    *mutations(
+        "evaluation/placement.py",
+        "test_evaluation.py",
+        ("opposite unbalances side by side", "angle + np.pi * number", "angle"),
+        ("unbalance falls with the speed for ever", "min(speed, _FASTEST)", "speed"),
+        ("levers exchanged", "np.array([1.0 - share, share])", "np.array([share, 1.0 - share])"),
+    ),
+    *mutations(
+        "evaluation/level_one.py",
+        "test_evaluation.py",
+        (
+            "cross-coupling feeds backward whirl",
+            "[[0.0, multiple * q], [-multiple * q, 0.0]]",
+            "[[0.0, -multiple * q], [multiple * q, 0.0]]",
+        ),
+        (
+            "mode followed by its shape alone",
+            "away[likeness < 0.5 * likeness.max()] = np.inf",
+            "away = -likeness",
+        ),
+        ("axial stages as impellers", '"axial": 1.5', '"axial": 3.0'),
+        (
+            "slope of the limit between the regions",
+            "2.69 - 0.0115 * density",
+            "2.69 - 0.0105 * density",
+        ),
+    ),
+]
