@@ -34,6 +34,7 @@ from exudyn_rotor.linear.stability.stability import (
 )
 from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.multibody.add_rotor import add_rotor
+from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -66,6 +67,7 @@ __all__ = [
     "AssumptionWarning",
     "BaseAcceleration",
     "Campbell",
+    "ConnectionWarning",
     "ConstantSpeed",
     "CriticalSpeedMap",
     "CriticalSpeeds",

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import condensed_markers, inputs
+from exudyn_rotor.multibody.assembly import check_at_assembly
 from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
@@ -253,7 +254,9 @@ def add_rotor(
     _warn_of_turned_axes(plan)
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
-    return watched(_add_with_marker_body(mbs, plan, mesh))
+    body = watched(_add_with_marker_body(mbs, plan, mesh))
+    check_at_assembly(body)
+    return body
 
 
 def _warn_of_turned_axes(plan: Plan) -> None:

@@ -12,19 +12,16 @@ displacement and rotation give the same marker to round-off.
 Exudyn lets a marker's own offset turn with the frame alone. That holds the tilts of Exudyn's body,
 which are modes here: the three nodes take the offset, and it turns with the rigid tilts.
 
-Markers are known when the system is assembled. Importing this module therefore lets
-``mbs.Assemble()`` do this first, for the rotors of this package that stand in the ``mbs``.
+Markers are known when the system is assembled: ``mbs.Assemble()`` does this first
+(:mod:`exudyn_rotor.multibody.assembly`), for the rotors of this package that stand in the ``mbs``.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
-from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.solid.interface import rotation_moments
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
@@ -142,10 +139,8 @@ def _is_marker_body(mbs: exudyn.MainSystem, number: int) -> bool:
     return not (item["computeFFRFterms"] or item["massMatrixUserFunction"])
 
 
-@wraps_method("Assemble")
-def _assemble(assemble: Callable, mbs: exudyn.MainSystem) -> None:
-    """Condense the markers of rotors first."""
+def condense_all(mbs: exudyn.MainSystem) -> None:
+    """Condense the markers of all rotors of which :func:`at_assembly` says so."""
     for number, tilts in mbs.sys.get(_BODIES, {}).items():
         if tilts is not None and _is_marker_body(mbs, number):
             condense_markers(mbs, number, tilts)
-    assemble(mbs)

@@ -41,6 +41,10 @@ _APART = (
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
 
 
+class ConnectionWarning(UserWarning):
+    """A rotor in a scene cannot carry what is attached to it."""
+
+
 def stands_for_exudyns(body: RotorItems) -> None:
     """Note that a script expects the node where Exudyn's body has it, in the mesh origin."""
     body.mbs.sys.setdefault(_SWAPPED, set()).add(int(body.objects["marker_body"]))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import more_markers, sensors
-from exudyn_rotor.multibody.connections import lost_connections
+from exudyn_rotor.multibody.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.record import Record, add_recording, read_record
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.start_state import StartState, start_from
@@ -120,12 +120,13 @@ class RotorBody(RotorItems):
         Torques across the spin axis, springs, dampers and joints against tilts, forces along
         translations that the formulation does not have, and forces at a marker's own offset that
         has no lever: one sentence for each, with what to use instead. Exudyn's own body carries
-        them. :func:`exudyn_rotor.check_run` has a row of this.
+        them. ``mbs.Assemble()`` warns of each once, and :func:`exudyn_rotor.check_run` has a row of
+        this.
 
         Parameters
         ----------
         warn : bool
-            Whether there is a UserWarning for each.
+            Whether there is a ConnectionWarning for each.
 
         Raises
         ------
@@ -136,7 +137,7 @@ class RotorBody(RotorItems):
         self.check_assembled()
         found = lost_connections(self)
         for sentence in found if warn else ():
-            warnings.warn(f"rotor {self.name!r}: {sentence}", UserWarning, stacklevel=2)
+            warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
         return found
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
