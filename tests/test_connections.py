@@ -1,5 +1,6 @@
 """What the node of a rotor's frame cannot carry is found, for any axis; nothing else is."""
 
+import warnings
 from functools import cache
 
 import exudyn as exu
@@ -34,7 +35,7 @@ from models import disc_fem
 from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import SolidRotor, add_rotor, check_run
+from exudyn_rotor import ConnectionWarning, SolidRotor, add_rotor, check_run
 
 # every assembly of these scenes warns of what is asked for here
 pytestmark = pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
@@ -316,3 +317,30 @@ def test_own_locks_are_none_of_them():
         body = add_rotor(mbs, rotor("z"), translation="none", **options)
         mbs.Assemble()
         assert body.check_connections() == ()
+
+
+@pytest.mark.filterwarnings("default::exudyn_rotor.ConnectionWarning")
+def test_assembly_warns_of_each_item_once_and_of_this_rotor_alone():
+    s = Scene()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        s.mbs.Assemble()
+    s.mbs.AddObject(springs(s, 0.0, 0.0, 10.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        s.mbs.Assemble()
+    lost = s.mbs.AddLoad(LoadCoordinate(markerNumber=tilt_of(s), load=1.0))
+    with pytest.warns(ConnectionWarning, match=s.mbs.GetLoad(lost)["name"]):
+        s.mbs.Assemble()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        s.mbs.Assemble()
+        s.mbs.Reset()
+        add_rotor(s.mbs, rotor("z"))
+        s.mbs.Assemble()
+
+
+def tilt_of(s):
+    return s.mbs.AddMarker(
+        MarkerNodeCoordinate(nodeNumber=s.node, coordinate=s.body.locks.tilts[0])
+    )

@@ -206,6 +206,7 @@ def under_a_force_at_an_offset(call, **options):
     return mbs.GetSensorStoredData(sensor)[:, 1:]
 
 
+@pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
 def test_force_at_the_offset_of_a_scripts_marker_tilts_the_rotor():
     """The offset turns with the frame of Exudyn's body, which holds its tilts."""
     own = under_a_force_at_an_offset(OWN)

@@ -314,6 +314,7 @@ def _on_frame(force=None, torque=None):
     return load
 
 
+@pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
 @pytest.mark.parametrize(
     ("translation", "force", "torque", "lost"),

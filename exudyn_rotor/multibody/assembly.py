@@ -50,7 +50,7 @@ def _warn(mbs: exudyn.MainSystem) -> None:
             if sentence not in known.told:
                 known.told.add(sentence)
                 warnings.warn(
-                    f"rotor {known.plan.setup.name!r}: {sentence}", ConnectionWarning, stacklevel=5
+                    f"rotor {known.plan.setup.name!r}: {sentence}", ConnectionWarning, stacklevel=4
                 )
 
 

@@ -42,7 +42,17 @@ _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
 
 
 class ConnectionWarning(UserWarning):
-    """A rotor in a scene cannot carry what is attached to it."""
+    """A rotor in a scene cannot carry what is attached to it.
+
+    Examples
+    --------
+    Not for a script that knows:
+
+    >>> import warnings
+    >>> from exudyn_rotor import ConnectionWarning
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", ConnectionWarning)
+    """
 
 
 def stands_for_exudyns(body: RotorItems) -> None:

@@ -18,6 +18,7 @@ Call = tuple[Callable, dict[str, Any]]
 # what has no arguments of its own to refuse
 LEFT_OUT = {
     "AssumptionWarning": "a warning takes any text, as every exception of Python",
+    "ConnectionWarning": "a warning takes any text, as every exception of Python",
     "LinearModel": "a protocol; linear_model makes what follows it",
     "Result": "the base of classes that are called",
 }

@@ -236,7 +236,7 @@ def run(
         sum(body.fem.NumberOfNodes() for body in script.bodies),
         sum(body.fem.modeBasis["matrix"].shape[1] for body in script.bodies),
         _marker_kinds(script),
-        (*_texts(caught), *_asked(script)),
+        _texts(caught),
     )
 
 
@@ -259,16 +259,8 @@ def _solve(
     return time.perf_counter() - start
 
 
-def _asked(script: Script) -> list[str]:
-    """Return what the rotors say when they are asked what their node cannot carry."""
-    rotors = [body.rotor for body in script.bodies if body.rotor]
-    return [
-        f"check_connections: {text}" for one in rotors for text in one.check_connections(warn=False)
-    ]
-
-
-def _texts(caught: list) -> list[str]:
-    return [str(entry.message) for entry in caught if entry.category is not DeprecationWarning]
+def _texts(caught: list) -> tuple[str, ...]:
+    return tuple(str(entry.message) for entry in caught if entry.category is not DeprecationWarning)
 
 
 def _marker_kinds(script: Script) -> str:

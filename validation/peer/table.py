@@ -2,9 +2,8 @@
 
 For each scene a row: mesh nodes, modes and markers of the flexible bodies, the largest difference
 of what the scene observes over the size of that motion, and the time of the solution with both
-calls, the least of some repeats in turns. Where the swapped call warns or fails, or its rotor's
-``check_connections()`` finds something, the message is shown; a row without a message must stay
-below 1e-3. The exit code is 1 if one does not.
+calls, the least of some repeats in turns. Where the swapped script warns or fails, the message is
+shown; a row without a message must stay below 1e-3. The exit code is 1 if one does not.
 
     python -m validation peer [--quick] [--repeats 3] [scene …]
 """
