@@ -50,6 +50,10 @@ class LinearRotor(SupportedRotor):
         The spin as a coordinate.
     free_motions : tuple of str
         Rigid motions that no spring holds.
+    stiffening : str, optional
+        Level of the centrifugal stiffening.
+    is_full : bool, optional
+        Whether the basis leaves nothing out.
     """
 
     gives_all: ClassVar[bool] = True
@@ -60,6 +64,8 @@ class LinearRotor(SupportedRotor):
     terms: SpinTerms
     spin: Spin | None = None
     free_motions: tuple[str, ...] = ()
+    stiffening: str = "tilt"
+    is_full: bool = False
 
     @classmethod
     def of(
@@ -81,7 +87,7 @@ class LinearRotor(SupportedRotor):
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
         terms = SpinTerms.of(invariants, second_order(invariants, stiffening))
         invariants = replace(invariants, K4=terms.K4)
-        linear = cls(rotor, tuple(supports), invariants, terms)
+        linear = cls(rotor, tuple(supports), invariants, terms, stiffening=stiffening)
         if ModeKind.SPIN in rotor.kinds:
             spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
         if spin is not None:
@@ -102,7 +108,7 @@ class LinearRotor(SupportedRotor):
         """
         linear = cls.of(as_reduced(rotor), supports, stiffening, spin_of(rotor))
         free = free_motions_of_solid(rotor, supports, linear.free_spin is not None)
-        return replace(linear, free_motions=free)
+        return replace(linear, free_motions=free, is_full=True)
 
     def _on_supports(self, motion: np.ndarray, momentum: np.ndarray) -> Spin:
         """Return the spin on the supports; a warning tells where the rotor is eccentric."""

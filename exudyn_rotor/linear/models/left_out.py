@@ -1,0 +1,140 @@
+"""What the basis of a reduced rotor leaves out: estimates of its error without a larger model.
+
+Beside its own columns Q (coordinates b) a reduced rotor knows static responses to loads at its
+interfaces and to the inertia forces of Q in a turning frame (:mod:`exudyn_rotor.reduction`). What
+of them is not in Q, made mass-orthonormal, are further coordinates c. In both, the equations of a
+motion ``e^{λt}`` are
+
+    [Z_bb  Z_bc] [x]
+    [Z_cb  Z_cc] [y]  =  0,        Z(λ) = λ²M + λ(D + 2ΩG) + K + Ω²(K2 − C) + supports,
+
+while the reduced rotor solves ``Z_bb x = 0``: ``Z_cb x`` is the residual of its motion, seen from the
+shapes that lack first. An inverse iteration from there, on both sides,
+
+    z = Z(λ)⁻¹ Z'(λ) (x, 0),    w = Z(λ)⁻ᴴ M (x, 0),
+
+and the quotient ``wᴴ[Z(λ) + δ Z'(λ) + δ²M]z = 0`` give λ + δ, the eigenvalue in both. (With
+``y = −Z_cc⁻¹Z_cb x`` alone, at the x of the reduced rotor, δ comes out ten times too small on stiff
+supports: the motion at the supports changes by as much as the flexibility that is added there.) A δ
+that is not small against the distance of the modes is an order of magnitude only. Shapes that are
+neither in Q nor among the static responses are not seen: of the error they are a hundredth part in
+``python -m validation basis``. Periodic equations are taken in harmonics
+(:mod:`exudyn_rotor.linear.periodic.hill`), y in the central ones.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+
+# relative distance from an eigenvalue that keeps its matrix invertible
+_OFF_ROOT = 1e-9
+_SMALL = 1e-8  # harmonics of a mode of unit length
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """A reduced rotor on supports beside the shapes that its basis lacks first.
+
+    Attributes
+    ----------
+    finer : LinearRotor
+        In the coordinates of the reduced rotor, then those that it lacks.
+    kept : int
+        Number of the former.
+    held : bool
+        Whether the spin is no coordinate, as nothing holds it and it follows θ = Ωt.
+    """
+
+    finer: LinearRotor
+    kept: int
+    held: bool = False
+
+    @classmethod
+    def of(cls, model: LinearRotor, held: bool = False) -> LeftOut | None:
+        """Return what the basis of a model leaves out; None where that is not known."""
+        finer = finer_rotor(model.rotor)
+        if finer is None:
+            return None
+        with warnings.catch_warnings():  # said where the model was made
+            warnings.filterwarnings("ignore", message="the centre of mass is")
+            finer = LinearRotor.of(finer, model.supports, model.stiffening)
+        if not np.any(model.invariants.D):  # of its own or left out, as for critical speeds
+            undamped = replace(finer.invariants, D=0.0 * finer.invariants.D)
+            finer = replace(finer, invariants=undamped)
+        return cls(finer, model.size, held and model.free_spin is not None)
+
+    def at(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
+        """Return the finer equations at a speed [rad/s], and which coordinates are left out."""
+        system, lacking = self.finer.at(speed), np.arange(self.finer.size) >= self.kept
+        if not self.held:
+            return system, lacking
+        others = self.finer.spin.rest()
+        return system.projected(others), others.T @ lacking > 0.5
+
+    def shifts(self, speed: float, modes: FloquetModes) -> np.ndarray:
+        """Return the estimated ``λ − λ_reduced`` of modes at a speed, shape (k,), complex [1/s].
+
+        Free rigid motions, λ = 0, are in every basis; theirs is zero.
+        """
+        system, lacking = self.at(speed)
+        pencil = hill_matrices(system, modes.orders)
+        central = np.repeat(np.abs(modes.orders) <= system.step, len(lacking))
+        left_out = np.tile(lacking, len(modes.orders))
+        sizes = np.linalg.norm(modes.vectors, axis=1) > _SMALL
+        shifts = np.zeros(len(modes.values), dtype=complex)
+        for column in np.flatnonzero(modes.values):
+            used = np.where(left_out, central, np.repeat(sizes[:, column], len(lacking)))
+            start = np.zeros((len(modes.orders), len(lacking)), dtype=complex)
+            start[:, ~lacking] = modes.vectors[:, :, column]
+            used = np.flatnonzero(used)
+            M, D, K = (X[np.ix_(used, used)] for X in pencil)
+            shifts[column] = _shift(M, D, K, modes.values[column], start.ravel()[used])
+        return shifts
+
+
+def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
+    """Return a rotor with the columns of `rotor`, then those that it lacks, mass-orthonormal.
+
+    None where these are not known. The latter diagonalise the stiffness, ascending.
+    """
+    attached, own = rotor.with_attachments, rotor.in_attached
+    if own is None:
+        return None
+    outside = np.eye(attached.size) - own @ own.T
+    lengths, columns = np.linalg.eigh(outside)
+    columns = columns[:, lengths > 0.5]
+    _, turn = np.linalg.eigh(columns.T @ attached.invariants.K @ columns)
+    T = np.hstack([own, columns @ turn])
+    return replace(
+        attached,
+        invariants=attached.invariants.in_basis(T),
+        rigid_kinds=rotor.rigid_kinds,
+        interfaces={
+            name: replace(interface, motion=interface.motion @ T)
+            for name, interface in attached.interfaces.items()
+        },
+        mode_mass=T.T @ attached.mode_mass @ T,
+    )
+
+
+def _shift(M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.ndarray) -> complex:
+    """Return δ of the eigenvalue of ``λ²M + λD + K`` near `value`, beginning with a vector x."""
+    shifted = value * (1.0 + _OFF_ROOT)
+    factor = la.lu_factor(shifted**2 * M + shifted * D + K, check_finite=False)
+    slope = 2.0 * shifted * M + D
+    force = slope @ x
+    z = la.lu_solve(factor, force, check_finite=False)
+    w = la.lu_solve(factor, M @ x, trans=2, check_finite=False)
+    constant, linear, square = np.vdot(w, force), np.vdot(w, slope @ z), np.vdot(w, M @ z)
+    root = np.sqrt(linear**2 - 4.0 * constant * square + 0j)
+    return shifted - value - 2.0 * constant / max(linear + root, linear - root, key=abs)
