@@ -15,6 +15,7 @@ from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import Tracks, track
 from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
@@ -41,6 +42,7 @@ def campbell(
     allow_negative: bool = False,
     tolerance: float = 1e-8,
     residual: float = 1e-5,
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Campbell:
@@ -76,6 +78,11 @@ def campbell(
         the larger of its size and the frequency of the turning coefficients.
     residual : float, optional
         Largest relative residual of a large SolidRotor; its eigenvalues err by about the square.
+    accuracy : float, optional
+        Relative error of frequencies and growth by the basis of a reduced rotor, estimated, above
+        which a warning is given: see :attr:`Campbell.basis_errors`. It looks at the modes asked
+        for by `modes`; without, at those up to twice the highest speed and at the lowest six. None
+        for no estimate.
     executor : concurrent.futures.Executor, optional
         Computes the speeds. A large SolidRotor does not use it: its speeds share one subspace.
     progress : bool, optional
@@ -129,6 +136,7 @@ def campbell(
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_structural_damping(model, "campbell finds modes")
+    basis = BasisError.of(model, accuracy)
     count = _checked_count(modes, model)
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:
@@ -139,7 +147,10 @@ def campbell(
     solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
     tracks = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count)
-    return _collected(values, solved, tracks, model.free_motions)
+    shifts = basis.shifts(values, [entry[0] for entry in solved])
+    result = _collected(values, solved, tracks, model.free_motions, shifts)
+    _warn_of_basis(basis, result, modes)
+    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +199,11 @@ def _lowest(solved: list[Solved], tracks: Tracks, count: int) -> tuple[list[Solv
 
 
 def _collected(
-    speeds: np.ndarray, solved: list[Solved], tracks: Tracks, free: tuple[str, ...]
+    speeds: np.ndarray,
+    solved: list[Solved],
+    tracks: Tracks,
+    free: tuple[str, ...],
+    shifts: np.ndarray | None,
 ) -> Campbell:
     modes, inertial, whirl, diameters = zip(*solved, strict=True)
     # adding zero turns −0 into 0
@@ -212,7 +227,24 @@ def _collected(
         order=tracks.columns,
         continued=tracks.continued,
         free_motions=free,
+        basis_shifts=shifts,
     )
+
+
+def _warn_of_basis(basis: BasisError, result: Campbell, modes: int | None) -> None:
+    """Warn where the basis leaves out too much for the modes that count."""
+    errors = result.basis_errors
+    if errors is None:
+        return
+    if modes is None:
+        errors = np.where(judged(result.frequencies_inertial, result.speeds), errors, 0.0)
+    at, mode = np.unravel_index(np.argmax(errors), errors.shape)
+    speed, frequency = (
+        value / (2.0 * np.pi)
+        for value in (result.speeds[at], result.frequencies_inertial[at, mode])
+    )
+    word = result.whirl[at, mode]
+    basis.warn(errors, f"mode {mode + 1} ({word}, {frequency:.4g} Hz) at {speed:.4g} Hz")
 
 
 def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:

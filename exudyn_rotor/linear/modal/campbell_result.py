@@ -13,6 +13,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.whirl import WHIRLS
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
@@ -56,6 +57,10 @@ class Campbell(Result):
         it had to be another one, as where a mode leaves those that were computed.
     free_motions : tuple of str
         Rigid motions that nothing holds.
+    basis_shifts : ndarray, shape (s, k), or None
+        Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
+        reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
+        [rad/s]. Zero for a full model; None where it is not known, as of a scene.
 
     Examples
     --------
@@ -88,6 +93,7 @@ class Campbell(Result):
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
+    basis_shifts: np.ndarray | None = numbers("speeds", "modes", dtype=complex, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -105,6 +111,19 @@ class Campbell(Result):
         """
         return np.array(WHIRLS)[self.whirl_codes]
 
+    @property
+    def basis_errors(self) -> np.ndarray | None:
+        """Estimated relative error by the basis of a reduced rotor, shape (s, k).
+
+        The larger of those of the inertial frequency and of the growth. A frequency counts as at
+        least a tenth of the spin speed, a growth as at least a hundredth of the frequency. None
+        where it is not known.
+        """
+        if self.basis_shifts is None:
+            return None
+        given = self.growth, self.frequencies_inertial, self.speeds
+        return relative_errors(self.basis_shifts, *given)
+
     def tracked(self) -> Campbell:
         """Return the same result with columns that follow each mode over the speeds.
 
@@ -114,6 +133,7 @@ class Campbell(Result):
         """
         names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
+        names += ("basis_shifts",) * (self.basis_shifts is not None)
         moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
         moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
@@ -208,7 +228,9 @@ class Campbell(Result):
         """Return the table as columns, one row for each speed and mode, tracked."""
         shown, tracked = Units.of(units), self.tracked()
         count = self.order.shape[1]
+        rows = count * len(self.speeds)
         speed, frequency = f"[{shown.speed}]", f"[{shown.frequency}]"
+        errors = tracked.basis_errors
         return {
             f"speed {speed}": np.repeat(shown.speeds(self.speeds), count),
             "mode": np.tile(np.arange(1, count + 1), len(self.speeds)),
@@ -220,6 +242,7 @@ class Campbell(Result):
             "nodal diameters": tracked.nodal_diameters.ravel(),
             "whirl": tracked.whirl.ravel(),
             "continued": tracked.continued.ravel(),
+            "basis error": np.full(rows, np.nan) if errors is None else errors.ravel(),
         }
 
     def table(self, count: int | None = None, *, units: str = "Hz") -> str:
@@ -231,9 +254,12 @@ class Campbell(Result):
             count = checks.count(count, "count", least=1)
         known = Units.of(units)
         speed, frequency = f"[{known.speed}]", f"[{known.frequency}]"
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors)
+        label = "  basis error" if reduced else ""
         lines = [
             f"{'speed ' + speed:>12}  mode{'rotor frame ' + frequency:>18}"
-            f"{'inertial ' + frequency:>15}  damping ratio  n  whirl"
+            f"{'inertial ' + frequency:>15}  damping ratio{label}  n  whirl"
         ]
         shown = slice(0, count)
         rotor, inertial = (
@@ -242,9 +268,11 @@ class Campbell(Result):
         for i, at in enumerate(known.speeds(self.speeds)):
             for j in range(self.order.shape[1])[shown]:
                 n = self.nodal_diameters[i, j]
+                error = f"{errors[i, j]:13.1e}" if reduced else ""
+                kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
                 lines.append(
                     f"{at:12.4g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
-                    f"{self.damping_ratio[i, j]:15.3g}  {n if n >= 0 else '-'}  {self.whirl[i, j]}"
+                    f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"
                 )
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
@@ -252,4 +280,6 @@ class Campbell(Result):
         if lost.size:
             listed = ", ".join(f"{f:.4g}" for f in lost)
             lines.append(f"modes not followed up to {speed}: {listed}")
+        if errors is None:
+            lines.append(NOT_KNOWN)
         return "\n".join(lines)

@@ -26,6 +26,7 @@ class FullRotor(FullEquations):
     """
 
     gives_all: ClassVar[bool] = False
+    is_full: ClassVar[bool] = True
 
     @property
     def mesh(self) -> Mesh:

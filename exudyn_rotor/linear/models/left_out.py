@@ -8,8 +8,8 @@ motion ``e^{λt}`` are
     [Z_bb  Z_bc] [x]
     [Z_cb  Z_cc] [y]  =  0,        Z(λ) = λ²M + λ(D + 2ΩG) + K + Ω²(K2 − C) + supports,
 
-while the reduced rotor solves ``Z_bb x = 0``: ``Z_cb x`` is the residual of its motion, seen from the
-shapes that lack first. An inverse iteration from there, on both sides,
+while the reduced rotor solves ``Z_bb x = 0``: ``Z_cb x`` is the residual of its motion, seen from
+the shapes that lack first. An inverse iteration from there, on both sides,
 
     z = Z(λ)⁻¹ Z'(λ) (x, 0),    w = Z(λ)⁻ᴴ M (x, 0),
 
@@ -38,6 +38,9 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 # relative distance from an eigenvalue that keeps its matrix invertible
 _OFF_ROOT = 1e-9
+# share of a flexibility that counts as missing; static modes of held interfaces lack 3 % of that
+# with inertia relief
+_MISSING = 0.1
 _SMALL = 1e-8  # harmonics of a mode of unit length
 
 
@@ -80,6 +83,20 @@ class LeftOut:
             return system, lacking
         others = self.finer.spin.rest()
         return system.projected(others), others.T @ lacking > 0.5
+
+    def lacks_flexibility(self) -> bool:
+        """Return True if the basis misses much of the flexibility at interfaces."""
+        if not self.finer.supports:
+            return False
+        motion = np.vstack([self.finer.interface_motion(s.interface) for s in self.finer.supports])
+        stiffness = self.finer.invariants.K
+        parts = []
+        for count in (self.kept, self.finer.size):
+            first = len(self.finer.rotor.rigid_kinds)
+            flexible = slice(first, count)
+            given = motion[:, flexible]
+            parts.append(np.trace(given @ np.linalg.solve(stiffness[flexible, flexible], given.T)))
+        return bool(parts[1] - parts[0] > _MISSING * parts[1])
 
     def shifts(self, speed: float, modes: FloquetModes) -> np.ndarray:
         """Return the estimated ``λ − λ_reduced`` of modes at a speed, shape (k,), complex [1/s].

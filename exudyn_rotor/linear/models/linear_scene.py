@@ -57,6 +57,7 @@ class LinearScene(SceneCoordinates):
     """
 
     gives_all: ClassVar[bool] = True
+    is_full: ClassVar[bool] = False
     free_motions: ClassVar[tuple[str, ...]] = ()
     mesh: ClassVar[None] = None
     base_loads: ClassVar[None] = None

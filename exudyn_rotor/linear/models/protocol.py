@@ -124,6 +124,8 @@ class LinearModel(Protocol):
         By which a rotation counts as a displacement [m].
     gives_all : bool
         True where analyses give all modes, False where only the lowest ones.
+    is_full : bool
+        True where no basis leaves anything out.
     stiffness_varies : bool or None
         Whether the stiffness depends on the speed other than by Ω²; None where that is not known.
 
@@ -163,6 +165,8 @@ class LinearModel(Protocol):
     def radius(self) -> float: ...
     @property
     def gives_all(self) -> bool: ...
+    @property
+    def is_full(self) -> bool: ...
     @property
     def stiffness_varies(self) -> bool | None: ...
 

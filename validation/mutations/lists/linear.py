@@ -4,6 +4,39 @@ from validation.mutations.mutation import mutations
 
 LINEAR = [
     *mutations(
+        "linear/models/left_out.py",
+        "test_basis_error.py::test_estimates_are_the_errors_against_the_full_model",
+        (
+            "left-out shapes take no part",
+            "np.abs(modes.orders) <= system.step",
+            "np.abs(modes.orders) < system.step",
+        ),
+        (
+            "left-out shapes are not rigid",
+            "T = np.hstack([own, columns @ turn])",
+            "T = np.hstack([own, 2.0 * columns @ turn])",
+        ),
+        (
+            "left vector of the transposed equations",
+            "M @ x, trans=2",
+            "M @ x, trans=1",
+        ),
+        (
+            "slope of the dynamic stiffness halved",
+            "slope = 2.0 * shifted * M + D",
+            "slope = shifted * M + D",
+        ),
+    ),
+    *mutations(
+        "linear/models/basis_error.py",
+        "test_basis_error.py::test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning",
+        (
+            "warning at any error",
+            "worst <= self.accuracy",
+            "worst <= 1.0",
+        ),
+    ),
+    *mutations(
         "linear/models/rotor_on_supports.py",
         "test_campbell_frames.py",
         (

@@ -4,6 +4,25 @@ from validation.mutations.mutation import mutations
 
 REDUCTION = [
     *mutations(
+        "reduction/inertial_modes.py",
+        "test_basis_error.py::test_estimates_are_the_errors_against_the_full_model",
+        (
+            "gyroscopic loads forgotten",
+            "[speed * (mass @ turned), speed",
+            "[0.0 * (mass @ turned), speed",
+        ),
+        (
+            "loads of static modes forgotten",
+            "loads.append(own / frequencies)",
+            "loads.append(0.0 * own)",
+        ),
+        (
+            "geometric stiffness forgotten",
+            "loads.append(speed * (carried.matrix",
+            "loads.append(0.0 * (carried.matrix",
+        ),
+    ),
+    *mutations(
         "reduction/spinning.py",
         "test_rotating_blade.py::test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs",
         (

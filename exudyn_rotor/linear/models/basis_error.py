@@ -1,0 +1,126 @@
+"""How far linear analyses of a reduced rotor are from those of its full model: check and warning.
+
+The estimates are those of :mod:`exudyn_rotor.linear.models.left_out`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.models.eccentricity import user_level
+from exudyn_rotor.linear.models.left_out import LeftOut
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+
+NOT_KNOWN = "error of the basis: not known"
+# share of the frequency that growth counts as at least: its error is then that of the damping ratio
+_DAMPED = 0.01
+_SLOW = 0.1  # share of the spin speed that a frequency counts as at least
+_RANGE = (
+    2.0  # times the fastest speed: modes below are judged where no number of modes is asked for
+)
+_LOWEST = 6  # modes that are judged in any case
+
+
+@dataclass(frozen=True, eq=False)
+class BasisError:
+    """The check of the basis in one analysis.
+
+    Attributes
+    ----------
+    model : LinearModel
+    accuracy : float or None
+        Relative error above which a warning is given; None for no check.
+    left_out : LeftOut or None
+        None where nothing is left out or it is not known what.
+    """
+
+    model: LinearModel
+    accuracy: float | None
+    left_out: LeftOut | None
+
+    @classmethod
+    def of(cls, model: LinearModel, accuracy: float | None, held: bool = False) -> BasisError:
+        """Prepare the check of a model; `held` where a free spin is no coordinate."""
+        if accuracy is not None:
+            checks.number(accuracy, "accuracy", above=0.0, most=1.0)
+        known = isinstance(model, LinearRotor) and not model.is_full and accuracy is not None
+        return cls(model, accuracy, LeftOut.of(model, held) if known else None)
+
+    @property
+    def is_known(self) -> bool:
+        """True where an estimate can be given."""
+        return self.accuracy is not None and (self.model.is_full or self.left_out is not None)
+
+    def shifts(self, speeds: np.ndarray, modes: Sequence[FloquetModes]) -> np.ndarray | None:
+        """Return ``λ_full − λ`` of modes at speeds, shape (s, k); None where that is not known."""
+        if not self.is_known:
+            return None
+        if self.left_out is None:
+            return np.array([0j * entry.values for entry in modes])
+        pairs = zip(speeds, modes, strict=True)
+        return np.array([self.left_out.shifts(speed, entry) for speed, entry in pairs])
+
+    def warn(self, errors: np.ndarray, what: str) -> None:
+        """Warn where an estimate exceeds the accuracy; `what` names the worst."""
+        worst = np.max(errors, initial=0.0)
+        if self.left_out is None or worst <= self.accuracy:
+            return
+        rotor = self.model.rotor
+        elastic = rotor.size - len(rotor.rigid_kinds)
+        highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
+        warnings.warn(
+            f"{what} errs by about {worst:.2g} of its value, for the {elastic} flexible modes of "
+            f"the reduced rotor (up to {highest:.4g} Hz) are too few for the accuracy of "
+            f"{self.accuracy:g}: {self._advice()}, give another accuracy=…, or None for no check",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+    def _advice(self) -> str:
+        if self.left_out.lacks_flexibility():
+            return (
+                "they lack flexibility at the interfaces; reduce the rotor with "
+                "craig_bampton_modes(rotor, …), whose static modes have it"
+            )
+        return "reduce the rotor with more, up to twice as many"
+
+
+def relative_errors(
+    shifts: np.ndarray, growth: np.ndarray, frequencies: np.ndarray, speeds: np.ndarray
+) -> np.ndarray:
+    """Return the larger of the relative errors of frequency and growth, shape (s, k).
+
+    Parameters
+    ----------
+    shifts : ndarray, shape (s, k)
+        ``λ_full − λ`` [1/s].
+    growth, frequencies : ndarray, shape (s, k)
+        The latter in the inertial frame. A frequency counts as at least a tenth of the spin speed,
+        a growth as at least a hundredth of the frequency.
+    speeds : ndarray, shape (s,)
+        [rad/s]
+    """
+    least = np.maximum(np.abs(frequencies), _SLOW * np.abs(speeds)[:, None])
+    sizes = np.maximum(np.abs(growth), _DAMPED * least)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = np.abs(shifts.imag) / least, np.abs(shifts.real) / sizes
+    return np.maximum(*(np.where(np.isnan(part), 0.0, part) for part in parts))
+
+
+def judged(frequencies: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+    """Return which modes (s, k) an analysis of all modes is judged by.
+
+    Those up to twice the fastest speed in the inertial frame, and the lowest six that move; the
+    highest modes of a basis are always wrong.
+    """
+    moving = np.where(frequencies > 0.0, frequencies, np.inf)
+    lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
+    lowest = np.where(np.isfinite(lowest), lowest, 0.0)
+    return frequencies <= np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))

@@ -1,0 +1,140 @@
+"""Estimates of what a basis leaves out, against the full model of the same mesh."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from models import disc_rotor
+from small_results import rotor as stored_rotor
+
+from exudyn_rotor import (
+    Campbell,
+    ReducedRotor,
+    SolidRotor,
+    Support,
+    campbell,
+    craig_bampton_modes,
+    keep_modes,
+    linear_model,
+)
+
+MODES = 8
+# of an eigenvalue: energies below a thousandth, at the fastest speed of any rim, are left out
+SMALL = 1e-4
+SPEEDS = [0.0, 2500.0]
+LIMIT = 4000.0  # rad/s, of eigenvalues that are looked at
+PAIR = 0.02  # relative distance of modes that the mesh splits: which of them errs is not told
+
+
+def supports(kind: str) -> list[Support]:
+    across = {"soft": 1e6, "stiff": 1e8, "anisotropic": [[1e7, 0.0], [0.0, 4e7]]}[kind]
+    return [Support(name, across, damping=200.0) for name in ("left", "right")]
+
+
+@cache
+def solid(level: str) -> SolidRotor:
+    rotor = disc_rotor(order=1).center_interfaces()
+    return rotor.with_prestress(rotor.prestress()) if level == "full" else rotor
+
+
+@cache
+def reference(level: str, kind: str) -> Campbell:
+    given = {"supports": supports(kind), "stiffening": level}
+    if kind == "anisotropic":  # the full model takes long
+        return campbell(reduced(level, "RBE3 16"), SPEEDS[1:], accuracy=None, **given)
+    return campbell(solid(level), SPEEDS, modes=MODES, **given)
+
+
+@cache
+def reduced(level: str, modes: str) -> ReducedRotor:
+    how, count = modes.split()
+    rotor = solid(level)
+    if how == "free":
+        return rotor.reduce(int(count))
+    return rotor.reduce(craig_bampton_modes(rotor, int(count), coupling=how))
+
+
+@pytest.mark.parametrize(
+    ("level", "kind", "modes"),
+    [
+        ("tilt", "soft", "free 4"),
+        ("tilt", "stiff", "free 12"),
+        ("tilt", "stiff", "RBE3 2"),
+        ("tilt", "anisotropic", "free 6"),
+        ("full", "stiff", "free 6"),
+        ("full", "soft", "RBE3 4"),
+    ],
+)
+def test_estimates_are_the_errors_against_the_full_model(level, kind, modes):
+    full, rotor = reference(level, kind), reduced(level, modes)
+    result = campbell(rotor, full.speeds, supports=supports(kind), stiffening=level)
+    close = []
+    for row in range(len(full.speeds)):
+        true = full.growth[row] + 1j * full.frequencies_rotor[row]
+        given = result.growth[row] + 1j * result.frequencies_rotor[row]
+        looked_at = (np.abs(given) < LIMIT) & (given != 0.0)
+        given, shifts = given[looked_at], result.basis_shifts[row, looked_at]
+        errors = true[np.argmin(np.abs(true - (given + shifts)[:, None]), axis=1)] - given
+        pairs = np.abs(given - given[:, None]) < PAIR * np.abs(given)
+        of_pairs = [np.where(pairs, np.abs(each), 0.0).max(axis=1) for each in (shifts, errors)]
+        estimate, error = (np.maximum(each, SMALL * np.abs(given)) for each in of_pairs)
+        assert np.all((estimate < 3.0 * error) & (error < 3.0 * estimate))
+        seen = np.abs(errors) > 10.0 * SMALL * np.abs(given)
+        close += list(np.abs(shifts - errors)[seen] < 0.2 * np.abs(errors)[seen])
+    assert sum(close) > 0.6 * len(close) and len(close) >= 2
+
+
+def test_modes_that_are_dropped_are_known():
+    """What `keep_modes` leaves out counts as what no mode was computed for."""
+    rotor = reduced("tilt", "free 12")
+    fewer = keep_modes(rotor, range(4))
+    given = {"supports": supports("stiff"), "modes": 5}
+    few, many = (campbell(each, [1000.0], **given) for each in (fewer, rotor))
+    values, better = (each.growth + 1j * each.frequencies_rotor for each in (few, many))
+    expected = better + many.basis_shifts
+    moving = np.abs(values) > 0.0
+    found = (values + few.basis_shifts)[moving]
+    np.testing.assert_allclose(found, expected[moving], rtol=5e-3)
+    assert np.abs(few.basis_shifts).max() > 3.0 * np.abs(many.basis_shifts).max()
+
+
+def test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning():
+    rotor, given = reduced("tilt", "free 4"), {"supports": supports("stiff"), "modes": 5}
+    with pytest.warns(UserWarning, match=r"mode \d \(.*\) at .* Hz errs by about .* interfaces"):
+        result = campbell(rotor, SPEEDS, **given)
+    assert "basis error" in result.table()
+    columns = result.columns()["basis error"]
+    np.testing.assert_array_equal(columns, result.tracked().basis_errors.ravel())
+    # of a frequency at rest it is the share that the frequency is wrong by
+    share = np.abs(result.basis_shifts[0].imag[2:]) / result.frequencies_inertial[0, 2:]
+    assert np.all(result.basis_errors[0, 2:] >= share)
+    held = reduced("tilt", "RBE3 2")
+    with pytest.warns(UserWarning, match="flexible modes of the reduced rotor .* twice as many"):
+        campbell(held, SPEEDS, accuracy=1e-6, **given)
+
+
+@pytest.mark.filterwarnings("error")
+def test_no_warning_within_the_accuracy_and_without_a_check():
+    rotor, given = reduced("tilt", "free 4"), {"supports": supports("stiff"), "modes": 5}
+    unchecked = campbell(rotor, SPEEDS, accuracy=None, **given)
+    assert unchecked.basis_errors is None
+    assert "error of the basis: not known" in unchecked.table()
+    assert np.all(np.isnan(unchecked.columns()["basis error"]))
+    campbell(reduced("tilt", "free 12"), SPEEDS, accuracy=0.5, **given)
+
+
+def test_full_models_have_no_error_and_unknown_ones_say_so():
+    full = reference("tilt", "soft")
+    assert not np.any(full.basis_shifts)
+    assert "basis" not in full.table()
+    old = replace(reduced("tilt", "free 4"), with_attachments=None, in_attached=None)
+    assert campbell(old, [0.0]).basis_shifts is None
+    dense = linear_model(disc_rotor(order=1), dense=True)
+    assert dense.is_full
+    assert stored_rotor(attached=False).in_attached is None
+
+
+def test_accuracy_is_checked():
+    with pytest.raises(ValueError, match="accuracy"):
+        campbell(reduced("tilt", "free 4"), [0.0], accuracy=0.0)
