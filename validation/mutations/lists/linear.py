@@ -12,11 +12,6 @@ LINEAR = [
             "np.abs(modes.orders) < system.step",
         ),
         (
-            "left-out shapes are not rigid",
-            "T = np.hstack([own, columns @ turn])",
-            "T = np.hstack([own, 2.0 * columns @ turn])",
-        ),
-        (
             "left vector of the transposed equations",
             "M @ x, trans=2",
             "M @ x, trans=1",
