@@ -69,7 +69,10 @@ def settings(steps, end_time):
 
 
 def add_scene(mbs, reduced, placed, options, name="rotor"):
-    """Add a rotor on two bearings with gravity and loads; `placed` turns rotor axes to space."""
+    """Add a rotor on two bearings with gravity and loads; `placed` turns rotor axes to space.
+
+    Entries of all sizes count: which are negligible depends on the axes of the mesh.
+    """
     mesh_to_space = placed @ options.get("mesh", UNIT).T
     options = {key: value for key, value in options.items() if key != "mesh"}
     body = add_rotor(
@@ -80,6 +83,7 @@ def add_scene(mbs, reduced, placed, options, name="rotor"):
         gravity=placed @ [1.0, -9.81, 2.0],
         mass_damping=3.0,
         stiffness_damping=1e-6,
+        negligible=0.0,
         **options,
     )
     ground = mbs.CreateGround()

@@ -1,4 +1,4 @@
-"""What the node of a rotor's frame cannot carry is found, for any axis; nothing else is."""
+"""What a rotor cannot carry is found, for any axis; nothing else is."""
 
 import warnings
 from functools import cache
@@ -16,7 +16,6 @@ from exudyn.itemInterface import (
     MarkerBodyRigid,
     MarkerNodeCoordinate,
     MarkerNodeCoordinates,
-    MarkerNodePosition,
     MarkerNodeRigid,
     MarkerNodeRotationCoordinate,
     MarkerSuperElementRigid,
@@ -31,7 +30,6 @@ from exudyn.utilities import (
     SphericalJoint,
     TorsionalSpringDamper,
 )
-from models import disc_fem
 from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
@@ -108,17 +106,17 @@ def springs(s, *rotations):
     )
 
 
+def dampers(s, *rotations):
+    damping = np.diag([0.0, 0.0, 0.0, *rotations])
+    return RigidBodySpringDamper(**s.pair(stiffness=np.zeros((6, 6)), damping=damping))
+
+
 def load(kind, vector, **options):
     return lambda s: s.mbs.AddLoad(kind(markerNumber=s.rigid, loadVector=vector(s), **options))
 
 
 def obj(make):
     return lambda s: s.mbs.AddObject(make(s))
-
-
-def across_in_node_axes(s):
-    turn = s.body.frame.orientation @ s.body.frame.B.T
-    return (turn.T @ s.b).tolist()
 
 
 CARRIED = {
@@ -130,6 +128,10 @@ CARRIED = {
     "joint about the axis": obj(
         lambda s: GenericJoint(**s.pair(constrainedAxes=[1, 1, 1, 0, 0, 1]))
     ),
+    "torque across": load(Torque, lambda s: (50.0 * s.a + 20.0 * s.n).tolist()),
+    "tilt spring": obj(lambda s: springs(s, 100.0, 0.0, 0.0)),
+    "hinge": obj(lambda s: RevoluteJointZ(**s.pair())),
+    "damper about the axis": obj(lambda s: dampers(s, 0.0, 0.0, 1.0)),
     "torsional spring": obj(lambda s: TorsionalSpringDamper(**s.pair(stiffness=10.0))),
     "inactive joint": obj(lambda s: GenericJoint(**s.pair(activeConnector=False))),
     "weight of the script": lambda s: s.mbs.AddLoad(
@@ -139,38 +141,20 @@ CARRIED = {
         )
     ),
 }
-LOST = {
-    "torque across": load(Torque, lambda s: (50.0 * s.a + 20.0 * s.n).tolist()),
-    "torque across in axes of the body": load(Torque, across_in_node_axes, bodyFixed=True),
-    "torque by a function": load(
-        Torque,
-        lambda s: [0.0, 0.0, 0.0],
-        loadVectorUserFunction=lambda mbs, t, v: [3.0, 2.0, -1.0],
-    ),
-    "tilt spring": obj(lambda s: springs(s, 100.0, 0.0, 0.0)),
-    "joint against a tilt": obj(
-        lambda s: GenericJoint(**s.pair(constrainedAxes=[0, 0, 0, 0, 1, 0]))
-    ),
-    "hinge": obj(lambda s: RevoluteJointZ(**s.pair())),
-    "torsional spring across": lambda s: s.mbs.AddObject(
-        TorsionalSpringDamper(markerNumbers=[s.across, s.rigid], stiffness=10.0)
-    ),
-}
 
 
 @pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
 @pytest.mark.parametrize("mount", MOUNTED)
 def test_only_what_the_node_cannot_carry_is_found(mount):
+    """Markers at the node carry everything but dampers of tilts."""
     for name, attach in CARRIED.items():
         s = Scene(mount)
         attach(s)
         assert s.found() == (), name
-    for name, attach in LOST.items():
-        s = Scene(mount)
-        attach(s)
-        (found,) = s.found()
-        assert "the frame's node does not tilt" in found, name
-        assert "body.add_marker(nodes)" in found
+    s = Scene(mount)
+    obj(lambda s: dampers(s, 2.0, 0.0, 0.0))(s)
+    (found,) = s.found()
+    assert "damping of tilts, 2 N m s/rad, comes with a false cross stiffness" in found
 
 
 @pytest.mark.parametrize("mount", ["z", "-y along z"])
@@ -207,34 +191,34 @@ def test_coordinates_of_the_node(mount):
 
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
 def test_forces_on_a_node_that_stands_still(locking):
+    """Those at a marker move the modes, those on a coordinate nothing."""
     for translation, across, along in (("none", 1, 1), ("in-plane", 0, 1), ("free", 0, 0)):
-        for direction, expected in (("a", across), ("n", along)):
+        for index, expected in ((0, across), (2, along)):
             s = Scene(translation=translation, locking=locking)
-            vector = (10.0 * getattr(s, direction)).tolist()
-            s.mbs.AddLoad(Force(markerNumber=s.rigid, loadVector=vector))
+            s.mbs.AddLoad(Force(markerNumber=s.rigid, loadVector=[10.0, 20.0, 30.0]))
+            assert s.found() == ()
+            marker = s.mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=s.node, coordinate=index))
+            s.mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
             found = s.found()
             assert len(found) == expected
             assert all("does not move" in sentence for sentence in found)
-        s = Scene(translation=translation, locking=locking)
-        place = s.mbs.AddMarker(MarkerNodePosition(nodeNumber=s.node))
-        s.mbs.AddObject(CartesianSpringDamper(markerNumbers=[s.base, place], stiffness=[1e3] * 3))
-        assert len(s.found()) == across
 
 
-def test_forces_on_the_node_of_a_swapped_body_act_elsewhere():
-    """Exudyn's body has its node in the mesh origin, this one in the centre of mass."""
-    for attach, expected in (
-        (lambda mbs, marker: mbs.CreateForce(itemNumber=marker, loadVector=[0, 9.0, 0]), 1),
-        (lambda mbs, marker: mbs.CreateTorque(itemNumber=marker, loadVector=[0, 0, 9.0]), 0),
-    ):
-        mbs = exu.SystemContainer().AddSystem()
-        made = mbs.CreateFixedAxisFFRFReducedOrderObject("rotor", disc_fem(), axis="z")
-        parts = made["FFRFReducedOrderObjectDict"]
-        attach(mbs, mbs.AddMarker(MarkerNodeRigid(nodeNumber=parts["nRigidBody"])))
-        mbs.Assemble()
-        found = parts["rotorBody"].check_connections(warn=False)
-        assert len(found) == expected
-        assert all("off the mesh origin" in sentence for sentence in found)
+def test_coordinates_of_a_node_off_the_centre_of_mass_move_that():
+    """As in a swapped body, whose node is in the mesh origin, 0.2 m below the centre of mass."""
+    for place, expected in (("mesh_origin", 1), ("centre_of_mass", 0)):
+        for index in (1, 5):
+            mbs = exu.SystemContainer().AddSystem()
+            body = add_rotor(
+                mbs, rings(np.eye(3), np.array([0.0, 0.0, 0.2]), "z"), frame_node=place
+            )
+            node = body.nodes["rigid"]
+            marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+            mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
+            mbs.Assemble()
+            found = body.check_connections(warn=False)
+            assert len(found) == (expected if index == 1 else 0)
+            assert all("0.2 m off the node's place" in sentence for sentence in found)
 
 
 def test_offset_without_a_lever():
@@ -257,9 +241,12 @@ def test_offset_without_a_lever():
 
 def test_run_check_counts_them_and_a_warning_names_them():
     s = Scene("z along x")
-    LOST["torque across"](s)
+    marker = s.mbs.AddMarker(
+        MarkerNodeCoordinate(nodeNumber=s.node, coordinate=s.body.locks.tilts[0])
+    )
+    s.mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=1.0))
     s.mbs.Assemble()
-    with pytest.warns(UserWarning, match=r"load 'load0': .* 50 N m there has no effect"):
+    with pytest.warns(UserWarning, match=r"load 'load0': .* does not tilt .* has no effect"):
         s.body.check_connections()
     row = check_run(s.body, warn=False)["connections"]
     assert row.value == 1

@@ -3,7 +3,13 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import LoadForceVector, LoadTorqueVector, MarkerNodeRigid
+from exudyn.itemInterface import (
+    LoadCoordinate,
+    LoadForceVector,
+    LoadTorqueVector,
+    MarkerNodeCoordinate,
+    MarkerNodeRigid,
+)
 from models import disc_rotor
 from point_rotors import ring_rotor
 from run_scenes import scene, solve
@@ -304,12 +310,11 @@ def test_failed_solution_is_said_to_have_failed(reduced):
     assert not check.ok
 
 
-def _on_frame(force=None, torque=None):
+def _on_coordinate(index, size):
     def load(mbs, body):
-        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
-        for kind, vector in ((LoadForceVector, force), (LoadTorqueVector, torque)):
-            if vector is not None:
-                mbs.AddLoad(kind(markerNumber=marker, loadVector=vector))
+        node = body.nodes["rigid"]
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=index))
+        mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=size))
 
     return load
 
@@ -317,26 +322,39 @@ def _on_frame(force=None, torque=None):
 @pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
 @pytest.mark.parametrize("locking", ["mass", "constraints"])
 @pytest.mark.parametrize(
-    ("translation", "force", "torque", "lost"),
+    ("translation", "index", "size", "lost"),
     [
-        ("in-plane", [0, 0, 100], None, True),
-        ("in-plane", [100, 0, 0], None, False),
-        ("none", [100, 0, 0], None, True),
-        ("free", [0, 0, 100], None, False),
-        ("free", None, [20, 0, 0], True),
-        ("free", None, [0, 0, 2], False),
+        ("in-plane", 2, 100.0, True),
+        ("in-plane", 0, 100.0, False),
+        ("none", 0, 100.0, True),
+        ("free", 2, 100.0, False),
+        ("free", 3, 20.0, True),
+        ("free", 5, 2.0, False),
     ],
 )
 def test_loads_that_the_frame_does_not_take_are_found(
-    reduced, locking, translation, force, torque, lost
+    reduced, locking, translation, index, size, lost
 ):
-    """A load on the frame's node reaches the coordinates that the formulation has, no others."""
-    load = _on_frame(force, torque)
+    """A load on a coordinate of the frame's node counts where the formulation has that."""
+    load = _on_coordinate(index, size)
     options = {"initial_speed": 50.0, "locking": locking}
     body = _finished(reduced, translation, load, steps=100, end_time=0.01, **options)
     check = check_run(body, warn=False)
     assert check["unresisted load"].ok != lost
     assert (check["unresisted load"].value > 0.3) == lost
+
+
+@pytest.mark.parametrize("place", ["centre_of_mass", "mesh_origin"])
+@pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
+def test_loads_at_the_node_and_weight_are_felt(reduced, translation, place):
+    def load(mbs, body):
+        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.nodes["rigid"]))
+        mbs.AddLoad(LoadForceVector(markerNumber=marker, loadVector=[30.0, 0.0, 100.0]))
+        mbs.AddLoad(LoadTorqueVector(markerNumber=marker, loadVector=[20.0, 0.0, 2.0]))
+
+    options = {"initial_speed": 50.0, "gravity": [0.0, -9.81, 0.0], "frame_node": place}
+    body = _finished(reduced, translation, load, steps=100, end_time=0.01, **options)
+    assert check_run(body, warn=False)["unresisted load"].value < 1e-3
 
 
 def test_loads_on_interfaces_are_felt(reduced):

@@ -103,10 +103,10 @@ def check_run(
     ``locked``           1e-6     locked coordinates off their place [rad], [size]
     ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
                                   left out by ``spin_coupling='frozen'``; the error of spin speeds
-    ``connections``      0        connectors, joints and loads at the frame's node that it cannot
-                                  carry: ``body.check_connections()`` names them
-    ``unresisted load``  0.01     load on the frame's node, or moment by a second-order arm, that no
-                                  equation resists, over the largest load
+    ``connections``      0        connectors, joints and loads that the rotor cannot carry:
+                                  ``body.check_connections()`` names them
+    ``unresisted load``  0.01     load on a locked coordinate, or moment by a second-order arm, that
+                                  no equation resists, over the largest load
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
                                   energy of the motion: how much the modes beyond may hold
     ``residual``         a        static deflection at interfaces that the modes leave out (residual
@@ -234,15 +234,15 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
     (
         "connections",
         lambda m: len(m.body.check_connections(warn=False)),
-        "connections, joints and loads that the frame's node cannot carry",
+        "connections, joints and loads that the rotor cannot carry",
         "body.check_connections() names them; use markers at interfaces or mesh nodes",
     ),
     (
         "unresisted load",
         lambda m: unresisted_load(m.body, m.record, m.size),
         "load that no equation resists, over the largest",
-        "put loads on interface markers; the frame's node carries spin and translation only, and "
-        "loads get no moment arm by deflection",
+        "put loads on rigid markers; coordinates of the frame's node carry spin and translation "
+        "only, and loads get no moment arm by deflection",
     ),
     (
         "top modes",

@@ -1,10 +1,10 @@
 """Loads that nothing resists: on frame coordinates that the formulation does not have.
 
 A load at an interface acts on the modes, and on locked coordinates of the frame's node as a
-reaction; the two are in proportion: the rigid motion ``a`` is the combination ``Lᵀa`` or ``Sᵀa`` of
-the modes, with ``L = Σ M x × ψ`` and ``S = Σ M ψ``, and ``a·Ie/Θ`` or ``a·mχ*/Θ`` of the spin, to
-which the modes are orthogonal. What a locked coordinate holds beyond that moves nothing: a load on
-the frame's node, or the moment arm that a load gets by the deflection.
+reaction; the two are in proportion: the translation or tilt ``a`` is the combination ``Sᵀa`` or
+``Lᵀa`` of the modes, with ``S = Σ M ψ`` and ``L = Σ M x × ψ``. What a locked coordinate holds
+beyond that moves nothing: a load on the coordinate, or the moment arm that a load gets by the
+deflection.
 """
 
 from __future__ import annotations
@@ -60,14 +60,16 @@ def _balance(
     turn = turned(body, q)
     on_modes = external[motion.modes]
     missing = np.zeros(6)
-    by_spin = _rigid_shares_of_spin(body) * load[body.locks.spin]
-    modal_force = turn @ (motion.invariants.S @ on_modes + by_spin[:3])
+    modal_force = turn @ motion.invariants.S @ on_modes
     for number in body.locks.fixed:
         if number < 3:
             missing[number] = load[number] - modal_force[number]
     force = motion.free_directions @ external[motion.translations] + modal_force
-    modal_moment = turn @ (_angular_momenta(body) @ on_modes + by_spin[3:])
+    modal_moment = turn @ _angular_momenta(body) @ on_modes
     known, seen = _moment_on_node(body, q, load)
+    # about the origin of the formulation, which may be elsewhere on the axis
+    arm = turn @ (body.selection.origin - body.frame.origin)
+    known = known - seen @ np.cross(arm, force)
     e = motion.orientation @ motion.invariants.direction
     tilting = (np.eye(3) - np.outer(e, e)) @ seen
     unresisted = tilting @ (known - modal_moment)
@@ -80,16 +82,6 @@ def _balance(
     moment = modal_moment + seen @ (known - modal_moment)
     residual = newton_tolerance(body) * np.abs(inertia[motion.modes]).max(initial=0.0)
     return force, moment, missing, float(residual * np.sqrt(motion.invariants.mass))
-
-
-def _rigid_shares_of_spin(body: RotorBody) -> np.ndarray:
-    """Return ``mχ*/Θ`` and ``I e/Θ``, shape (6,): momenta of the frame's own spin, mesh axes."""
-    inv = body.motion.invariants
-    held = body.formulation.has_spin or body.formulation.drive == "rigid"
-    if not held or inv.Theta == 0.0:
-        return np.zeros(6)
-    inertia = np.trace(inv.J) * np.eye(3) - inv.J
-    return np.r_[body.motion.static_unbalance, inertia @ inv.direction] / inv.Theta
 
 
 def _angular_momenta(body: RotorBody) -> np.ndarray:

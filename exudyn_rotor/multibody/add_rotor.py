@@ -23,6 +23,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody import condensed_markers, inputs
 from exudyn_rotor.multibody.assembly import check_at_assembly
 from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
+from exudyn_rotor.multibody.frame import CENTRE_OF_MASS, FRAME_NODES
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
     ConstraintMonitor,
@@ -31,6 +32,7 @@ from exudyn_rotor.multibody.locking import (
     guiding_force,
 )
 from exudyn_rotor.multibody.marker_body import MarkerBodyMesh, marker_body_mesh, marker_body_object
+from exudyn_rotor.multibody.node_markers import carry_markers
 from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.static_check import watched
@@ -43,14 +45,14 @@ from exudyn_rotor.theory.formulation import (
     PrescribedMotion,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import LEVELS, tilt_factors
+from exudyn_rotor.theory.stiffening import LEVELS
 
 TURNED_AXES = (
     "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
     "the mesh. Its flexible body and node have the mesh axes turned by body.frame.B, z along the "
     "spin axis; so have a script's own MarkerSuperElementRigid with its offset, connectors in its "
-    "axes, bodyFixed loads and MarkerNodeRotationCoordinate on the node, and sensors in local "
-    "axes. body.add_marker(nodes or interface, offset) and the interfaces' markers have mesh axes"
+    "axes, MarkerNodeRotationCoordinate on the node, and sensors in local axes. Markers at the "
+    "node, body.add_marker(nodes or interface, offset) and the interfaces' markers have mesh axes"
 )
 DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 
@@ -80,6 +82,7 @@ def add_rotor(
     show_markers: bool = True,
     condense_markers: bool = True,
     locking: str = "auto",
+    frame_node: str = CENTRE_OF_MASS,
     marker_body: bool = True,
     negligible: float = NEGLIGIBLE,
     color: Sequence[float] = DEFAULT_COLOR,
@@ -138,6 +141,12 @@ def add_rotor(
         notes and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for
         time-varying prescribed motions and for in-plane translation in a plane skew to the
         inertial axes, masses else.
+    frame_node : {'centre_of_mass', 'mesh_origin'}
+        Where the node of the frame is, ``body.nodes["rigid"]``: markers and sensors that a script
+        adds there move with the mean rigid motion of the rotor at this place, tilts included. The
+        centre of mass (its foot on the axis, where the translation is not free) is where a force
+        tilts nothing; Exudyn's own body has its node in the mesh origin, and so have the twins of
+        its calls. It changes neither equations nor cost. See the notes.
     marker_body : bool
         Whether a massless flexible body of Exudyn shares the coordinates. It gives markers, mesh
         sensors and drawing, and its node the coordinates that are locked; False leaves out all of
@@ -169,6 +178,13 @@ def add_rotor(
     mesh axis), or lies across mesh z and is mounted across inertial x: all coordinate axes mounted
     along coordinate axes are among these. For any other axis a warning says what is turned;
     ``body.add_marker`` and ``body.marker`` give mesh axes always.
+
+    The node itself carries the frame's coordinates, which do not tilt: its translation is that of
+    the centre of mass, its angle the rotor's mean rotation about the axis. Rigid and position
+    markers that are added at it (``MarkerNodeRigid``, ``MarkerNodePosition``), and sensors of
+    position, displacement, velocity, rotation and angular velocity, are put on virtual nodes of the
+    flexible body, so that forces, torques, springs and joints there act as on Exudyn's body.
+    Markers of single coordinates stay; ``body.check_connections()`` tells what they lack.
 
     Locking and solvers:
 
@@ -241,6 +257,7 @@ def add_rotor(
         markers=requests,
         condense_markers=checks.flag(condense_markers, "condense_markers"),
         locking=checks.choice(locking, "locking", LOCKINGS),
+        frame_node=checks.choice(frame_node, "frame_node", FRAME_NODES),
         marker_body=marker_body,
         negligible=negligible,
         color=inputs.color_of(color),
@@ -255,6 +272,7 @@ def add_rotor(
     offsets = {interface: request.offset for interface, request in requests.items()}
     mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
     body = watched(_add_with_marker_body(mbs, plan, mesh))
+    carry_markers(body)
     check_at_assembly(body)
     return body
 
@@ -294,11 +312,12 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
             [rigid, modes],
             mesh,
             plan.motion.invariants,
+            plan.selection.origin + plan.motion.invariants.center,
             plan.frame,
             plan.setup.color,
         )
     )
-    tilts = plan.frame.B @ tilt_factors(plan.motion.invariants)[0][:3]
+    tilts = plan.frame.B @ plan.motion.invariants.mean_rotation
     condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers, tilts)
     guide = guiding_force(plan.locks, plan.layout)
     constraints = {}

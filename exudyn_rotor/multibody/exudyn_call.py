@@ -105,9 +105,11 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             'oFFRFreducedOrder', 'loadGravity' and 'rotorBody'
 
     Note:
-        The node 'nRigidBody' sits in the centre of mass (translation free) or on the spin axis,
-        and carries only spin and translation: apply loads at the boundary markers. It has
-        mesh axes but for skew spin axes, for which a warning says what is turned. In local output
+        Markers and sensors that a script adds at the node 'nRigidBody' are in the mesh origin and
+        tilt with the rotor, as on Exudyn's body. The node's own coordinates are the spin and the
+        translation of the centre of mass; mbs.GetNodeOutput() and markers of single coordinates see
+        these, and body.check_connections() tells what such markers lack. It has mesh axes but for
+        skew spin axes, for which a warning says what is turned. In local output
         (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
 
         Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first

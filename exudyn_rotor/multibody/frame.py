@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+CENTRE_OF_MASS, MESH_ORIGIN = FRAME_NODES = ("centre_of_mass", "mesh_origin")
 FIRST, SECOND, THIRD = 3, 4, 5  # the angles among the coordinates of the node
 _ALONG = 1e-8  # sine of the angle up to which an axis counts as a coordinate axis
 
@@ -32,6 +33,8 @@ class BodyFrame:
     ----------
     origin : ndarray, shape (3,)
         Frame origin, mesh coordinates [m].
+    node : ndarray, shape (3,)
+        Where markers and sensors of the frame's node are, mesh coordinates [m].
     B : ndarray, shape (3, 3)
         Mesh axes → axes of the marker body; the identity where the body can have the mesh axes.
     orientation : ndarray, shape (3, 3)
@@ -47,6 +50,7 @@ class BodyFrame:
     """
 
     origin: np.ndarray
+    node: np.ndarray
     B: np.ndarray
     orientation: np.ndarray
     position: np.ndarray
@@ -61,14 +65,23 @@ class BodyFrame:
         origin: np.ndarray,
         mesh_position: np.ndarray,
         orientation: np.ndarray,
+        node: str = CENTRE_OF_MASS,
     ) -> BodyFrame:
-        """Place a rotor whose mesh origin lies at `mesh_position` with `orientation`."""
+        """Place a rotor whose mesh origin lies at `mesh_position` with `orientation`.
+
+        `origin` is that of the formulation. With the node at the mesh origin, it moves along the
+        spin axis next to that: a frame that does not tilt has the same motion there.
+        """
+        place = origin
+        if node == MESH_ORIGIN:
+            origin, place = origin - direction * (direction @ origin), np.zeros(3)
         B = np.eye(3)
         found = _with_mesh_axes(direction, orientation)
         if found is None:
             B = _turn_to_z(direction)
             found = _tait_bryan(orientation @ B.T), THIRD, 1
-        return cls(origin, B, orientation, mesh_position + orientation @ origin, *found)
+        position = mesh_position + orientation @ origin
+        return cls(origin, place, B, orientation, position, *found)
 
     @property
     def has_mesh_axes(self) -> bool:

@@ -70,6 +70,7 @@ class Setup:
     markers: Mapping[str, MarkerRequest]
     condense_markers: bool
     locking: str
+    frame_node: str
     marker_body: bool
     negligible: float
     color: tuple[float, ...]

@@ -141,12 +141,14 @@ def marker_body_object(
     nodes: list,
     mesh: MarkerBodyMesh,
     invariants: Invariants,
+    center: np.ndarray,
     frame: BodyFrame,
     color: Sequence[float],
 ) -> ObjectFFRFreducedOrder:
     """Return the marker body without inertia or stiffness of its own.
 
-    Mass, centre of mass and ``ΦᵀMΨ`` are given for gravity by ``MarkerBodyMass`` alone.
+    Mass, centre of mass (mesh coordinates) and ``ΦᵀMΨ`` are given for gravity by
+    ``MarkerBodyMass`` alone.
     """
     size = invariants.size
     empty = exudyn.MatrixContainer()
@@ -166,7 +168,7 @@ def marker_body_object(
         modeBasis=mesh.modes,
         referencePositions=mesh.positions.ravel(),
         mass=invariants.mass,
-        centerOfMass=frame.B @ invariants.center,
+        centerOfMass=frame.points(center),
         mPhitTPsi=frame.B @ invariants.S,
         **stress,
         visualization=VObjectFFRFreducedOrder(

@@ -63,7 +63,9 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     selection = select_modes(damped, formulation, setup.negligible)
     invariants = selection.invariants
     direction = reduced.axis.direction
-    frame = BodyFrame.of(direction, selection.origin, place.position, place.rotation)
+    frame = BodyFrame.of(
+        direction, selection.origin, place.position, place.rotation, setup.frame_node
+    )
     sign = frame.sign if setup.marker_body else 1
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin, sign)
     skew = setup.marker_body and locks.normal is not None

@@ -115,13 +115,13 @@ class RotorBody(RotorItems):
         )
 
     def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
-        """Return what the scene attaches to the frame's node that this node cannot carry.
+        """Return what the scene attaches to the rotor that it cannot carry.
 
-        Torques across the spin axis, springs, dampers and joints against tilts, forces along
-        translations that the formulation does not have, and forces at a marker's own offset that
-        has no lever: one sentence for each, with what to use instead. Exudyn's own body carries
-        them. ``mbs.Assemble()`` warns of each once, and :func:`exudyn_rotor.check_run` has a row of
-        this.
+        Loads and connectors on coordinates of the frame's node that are locked (tilts, translations
+        that the formulation does not have) or that move the centre of mass and not the node's
+        place, dampers of tilts at the node, and forces at a marker's own offset that has no lever:
+        one sentence for each, with what to use instead. Exudyn's own body carries them.
+        ``mbs.Assemble()`` warns of each once, and :func:`exudyn_rotor.check_run` has a row of this.
 
         Parameters
         ----------

@@ -44,8 +44,7 @@ class RotorItems:
     objects : mapping of str
         ``'physics'`` (the equations) and ``'marker_body'`` (markers, sensors, drawing).
     markers : mapping of str
-        Marker number of every interface. Apply loads here: the frame's node carries only the
-        motions that the formulation has.
+        Marker number of every interface.
     constraints : mapping of str
         Locking constraints by coordinate, where ``locking='constraints'``.
     gravity_load : LoadIndex or None

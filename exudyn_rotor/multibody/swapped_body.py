@@ -13,7 +13,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.axis_of_body import axis_at_rest, axis_of_motion, with_axis
-from exudyn_rotor.multibody.connections import stands_for_exudyns
+from exudyn_rotor.multibody.frame import MESH_ORIGIN
 from exudyn_rotor.multibody.locking import LOCKINGS
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -162,7 +162,7 @@ def add_swapped_body(
     velocity = start.velocity
     if formulation.translation_count:
         velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
-    body = add_rotor(
+    return add_rotor(
         mbs,
         reduced,
         name=name,
@@ -182,10 +182,9 @@ def add_swapped_body(
         show_markers=show_markers,
         condense_markers=more.condense_markers,
         locking=more.locking,
+        frame_node=MESH_ORIGIN,
         color=start.color,
     )
-    stands_for_exudyns(body)
-    return body
 
 
 def numbers(body: RotorBody) -> dict:

@@ -62,8 +62,10 @@ def select_modes(
 ) -> Selection:
     """Pick the columns of `reduced` for `formulation`.
 
-    Rigid motions held by the frame leave the basis; the others become orthogonal to them, so that
-    ``S = 0`` for the frame's translations and ``g = 0`` for its spin.
+    Rigid motions held by the frame leave the basis. What remains is orthogonal to the frame's
+    translations, ``S = 0``, and has no mean rotation about the axis where the frame holds the spin:
+    θ is the mean rotation of the rotor, that of the node of Exudyn's body, and a torque or a spring
+    on it acts as there. g then holds the unbalance, static and dynamic, and is zero in balance.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def select_modes(
         origin = reduced.center_of_mass
     else:
         origin = reduced.axis.project(reduced.center_of_mass)
-    T, columns = _columns(reduced, formulation, origin)
+    T, columns = _columns(reduced, formulation)
     invariants = reduced.invariants.in_basis(T).moved(origin - reduced.center_of_mass)
     return Selection(
         T=checks.read_only(T),
@@ -165,9 +167,7 @@ _HELD_BY_TRANSLATIONS = {
 }
 
 
-def _columns(
-    reduced: ReducedRotor, formulation: Formulation, origin: np.ndarray
-) -> tuple[np.ndarray, list[int]]:
+def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarray, list[int]]:
     """Return the basis T and which columns of the reduced basis it consists of."""
     identity = np.eye(reduced.size)
     if reduced.grounded:
@@ -178,16 +178,17 @@ def _columns(
         held = (*held, ModeKind.SPIN)
     columns = [i for i, kind in enumerate(reduced.kinds) if kind not in held]
     T = identity[:, columns]
-    if holds_spin and not formulation.translation_count:
-        T = _orthogonal_to(_spin_about(reduced, origin), T)
+    if holds_spin:
+        T = _orthogonal_to(_mean_rotation(reduced), T)
     return T, columns
 
 
-def _spin_about(reduced: ReducedRotor, origin: np.ndarray) -> np.ndarray:
-    """Unit vector of the spin ``X_e`` about the axis through `origin`, in the reduced basis."""
-    arm = reduced.center_of_mass - origin
-    spin = reduced.invariants.moved(-arm).g
-    return spin / np.linalg.norm(spin) if np.any(spin) else spin
+def _mean_rotation(reduced: ReducedRotor) -> np.ndarray:
+    """Unit vector along the mean rotation about the axis that each column of the basis has."""
+    elastic = [kind is ModeKind.ELASTIC for kind in reduced.kinds]
+    turns = np.where(elastic, 0.0, reduced.axis.direction @ reduced.invariants.mean_rotation)
+    size = np.linalg.norm(turns)
+    return turns / size if size else turns
 
 
 def _orthogonal_to(held: np.ndarray, T: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ from exudyn_rotor.theory.nodal import block_diagonal, skew
 Matrix = np.ndarray | sp.csr_array
 
 _UNIT = 1e-9  # a direction may differ from unit length by this much
+_EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +200,18 @@ class Invariants:
     def h(self) -> np.ndarray:
         """``M*_x̃ψ̃ = Ψ_eᵀM X_e`` (83), shape (k,): centrifugal load per ω²."""
         return checks.read_only(np.einsum("ab,abk->k", self._across, self.P))
+
+    @cached_property
+    def mean_rotation(self) -> np.ndarray:
+        """Rotation vector of every column in the mean (Tisserand), shape (3, k).
+
+        ``I⁻¹ Σ M y × ψ`` with y from the centre of mass and I the tensor of inertia about it. What
+        has no inertia does not turn.
+        """
+        central = self.moved(self.center)
+        inertia = np.trace(central.J) * np.eye(3) - central.J
+        momentum = np.einsum("aib,abk->ik", _EPSILON, central.P)
+        return checks.read_only(np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum)
 
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""

@@ -194,10 +194,7 @@ class _RigidSplit:
 
 def _rigid_split(invariants: Invariants) -> _RigidSplit:
     """Split every column by mass-orthogonality (Tisserand)."""
-    central = invariants.moved(invariants.center)
-    inertia = np.trace(central.J) * np.eye(3) - central.J
-    momentum = np.einsum("aib,abk->ik", _EPSILON, central.P)
-    rotation = np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum
+    central, rotation = invariants.moved(invariants.center), invariants.mean_rotation
     P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, central.J)
     return _RigidSplit(rotation, central.P - P_rigid, central.J)
 

@@ -138,6 +138,7 @@ BY_NAME: dict[str, Kind] = {
     "load_frequencies": v.NOT_NEGATIVE.but("range", "three numbers", three=[1.0, math.nan]),
     "loads": v.OBJECTS,
     "locking": v.WORD.but(another_word="springs"),
+    "frame_node": v.WORD.but(another_word="shaft"),
     "log_decrement": v.ANY_VALUES,
     "log": v.FLAG,
     "kind": v.WORD.but(another_word="soft"),

@@ -213,11 +213,14 @@ def eccentricity(quick: bool = False) -> Row:
 
 
 def far_inertia_error(distance: float) -> float:
-    """Return the error of ``Θ = I_p + m d²`` and of ``g = 0`` for a free spin about a far axis."""
+    """Return the error of ``Θ = I_p + m d²`` and of ``g = √m d`` for a spin about a far axis."""
     rotor = two_rings(offset=[0.1 * distance, 0.0, 0.0])
     chosen = select_modes(rotor.reduce(0), Formulation("none")).invariants
     exact = 2.0 * 0.1**2 * (1.0 + distance**2)
-    return float(max(abs(chosen.Theta / exact - 1.0), np.abs(chosen.g).max() / np.sqrt(exact)))
+    coupling = np.sqrt(2.0) * 0.1 * distance
+    return float(
+        max(abs(chosen.Theta / exact - 1.0), abs(np.linalg.norm(chosen.g) / coupling - 1.0))
+    )
 
 
 def far_axis(quick: bool = False) -> Row:
@@ -227,7 +230,7 @@ def far_axis(quick: bool = False) -> Row:
     return Row(
         "axis far outside of the body",
         "1000 × the radius",
-        "frequencies, Θ = I_p + md², g = 0; limit: round-off × squared distance, I_p beside md²",
+        "frequencies, Θ = I_p + md², g = √m d; limit: round-off × squared distance, I_p beside md²",
         max(far_axis_error(1e3), far_inertia_error(1e3)),
         EPS * 1e3**2,
         f"{found:.1g} radii: rotations are no longer seen to be free, or frequencies are wrong by "

@@ -61,13 +61,13 @@ REDUCTION = [
             "origin = reduced.center_of_mass",
         ),
         (
-            "modes not orthogonal to the spin that is held",
+            "modes with the rotation that is held",
             "np.outer(held, overlap[touched])",
             "0.0 * np.outer(held, overlap[touched])",
         ),
         (
-            "spin about the centre of mass",
-            "reduced.invariants.moved(-arm).g",
+            "modes without angular momentum about the axis, not without mean rotation",
+            "reduced.axis.direction @ reduced.invariants.mean_rotation",
             "reduced.invariants.g",
         ),
     ),

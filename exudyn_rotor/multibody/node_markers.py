@@ -1,0 +1,182 @@
+"""Markers and sensors that a script puts on the node of a rotor's frame, and that see its tilts.
+
+The frame of Exudyn's flexible body tilts, and moves, with the rotor. That of a fixed axis turns
+only; tilts are modes, and so are translations that the formulation does not have. A force on its
+node would act in the centre of mass, whatever the node's place, and a torque across the axis on
+nothing. What moves as the node of Exudyn's body is the mean rigid motion of the rotor at a point x,
+
+    u = A (Sζ/m + φ × (x − χ)),    φ = I⁻¹ Σ M y × ψ ζ,
+
+in which rigid modes have a share alone. Rigid and position markers at the node, and sensors of
+place, velocity and rotation, therefore go to virtual nodes of the flexible body that have this
+motion. Importing this module wraps ``MainSystem.AddMarker`` and ``MainSystem.AddSensor`` for that;
+nothing else is touched, and no cost arises where a script puts nothing on the node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import wraps
+from weakref import WeakKeyDictionary
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementRigid
+
+from exudyn_rotor.multibody.mark import Mark, mark_of
+from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
+
+_MARKERS = ("NodeRigid", "NodePosition")
+_KINDS = exudyn.OutputVariableType
+_OF_PLACE = (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity)
+_OF_ROTATION = (_KINDS.Rotation, _KINDS.RotationMatrix, _KINDS.AngularVelocity)
+_Z = SpinAxis([0.0, 0.0, 1.0])  # of the plane of the three nodes; any serves
+
+
+@dataclass(frozen=True, eq=False)
+class NodePlace:
+    """What moves as the node of Exudyn's body: a point of a rotor with its mean rigid motion.
+
+    Attributes
+    ----------
+    physics, node, marker_body : int
+        Numbers of the equations, of the frame's node and of the flexible body.
+    mark : tuple or None
+        By which the rotor is known again.
+    point : ndarray, shape (3,)
+        Axes of the flexible body, from the origin of its frame [m].
+    motion : ndarray, shape (6, m)
+        Mean displacement and rotation there, the same axes.
+    axes : ndarray, shape (3, 3)
+        Mesh axes → axes of the flexible body.
+    arm : float
+        Distance of the virtual nodes of a rigid marker from the point [m].
+    """
+
+    physics: int
+    node: int
+    marker_body: int
+    mark: Mark | None
+    point: np.ndarray
+    motion: np.ndarray
+    axes: np.ndarray
+    arm: float
+    virtual: dict[tuple, list[int]] = field(default_factory=dict)
+
+    def nodes(self, mbs: exudyn.MainSystem, rigid: bool, shift: np.ndarray) -> list[int]:
+        """Return one or three virtual nodes at the point, shifted by (3,); add them once."""
+        key = (rigid, *shift)
+        if key not in self.virtual:
+            u = self.motion[:3] - skew(shift) @ self.motion[3:]
+            place, columns = (self.point + shift)[None, :], u
+            if rigid:
+                moved = np.vstack([u, self.motion[3:]])
+                place, columns = virtual_nodes(place[0], self.arm, moved, _Z)
+            self.virtual[key] = append_nodes(mbs, self.marker_body, place, columns)
+        return self.virtual[key]
+
+
+# for every system: mark of the equations → place of the frame's node
+_places: WeakKeyDictionary[exudyn.MainSystem, dict[Mark | None, NodePlace]] = WeakKeyDictionary()
+
+
+def carry_markers(body: RotorItems) -> None:
+    """Let markers and sensors that are added at the node of a rotor's frame move with the rotor."""
+    inv, frame, selection = body.motion.invariants, body.frame, body.selection
+    rigid = [kind is not ModeKind.ELASTIC for kind in selection.kinds]
+    turn = np.where(rigid, inv.mean_rotation, 0.0)
+    arm = frame.node - selection.origin - inv.center
+    shift = np.where(rigid, inv.S, 0.0) / inv.mass - skew(arm) @ turn
+    _places.setdefault(body.mbs, {})[body.mark] = NodePlace(
+        physics=int(body.objects["physics"]),
+        node=int(body.nodes["rigid"]),
+        marker_body=int(body.objects["marker_body"]),
+        mark=body.mark,
+        point=frame.points(frame.node),
+        motion=np.vstack([frame.B @ shift, frame.B @ turn]),
+        axes=frame.B,
+        arm=float(np.sqrt(np.trace(inv.J) / inv.mass)),
+    )
+
+
+def rigid_nodes(body: RotorItems) -> list[list[int]]:
+    """Return the nodes of all rigid markers that have been put on the node of a rotor's frame."""
+    place = _places.get(body.mbs, {}).get(body.mark)
+    return [] if place is None else [nodes for key, nodes in place.virtual.items() if key[0]]
+
+
+def _place_of(mbs: exudyn.MainSystem, entries: dict) -> NodePlace | None:
+    """Return the place that a marker or sensor is at; None where it is at no rotor's node."""
+    try:
+        number = int(entries["nodeNumber"])
+    except (KeyError, TypeError, ValueError):
+        return None
+    for place in _places[mbs].values():
+        if place.node == number and mark_of(mbs, place.physics) == place.mark:
+            return place
+    return None
+
+
+def _entries(item: object) -> dict:
+    """Return the entries of an item of Exudyn; none where it is nothing that Exudyn knows."""
+    try:
+        return dict(item)
+    except (TypeError, ValueError):
+        return {}
+
+
+def _moved_marker(mbs: exudyn.MainSystem, item: object) -> object:
+    """Return a marker of the flexible body in place of one of its frame's node."""
+    entries = _entries(item)
+    kind = entries.get("markerType")
+    place = _place_of(mbs, entries) if kind in _MARKERS else None
+    if place is None:
+        return item
+    rigid = kind == "NodeRigid"
+    given = entries.get("localHT")
+    local = np.eye(4) if given is None or np.size(given) == 0 else np.asarray(given, dtype=float)
+    nodes = place.nodes(mbs, rigid, place.axes @ local[:3, 3])
+    common = {
+        "name": entries.get("name", ""),
+        "bodyNumber": place.marker_body,
+        "meshNodeNumbers": nodes,
+        "weightingFactors": [1.0 / len(nodes)] * len(nodes),
+        "visualization": {"show": entries.get("Vshow", True), "showMarkerNodes": False},
+    }
+    if not rigid:
+        return MarkerSuperElementPosition(**common)
+    turn = np.eye(4)
+    turn[:3, :3] = place.axes @ local[:3, :3]
+    return MarkerSuperElementRigid(localHT=turn, **common)
+
+
+def _moved_sensor(mbs: exudyn.MainSystem, item: object) -> object:
+    """Return a sensor of a marker in place of one of the frame's node, where there is such one."""
+    entries = _entries(item)
+    of_node = entries.get("sensorType") == "Node"
+    kind = entries.get("outputVariableType")
+    if not of_node or kind not in (*_OF_PLACE, *_OF_ROTATION):
+        return item
+    if _place_of(mbs, entries) is None:
+        return item
+    marker_type = "NodePosition" if kind in _OF_PLACE else "NodeRigid"
+    marker = {"markerType": marker_type, "nodeNumber": entries.pop("nodeNumber"), "Vshow": False}
+    number = mbs.AddMarker(marker)
+    return entries | {"sensorType": "Marker", "markerNumber": number}
+
+
+def _wrapped(add: Callable, moved: Callable) -> Callable:
+    @wraps(add)
+    def added(mbs: exudyn.MainSystem, pyObject: object):
+        return add(mbs, moved(mbs, pyObject) if mbs in _places else pyObject)
+
+    return added
+
+
+exudyn.MainSystem.AddMarker = _wrapped(exudyn.MainSystem.AddMarker, _moved_marker)
+exudyn.MainSystem.AddSensor = _wrapped(exudyn.MainSystem.AddSensor, _moved_sensor)
