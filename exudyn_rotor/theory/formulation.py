@@ -165,8 +165,8 @@ def suited_translation(
     can represent the same displacements, where rigid motions that the frame does not hold are
     modes, and yet only ``'free'`` cannot give another motion:
 
-    - with ``'none'`` the frame's node stands still. A load, spring or joint on it acts on nothing,
-      a sensor on it shows nothing; with ``'in-plane'`` this holds along the axis.
+    - with ``'none'`` the frame stands still. A load or spring on a coordinate of its node acts on
+      nothing, and these show nothing; with ``'in-plane'`` this holds along the axis.
     - modes turn with the rotor. What stands or moves slowly in space, a sag or a flight, turns
       backwards in their coordinates, and costs accuracy with the square of spin speed times step;
       a rotor that travels far is lost.

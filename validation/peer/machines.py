@@ -6,14 +6,17 @@ import exudyn
 import numpy as np
 from exudyn.itemInterface import (
     CoordinateSpringDamper,
+    LoadForceVector,
     LoadTorqueVector,
     MarkerBodyRigid,
     MarkerNodeCoordinate,
+    MarkerNodePosition,
     MarkerNodeRigid,
     MarkerNodeRotationCoordinate,
     NodeGenericData,
     NodePointGround,
     RevoluteJointZ,
+    SensorNode,
     TorsionalSpringDamper,
 )
 from exudyn.rigidBodyUtilities import InertiaCuboid, RotationMatrixY
@@ -28,11 +31,7 @@ ENGINE = "Examples/NGsolvePistonEngine"
 MOMENT = (
     "a torque T about a tilted axis has no moment Tφ across it: T over the stiffness of the tilt"
 )
-NODE = (
-    "a torque on the frame's node leaves out the inertia force of the unbalance, m e ω̇, and its "
-    "moment: ω̇/Ω² of the response to the unbalance; at a marker of the rotor it is there"
-)
-TILTS = "the node carries no tilting moment"
+DAMPED = "a damper of tilts at the frame's node has a false cross stiffness, which is told"
 VELOCITY = exudyn.OutputVariableType.AngularVelocity
 
 
@@ -189,19 +188,54 @@ def torque_on_the_node(script: Script) -> None:
 
 def spring_on_the_node(script: Script) -> None:
     """A bearing of a rotor at the node of its frame, as users do who know no boundaries."""
+    bearing_on_the_node(script, 0.0)
+
+
+def damper_on_the_node(script: Script) -> None:
+    """The same bearing, which also damps tilts."""
+    bearing_on_the_node(script, 1e-3)
+
+
+def bearing_on_the_node(script: Script, damping_of_tilts: float) -> None:
+    """Add a rotor with a bearing at its frame's node that resists tilts, and a spring."""
     body = spinning(script)
     node = script.mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.node))
     stiffness = np.diag([1e6, 1e6, 1e6, 1e5, 1e5, 0.0])
     script.mbs.CreateRigidBodySpringDamper(
         itemNumbers=[script.ground, node],
         stiffness=stiffness,
-        damping=1e-3 * stiffness,
+        damping=stiffness * np.repeat([1e-3, damping_of_tilts], 3),
         useIntrinsicFormulation=False,
     )
-    marker = body.position_marker("right")
-    seat = script.ground_marker(parts.mean_position(body.fem, "right"))
-    script.spring(seat, marker, [1e6] * 3, [1e3] * 3)
-    script.observe(marker)
+    on_springs(script, body, {"right": body.position_marker("right")})
+
+
+def joint_on_the_node(script: Script) -> None:
+    """A ball joint between the ground and the node of the frame, a spring at the other end."""
+    body = spinning(script)
+    body.weigh([0.0, -WEIGHT, 0.0])
+    node = script.mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.node))
+    script.mbs.CreateGenericJoint(
+        itemNumbers=[script.ground, node], constrainedAxes=[1, 1, 1, 0, 0, 0]
+    )
+    on_springs(script, body, {"right": body.position_marker("right")})
+
+
+def eccentric_node(script: Script) -> None:
+    """Force, torque and spring at the node of a crank, whose centre of mass is off the axis."""
+    body = script.flexible(parts.crank(), axis="z", initialAngularVelocity=[0.0, 0.0, 50.0])
+    body.weigh([0.0, -WEIGHT, 0.0])
+    node = script.mbs.AddMarker(MarkerNodeRigid(nodeNumber=body.node))
+    script.mbs.AddLoad(LoadForceVector(markerNumber=node, loadVector=[5.0, 20.0, 10.0]))
+    script.mbs.AddLoad(LoadTorqueVector(markerNumber=node, loadVector=[0.1, 0.2, 0.5]))
+    place = script.mbs.AddMarker(MarkerNodePosition(nodeNumber=body.node))
+    script.spring(script.ground_marker([0.0, 0.0, 0.0]), place, [2e5] * 3, [50.0] * 3)
+    on_springs(script, body, {end: body.position_marker(end) for end in parts.ENDS}, 1e5)
+    for kind in (exudyn.OutputVariableType.Displacement, VELOCITY):
+        sensor = SensorNode(
+            nodeNumber=body.node, storeInternal=True, writeToFile=False, outputVariableType=kind
+        )
+        script.sensors.append(script.mbs.AddSensor(sensor))
 
 
 def rotation_coordinate(script: Script) -> None:
@@ -344,9 +378,12 @@ SCENES = (
     Scene("two rotors, torsional coupling", torsional_coupling, 0.1, 1e-4, COUPLING),
     Scene("flexible bed of Exudyn", flexible_bed, 0.1, 1e-4),
     Scene("moving base", moving_base, 0.1, 1e-4),
-    Scene("torque on the frame's node, x", torque_on_the_node, 0.1, 1e-4, note=NODE),
-    Scene("bearing on the frame's node", spring_on_the_node, 0.1, 1e-4, note=TILTS),
-    Scene("torsion spring on the node's angle", rotation_coordinate, 0.1, 1e-4, note=NODE),
+    Scene("torque on the frame's node, x", torque_on_the_node, 0.1, 1e-4),
+    Scene("bearing on the frame's node", spring_on_the_node, 0.1, 1e-4),
+    Scene("the same with damped tilts", damper_on_the_node, 0.1, 1e-4, note=DAMPED),
+    Scene("joint on the frame's node", joint_on_the_node, 0.1, 1e-4),
+    Scene("node of an eccentric crank, sensors", eccentric_node, 0.1, 1e-4),
+    Scene("torsion spring on the node's angle", rotation_coordinate, 0.1, 1e-4),
     Scene("two bodies clamped at rest", clamped_at_rest, 0.1, 1e-4, COUPLING),
     Scene("pendulum", pendulum, 0.5, 2.5e-4, "Examples/pendulumVerify"),
     Scene("double pendulum in a plane", double_pendulum, 0.5, 2.5e-4, PENDULUM),

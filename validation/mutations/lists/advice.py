@@ -4,6 +4,15 @@ from validation.mutations.mutation import mutations
 
 ADVICE = [
     *mutations(
+        "advice/unresisted.py",
+        "test_run_check.py::test_loads_at_the_node_and_weight_are_felt",
+        (
+            "moment about the node, not about the centre of mass",
+            "seen @ np.cross(arm, force)",
+            "0.0 * seen @ np.cross(arm, force)",
+        ),
+    ),
+    *mutations(
         "advice/run_measures.py",
         "test_measures.py",
         (
