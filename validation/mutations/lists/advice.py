@@ -71,11 +71,6 @@ ADVICE = [
             "unresisted + tilting @ by_arm",
         ),
         (
-            "share of the spin in a rigid motion with the wrong sign",
-            "@ on_modes + by_spin[:3]",
-            "@ on_modes - by_spin[:3]",
-        ),
-        (
             "moments that tilt not compared with the modes'",
             "unresisted = tilting @ (known - modal_moment)",
             "unresisted = 0.0 * tilting @ (known - modal_moment)",
