@@ -9,15 +9,14 @@ nothing. What moves as the node of Exudyn's body is the mean rigid motion of the
 
 in which rigid modes have a share alone. Rigid and position markers at the node, and sensors of
 place, velocity and rotation, therefore go to virtual nodes of the flexible body that have this
-motion. Importing this module wraps ``MainSystem.AddMarker`` and ``MainSystem.AddSensor`` for that;
-nothing else is touched, and no cost arises where a script puts nothing on the node.
+motion: ``mbs.AddMarker`` and ``mbs.AddSensor`` see to it. Where a script puts nothing on the node,
+nothing is added.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import wraps
 from weakref import WeakKeyDictionary
 
 import exudyn
@@ -27,6 +26,7 @@ from exudyn.itemInterface import MarkerSuperElementPosition, MarkerSuperElementR
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
@@ -170,13 +170,13 @@ def _moved_sensor(mbs: exudyn.MainSystem, item: object) -> object:
     return entries | {"sensorType": "Marker", "markerNumber": number}
 
 
-def _wrapped(add: Callable, moved: Callable) -> Callable:
-    @wraps(add)
-    def added(mbs: exudyn.MainSystem, pyObject: object):
-        return add(mbs, moved(mbs, pyObject) if mbs in _places else pyObject)
-
-    return added
+@wraps_method("AddMarker")
+def _add_marker(add: Callable, mbs: exudyn.MainSystem, pyObject: object) -> exudyn.MarkerIndex:
+    """Add a marker as Exudyn does, one of a rotor's frame to the flexible body."""
+    return add(mbs, _moved_marker(mbs, pyObject) if mbs in _places else pyObject)
 
 
-exudyn.MainSystem.AddMarker = _wrapped(exudyn.MainSystem.AddMarker, _moved_marker)
-exudyn.MainSystem.AddSensor = _wrapped(exudyn.MainSystem.AddSensor, _moved_sensor)
+@wraps_method("AddSensor")
+def _add_sensor(add: Callable, mbs: exudyn.MainSystem, pyObject: object) -> exudyn.SensorIndex:
+    """Add a sensor as Exudyn does, one of a rotor's frame to a marker there."""
+    return add(mbs, _moved_sensor(mbs, pyObject) if mbs in _places else pyObject)
