@@ -87,6 +87,10 @@ THEORY = [
             "K2=-_work_hessian(split, -e @ e)",
             "K2=-_work_hessian(split, e @ e)",
         ),
+    ),
+    *mutations(
+        "theory/invariants.py",
+        "test_stiffening.py",
         (
             "second moments for the tensor of inertia",
             "np.trace(central.J) * np.eye(3) - central.J",
