@@ -5,6 +5,7 @@ Importing the package adds ``mbs.CreateFixedAxisFFRFReducedOrderObject`` to Exud
 """
 
 from exudyn_rotor.advice.check_result import RunCheck
+from exudyn_rotor.advice.energy_balance import EnergyBalance, energy_balance
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
@@ -71,6 +72,7 @@ __all__ = [
     "ConstantSpeed",
     "CriticalSpeedMap",
     "CriticalSpeeds",
+    "EnergyBalance",
     "Formulation",
     "HarmonicForce",
     "HarmonicResponse",
@@ -112,6 +114,7 @@ __all__ = [
     "craig_bampton_modes",
     "critical_speed_map",
     "critical_speeds",
+    "energy_balance",
     "free_modes",
     "harmonic_response",
     "keep_modes",

@@ -56,6 +56,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "Stability": lambda w: w.stability,
     "StabilityLevelOne": lambda w: w.level_one,
     "StabilityMap": lambda w: w.stability_map,
+    "EnergyBalance": lambda w: er.energy_balance(w.recorded),
     "Stiffening": lambda w: er.Stiffening(np.eye(3), np.eye(3)),
     "StartState": lambda w: w.steady.state(),
     "SteadyState": lambda w: w.steady,
@@ -108,6 +109,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     },
     "bearing_masses": lambda w: {"rotor": w.reduced, "bearings": ["left", "right"]},
     "campbell": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
+    "energy_balance": lambda w: {"body": w.recorded},
     "check_run": lambda w: {"body": w.body, "limits": {"tilt": 0.1}, "warn": False},
     "craig_bampton_modes": lambda w: {"rotor": w.solid, "count": 1, "interfaces": ["left"]},
     "critical_speed_map": lambda w: {

@@ -146,6 +146,20 @@ class World:
         """The steady state of `assembled`."""
         return er.steady_state(self.body)
 
+    @cached_property
+    def recorded(self) -> er.RotorBody:
+        """A rotor after four recorded steps."""
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = er.add_rotor(mbs, self.reduced)
+        body.start_recording()
+        mbs.Assemble()
+        settings = er.recommended_settings(4e-5, 1e-5)
+        settings.solution.sensors.writePeriod = 1e-5
+        settings.solution.file.write = False
+        settings.timeIntegration.verboseMode = 0
+        mbs.SolveDynamic(settings)
+        return body
+
     def renew(self) -> None:
         """Forget scenes and mesh, after a call that should have been refused has changed them."""
         for name in ("mbs", "assembled", "steady", "motion", "run_check", "mesh"):

@@ -13,6 +13,31 @@ ADVICE = [
         ),
     ),
     *mutations(
+        "advice/energy_balance.py",
+        "test_energy_balance.py",
+        (
+            "dampers of the rotor give energy",
+            "zeta_t @ (motion.invariants.D",
+            "-zeta_t @ (motion.invariants.D",
+        ),
+        ("weight counted twice", "works[:, 0] + by_weight", "works[:, 0]"),
+        (
+            "moment of loads not taken off the drive",
+            "q_tt[motion.modes]) - moment)",
+            "q_tt[motion.modes]))",
+        ),
+        (
+            "weight at the deflection against the spin",
+            "moment += turn @ axis.skew",
+            "moment -= turn @ axis.skew",
+        ),
+        (
+            "guide of a locked spin with the wrong sign",
+            "held -= place.signs",
+            "held += place.signs",
+        ),
+    ),
+    *mutations(
         "advice/run_measures.py",
         "test_measures.py",
         (

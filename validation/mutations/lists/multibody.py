@@ -205,4 +205,14 @@ MULTIBODY = [
             "moved[spin] = q[spin]",
         ),
     ),
+    *mutations(
+        "multibody/assembly.py",
+        "test_connections.py",
+        ("each item told at every assembly", "known.told.add(sentence)", "pass"),
+        (
+            "items of a rotor that is gone",
+            'mark is None or mark_of(mbs, known.objects["physics"]) != mark',
+            "mark is None",
+        ),
+    ),
 ]
