@@ -241,11 +241,6 @@ LINEAR = [
             "@ f[: len(held)] / source.invariants.mass",
             "@ f[: len(held)]",
         ),
-        (
-            "spin of the frame about the centre of mass, not the origin",
-            "source.invariants.moved(origin - source.center_of_mass).g",
-            "source.invariants.g",
-        ),
     ),
     *mutations(
         "linear/response/refinement.py",
