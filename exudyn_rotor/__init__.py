@@ -16,6 +16,7 @@ from exudyn_rotor.evaluation.level_one import (
 )
 from exudyn_rotor.evaluation.placement import bearing_masses, standard_unbalances
 from exudyn_rotor.evaluation.separation import SeparationMargins, separation_margins
+from exudyn_rotor.html_report import report
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
@@ -123,6 +124,7 @@ __all__ = [
     "permissible_unbalance",
     "propose",
     "recommended_settings",
+    "report",
     "select_modes",
     "separation_margins",
     "spinning_modes",

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,9 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.modal.campbell import campbell
-from exudyn_rotor.linear.modal.campbell_result import Campbell
-from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.evaluation.coupled_modes import Coupled, first_forward
 from exudyn_rotor.linear.models.supports import Support, check_interfaces, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
@@ -27,8 +24,7 @@ from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross-coupling
-_MULTIPLES = np.linspace(0.0, 10.0, 21)  # of the anticipated cross-coupling
-_STILL = 1e-6  # of the speed: a rotor that nothing holds has the frequency 0
+_MULTIPLES = np.linspace(0.0, 10.0, 11)  # of the anticipated cross-coupling
 _LEAST_DECREMENT = 0.1
 _LEAST_RATIO, _LARGE_RATIO = 2.0, 10.0  # of Q₀ to Q_A
 
@@ -249,9 +245,9 @@ def stability_level_one(
 ) -> StabilityLevelOne:
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
-    The mode is the lowest one that whirls forward with one nodal diameter without cross-coupling,
-    and is followed from there. Cross-coupling Q gives the forces ``(−Q u_n2, Q u_n1)``, which feed
-    forward whirl.
+    The mode is the lowest lateral one that the cross-coupling makes less stable, followed from
+    none to all of it: work on an orbit has the sign of its sense. Cross-coupling Q gives the forces
+    ``(−Q u_n2, Q u_n1)``, which feed forward whirl.
 
     Parameters
     ----------
@@ -278,8 +274,8 @@ def stability_level_one(
     Raises
     ------
     TypeError, ValueError
-        If an argument is of another kind or out of range, an interface is unknown, or no mode
-        whirls forward.
+        If an argument is of another kind or out of range, an interface is unknown, or it makes
+        no mode less stable.
 
     Examples
     --------
@@ -311,85 +307,24 @@ def stability_level_one(
         checks.number(critical_speed_ratio, "critical_speed_ratio", above=0.0)
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
-    mode = _Mode(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
-    followed = [mode.first()]
+    coupled = Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
+    followed = [coupled.modes(0.0)]
     for multiple in _MULTIPLES[1:]:
-        followed.append(mode.at(multiple, followed[-1]))
-    decrement = np.array([state.decrement for state in followed])
-    frequencies = np.array([state.frequency for state in followed])
+        followed.append(followed[-1].continued(coupled.modes(multiple)))
+    mode = first_forward(followed, speed)
+    decrement = np.array([modes.decrements[mode] for modes in followed])
+    frequencies = np.array([modes.frequencies[mode] for modes in followed])
     total, threshold = float(amounts.sum()), None
     if np.any(decrement <= 0.0):
         end = int(np.argmax(decrement <= 0.0))
         threshold = 0.0
         if end > 0:
-            ends, near = _MULTIPLES[end - 1 : end + 1], followed[end - 1]
-            threshold = total * brentq(lambda multiple: mode.at(multiple, near).decrement, *ends)
+
+            def between(multiple: float) -> float:
+                return followed[end - 1].continued(coupled.modes(multiple)).decrements[mode]
+
+            threshold = total * brentq(between, *_MULTIPLES[end - 1 : end + 1])
     return StabilityLevelOne(
         total * _MULTIPLES, decrement, frequencies, total, speed, machine, threshold,
         critical_speed_ratio, gas_density,
     )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class _State:
-    """The mode under one cross-coupling: eigenvalue and shape are those of the rotor frame."""
-
-    decrement: float
-    frequency: float
-    eigenvalue: complex
-    shape: np.ndarray
-
-    @classmethod
-    def of(cls, found: Campbell, column: int) -> _State:
-        return cls(
-            float(found.log_decrement[0, column]),
-            float(found.frequencies_inertial[0, column]),
-            found.growth[0, column] + 1j * found.frequencies_rotor[0, column],
-            found.vectors[0, :, column],
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Mode:
-    """The mode that is followed over multiples of the anticipated cross-coupling."""
-
-    target: ReducedRotor
-    speed: float
-    amounts: dict[str, float]
-    supports: tuple[Support, ...]
-    stiffening: str
-
-    def first(self) -> _State:
-        """Return the lowest forward mode without cross-coupling."""
-        found = self._modes(0.0)
-        frequencies = found.frequencies_inertial[0]
-        lateral = (found.nodal_diameters[0] == 1) & np.isin(found.whirl[0], ("forward", "mixed"))
-        lateral &= (found.damping_ratio[0] < 1.0) & (frequencies > _STILL * self.speed)
-        if not np.any(lateral):
-            raise ValueError(f"supports: no mode whirls forward at {self.speed:g} rad/s")
-        return _State.of(found, int(np.argmin(np.where(lateral, frequencies, np.inf))))
-
-    def at(self, multiple: float, near: _State) -> _State:
-        """Return the mode that has nearly the shape and the eigenvalue of a neighbour.
-
-        Forward and backward modes above their frequency have one shape in the rotor frame, and
-        several modes may have one eigenvalue.
-        """
-        found = self._modes(multiple)
-        likeness = np.abs(near.shape.conj() @ self.mass_matrix @ found.vectors[0])
-        away = np.abs(found.growth[0] + 1j * found.frequencies_rotor[0] - near.eigenvalue)
-        away[likeness < 0.5 * likeness.max()] = np.inf
-        return _State.of(found, int(np.argmin(away)))
-
-    @cached_property
-    def mass_matrix(self) -> np.ndarray:
-        """Mass matrix in the coordinates of the shapes."""
-        return linear_model(self.target, supports=self.supports).mass_matrix
-
-    def _modes(self, multiple: float) -> Campbell:
-        coupled = [
-            Support(name, [[0.0, multiple * q], [-multiple * q, 0.0]])
-            for name, q in self.amounts.items()
-        ]
-        given = {"supports": (*self.supports, *coupled), "stiffening": self.stiffening}
-        return campbell(self.target, self.speed, **given)

@@ -132,6 +132,11 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "permissible_unbalance": lambda w: {"grade": 2.5, "mass": 10.0, "speed": 300.0},
     "propose": lambda w: {**_rotor(w), "speeds": (0.0, 40.0), "load_frequencies": (0.0, 10.0)},
     "recommended_settings": lambda w: {"end_time": 1.0, "step": 1e-3},
+    "report": lambda w: {
+        "path": w.folder / "report.html",
+        "contents": [w.reduced, w.supports, w.campbell],
+        "raised": ["a warning"],
+    },
     "select_modes": lambda w: {"reduced": w.reduced, "formulation": er.Formulation()},
     "separation_margins": lambda w: {
         "response": w.unbalance,

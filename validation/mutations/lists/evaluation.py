@@ -37,7 +37,7 @@ EVALUATION = [
         ("levers exchanged", "np.array([1.0 - share, share])", "np.array([share, 1.0 - share])"),
     ),
     *mutations(
-        "evaluation/level_one.py",
+        "evaluation/coupled_modes.py",
         "test_evaluation.py",
         (
             "cross-coupling feeds backward whirl",
@@ -45,10 +45,15 @@ EVALUATION = [
             "[[0.0, -multiple * q], [multiple * q, 0.0]]",
         ),
         (
-            "mode followed by its shape alone",
-            "away[likeness < 0.5 * likeness.max()] = np.inf",
-            "away = -likeness",
+            "modes followed by their shapes alone",
+            "linear_sum_assignment(unlike + away)",
+            "linear_sum_assignment(unlike)",
         ),
+        ("mode that is made more stable", "end.decrements < start", "end.decrements > start"),
+    ),
+    *mutations(
+        "evaluation/level_one.py",
+        "test_evaluation.py",
         ("axial stages as impellers", '"axial": 1.5', '"axial": 3.0'),
         (
             "slope of the limit between the regions",

@@ -20,6 +20,15 @@ TOP = [
         ("draft left where saving failed", "        draft.unlink(missing_ok=True)", "        pass"),
     ),
     *mutations(
+        "html_report.py",
+        "test_report.py",
+        ("text taken for HTML", '"<p>{escape(item)}</p>"', '"<p>{item}</p>"'),
+        ("transverse moment", "(np.trace(second) + e @", "(np.trace(second) - e @"),
+        ("polar moment", "polar = np.trace(second) - e", "polar = np.trace(second) + e"),
+        ("units of the report forgotten", "return lambda: method(units=units)", "return method"),
+        ("usual picture beside one's own", "units, not pictured)", "units, True)"),
+    ),
+    *mutations(
         "units.py",
         "test_export.py::test_three_thousand_turns_a_minute_are_fifty_hertz",
         ("frequencies in rpm beside speeds", '"rpm": ("rpm", "Hz")', '"rpm": ("rpm", "rpm")'),

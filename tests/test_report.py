@@ -1,0 +1,158 @@
+"""The report is one file, holds what was given, and nothing in it is taken for HTML."""
+
+import base64
+import csv
+import io
+import re
+import warnings
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from point_rotors import ring_rotor
+from small_results import STORED
+
+from exudyn_rotor import Support, linear_model, report
+from exudyn_rotor.results import Result
+
+RESULTS = [kept for kept in STORED.values() if isinstance(kept, Result)]
+VOID = {"meta", "img"}
+
+
+class Page(HTMLParser):
+    """What a browser would find."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open, self.links, self.headings, self.tags = [], [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.links += [value for name, value in attributes if name in ("src", "href")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] in ("h1", "h2"):
+            self.headings.append(data)
+
+
+@pytest.fixture
+def written(tmp_path):
+    def make(contents, **given):
+        report(tmp_path / "report.html", contents, **given)
+        return (tmp_path / "report.html").read_text(encoding="utf-8")
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def ring():
+    return ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10))
+
+
+def test_every_result_is_shown_by_table_picture_and_columns(written):
+    """A stress field needs modal coordinates, a list of critical speeds has no picture."""
+    before = pyplot.get_fignums()
+    text = written(RESULTS, title="All")
+    page = Page(text)
+    assert page.open == []
+    assert page.headings[0] == "All"
+    assert len(page.headings) == 1 + len(RESULTS)
+    assert text.count("<pre>") == text.count('download="') == len(RESULTS)
+    assert page.tags.count("img") == len(RESULTS) - 2
+    assert pyplot.get_fignums() == before
+
+
+def test_the_file_needs_nothing_beside_it(written, ring):
+    page = Page(written([ring, ring.reduce(2), STORED["StabilityMap"], STORED["Stability"]]))
+    assert all(link.startswith(("data:", "#s")) for link in page.links)
+    pictures = [link for link in page.links if link.startswith("data:image/png;base64,")]
+    assert all(base64.b64decode(one.split(",")[1]).startswith(b"\x89PNG") for one in pictures)
+
+
+def test_columns_are_those_of_the_result(written):
+    kept = STORED["StabilityMap"]
+    text = written({"Growth, both": kept})
+    name, data = re.search(r'download="(.+?)" href="data:text/csv;base64,(.+?)"', text).groups()
+    assert name == "growth,_both.csv"
+    header, *rows = csv.reader(io.StringIO(base64.b64decode(data).decode("utf-8")))
+    assert header == list(kept.columns())
+    assert [float(row[2]) for row in rows] == kept.growth.ravel().tolist()
+
+
+def test_units_reach_tables_and_pictures(written):
+    kept = STORED["CriticalSpeeds"]  # 10 rad/s is 95.493 rpm
+    assert "95.493" in written(kept)
+    assert "95.493" not in written(kept, units="SI")
+
+
+def test_rotor_supports_and_model_are_described(written, ring):
+    """Two rings of 10 kg, r = 0.1 m, at ± 0.2 m: I_p = m r², I_t = m (r²/2 + l²)."""
+    supports = [
+        Support("mid", np.diag([4e5, 8e5]), 200.0),
+        Support("mid", damping=([0.0, 100.0], [1.0, 2.0]), frame="rotor"),
+        Support("mid", lambda speed: 1e4 + speed),
+    ]
+    reduced = ring.reduce(2)
+    text = written([ring, reduced, supports, linear_model(reduced, supports=supports[:1])])
+    assert "polar 0.1, mean transverse 0.45 kg m²" in text
+    assert "[400000, 0; 0, 800000] N/m" in text
+    assert "200 N s/m" in text
+    assert "by a table of 2 speeds, 0 to 954.93 rpm" in text
+    assert "by a function of the speed" in text
+    assert "free motions: translation along axis" in text
+    assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", "Linear model"]
+
+
+def test_own_pictures_take_the_place_of_the_usual_one(written):
+    kept = STORED["Campbell"]
+    ax = kept.plot(units="SI")
+    assert Page(written({"Campbell": [kept, ax]})).tags.count("img") == 1
+    assert ax.figure.number in pyplot.get_fignums()  # it is the caller's
+    bode = STORED["UnbalanceResponse"].plot()
+    assert Page(written([bode])).tags.count("img") == 1
+    pyplot.close("all")
+
+
+def test_text_is_never_taken_for_html(written):
+    text = written({"a < b": "<script>alert(1)</script> & more"}, title="R&D", raised=["<b>"])
+    assert "script" not in Page(text).tags
+    assert Page(text).headings == ["R&D", "a < b", "Warnings"]
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; more" in text
+
+
+def test_warnings_are_listed_once(written):
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always")
+        for _ in range(3):
+            warnings.warn("the table ends at 300 rad/s", UserWarning, stacklevel=1)
+    text = written("text", raised=[*raised, UserWarning("second")])
+    assert text.count("the table ends at 300 rad/s") == 1
+    assert "second" in text
+    assert "Warnings" not in written("text")
+
+
+def test_wrong_input_leaves_the_old_file(written, tmp_path):
+    kept = written("old")
+    for contents, message in (
+        (3, r"contents\[0\]: needs a rotor, .* got 3"),
+        ({"a": ["text", None]}, r"contents\[0\]\['a'\]: needs a rotor"),
+        ([Result], r"contents\[0\]: needs a rotor"),
+    ):
+        with pytest.raises(TypeError, match=message):
+            written(contents)
+    with pytest.raises(ValueError, match="contents: there are none"):
+        written([])
+    with pytest.raises(TypeError, match="raised: needs warnings or texts, got 3"):
+        written("text", raised=[3])
+    with pytest.raises(ValueError, match="units: 'knots' is unknown"):
+        written("text", units="knots")
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == kept
+    with pytest.raises(FileNotFoundError, match="path: the folder"):
+        report(tmp_path / "nowhere" / "report.html", "text")
