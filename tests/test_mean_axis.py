@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
+from exudyn.itemInterface import Force, MarkerNodeRigid, SensorNode, Torque
 from models import disc_fem
 from point_rotors import free_stiffness, ring_rotor
 
 from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface, SolidRotor, use_mean_axis_modes
 from exudyn_rotor.reduction.basis import rigid_columns
-from exudyn_rotor.reduction.mean_axis import false_softening
+from exudyn_rotor.reduction.mean_axis import false_softening, frame_shares
 
 OWN, TWIN = "CreateFFRFReducedOrderObject", "CreateFixedAxisFFRFReducedOrderObject"
 SPEED = 500.0
@@ -62,6 +63,43 @@ def test_modes_lose_their_momentum_and_nothing_else(held, solid):
         before.T @ (solid.stiffness @ before),
         atol=1e-9 * np.abs(before.T @ (solid.stiffness @ before)).max(),
     )
+
+
+def test_what_the_modes_move_exudyns_frame_by(held, solid):
+    """``Q − Rs = Ψη``: displacements of the columns, less those of the frame, are in its modes."""
+    reduced, modes = solid.reduce(held), held.modeBasis["matrix"]
+    shares, rigid = frame_shares(solid, reduced, modes), len(reduced.rigid_kinds)
+    columns = reduced.shapes.matrix
+    rest = columns[:, rigid:] - columns[:, :rigid] @ shares
+    missed = rest - modes @ np.linalg.lstsq(modes, rest, rcond=None)[0]
+    assert abs(missed).max() < 1e-9 * abs(rest).max()
+    free = disc_fem()
+    assert frame_shares(solid, solid.reduce(free), free.modeBasis["matrix"]) is None
+
+
+@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
+def test_force_and_sensor_at_the_node_are_on_exudyns_frame(held):
+    """At rest, where its body does not soften; the tilt is 1e-4."""
+    found = []
+    for call in (OWN, TWIN):
+        mbs = exu.SystemContainer().AddSystem()
+        axis = {"axis": "z"} if call == TWIN else {}
+        made = getattr(mbs, call)(name="rotor", femInterface=held, **axis)
+        node = made["FFRFReducedOrderObjectDict"]["nRigidBody"]
+        marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=node))
+        mbs.AddLoad(Force(markerNumber=marker, loadVector=[900.0, 300.0, 200.0]))
+        mbs.AddLoad(Torque(markerNumber=marker, loadVector=[0.0, 20.0, 30.0]))
+        kind = exu.OutputVariableType.Displacement
+        sensor = SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True)
+        sensor = mbs.AddSensor(sensor)
+        mbs.Assemble()
+        settings = exu.SimulationSettings()
+        settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 2e-3
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        mbs.SolveDynamic(settings)
+        found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
+    assert abs(found[1] - found[0]).max() < 1e-3 * abs(found[0]).max()
 
 
 def test_free_modes_stay_and_rigid_ones_are_left_out(solid):

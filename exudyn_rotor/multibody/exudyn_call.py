@@ -16,6 +16,7 @@ import exudyn_rotor.multibody.copying  # noqa: F401 (its GetDictionary)
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.later_stress import StressConversion, accept_stress_modes
+from exudyn_rotor.multibody.node_markers import carry_markers
 from exudyn_rotor.multibody.swapped_body import (
     Additions,
     State,
@@ -23,7 +24,7 @@ from exudyn_rotor.multibody.swapped_body import (
     numbers,
     solid_rotor,
 )
-from exudyn_rotor.reduction.mean_axis import warn_of_held_frame
+from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
@@ -106,9 +107,10 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 
     Note:
         Markers and sensors that a script adds at the node 'nRigidBody' are in the mesh origin and
-        tilt with the rotor, as on Exudyn's body. The node's own coordinates are the spin and the
-        translation of the centre of mass; mbs.GetNodeOutput() and markers of single coordinates see
-        these, and body.check_connections() tells what such markers lack. It has mesh axes but for
+        move and tilt with the rotor, as on Exudyn's body with these modes. The node's own
+        coordinates are the spin and the translation of the centre of mass; mbs.GetNodeOutput() and
+        markers of single coordinates see these, and body.check_connections() tells what such
+        markers lack. It has mesh axes but for
         skew spin axes, for which a warning says what is turned. In local output
         (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
 
@@ -162,6 +164,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     conversion = StressConversion(modes, reduced, femInterface.postProcessingModes)
     body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
     accept_stress_modes(body, conversion)
+    carry_markers(body, frame_shares(rotor, reduced, modes))
     if verbose:
         exudyn.Print(body.report())
     return {"FFRFReducedOrderObjectDict": numbers(body)} | {

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.later_stress import StressConversion, accept_stress_modes
+from exudyn_rotor.multibody.node_markers import carry_markers
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.swapped_body import (
     Additions,
@@ -29,7 +30,7 @@ from exudyn_rotor.multibody.swapped_body import (
     numbers,
     solid_rotor,
 )
-from exudyn_rotor.reduction.mean_axis import warn_of_held_frame
+from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -228,8 +229,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     ) -> dict:
         """Add the rotor; warnings point at what called the method that calls this."""
         inputs.main_system(mbs)
-        unnamed = isinstance(name, str) and name == ""
-        label = None if unnamed else checks.label(name, "name")
+        label = None if isinstance(name, str) and name == "" else checks.label(name, "name")
         rotation = _UNIT if _empty(rotation) else rotation
         start = State.checked(("positionRef", position), ("rotationMatrixRef", rotation), **more)
         reduced = self._reduce(start) if self._reduced is None else self._reduced
@@ -240,6 +240,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         body = add_swapped_body(mbs, label, reduced, start, self._more)
         if conversion is not None:
             accept_stress_modes(body, conversion)
+            carry_markers(body, frame_shares(self._solid, reduced, self.modeBasis))
         self.rotorBody = body
         made = numbers(body)
         self.nRigidBody, self.nGenericODE2 = made["nRigidBody"], made["nGenericODE2"]

@@ -7,10 +7,11 @@ nothing. What moves as the node of Exudyn's body is the mean rigid motion of the
 
     u = A (Sζ/m + φ × (x − χ)),    φ = I⁻¹ Σ M y × ψ ζ,
 
-in which rigid modes have a share alone. Rigid and position markers at the node, and sensors of
-place, velocity and rotation, therefore go to virtual nodes of the flexible body that have this
-motion: ``mbs.AddMarker`` and ``mbs.AddSensor`` see to it. Where a script puts nothing on the node,
-nothing is added.
+in which rigid modes have a share alone, and Craig–Bampton modes, which hold Exudyn's frame at a
+boundary (:mod:`exudyn_rotor.reduction.mean_axis`). Rigid and position markers at the node, and
+sensors of place, velocity and rotation, therefore go to virtual nodes of the flexible body that
+have this motion: ``mbs.AddMarker`` and ``mbs.AddSensor`` see to it. Where a script puts nothing on
+the node, nothing is added.
 """
 
 from __future__ import annotations
@@ -27,7 +28,6 @@ from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.wrapping import wraps_method
-from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
@@ -85,20 +85,28 @@ class NodePlace:
 _places: WeakKeyDictionary[exudyn.MainSystem, dict[Mark | None, NodePlace]] = WeakKeyDictionary()
 
 
-def carry_markers(body: RotorItems) -> None:
-    """Let markers and sensors that are added at the node of a rotor's frame move with the rotor."""
-    inv, frame, selection = body.motion.invariants, body.frame, body.selection
-    rigid = [kind is not ModeKind.ELASTIC for kind in selection.kinds]
-    turn = np.where(rigid, inv.mean_rotation, 0.0)
-    arm = frame.node - selection.origin - inv.center
-    shift = np.where(rigid, inv.S, 0.0) / inv.mass - skew(arm) @ turn
+def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
+    """Let markers and sensors that are added at the node of a rotor's frame move with the rotor.
+
+    `held` (r, k − r) is the motion of Exudyn's frame by the elastic columns of the reduced rotor,
+    in shares of its r rigid ones (:func:`exudyn_rotor.reduction.mean_axis.frame_shares`); none by
+    default.
+    """
+    reduced, frame, selection = body.selection.source, body.frame, body.selection
+    inv, rigid = reduced.invariants, len(reduced.rigid_kinds)
+    columns = selection.T[:rigid]
+    if held is not None:
+        columns = columns + held @ selection.T[rigid:]
+    turn = inv.mean_rotation[:, :rigid]
+    arm = frame.node - reduced.center_of_mass
+    shift = inv.S[:, :rigid] / inv.mass - skew(arm) @ turn
     _places.setdefault(body.mbs, {})[body.mark] = NodePlace(
         physics=int(body.objects["physics"]),
         node=int(body.nodes["rigid"]),
         marker_body=int(body.objects["marker_body"]),
         mark=body.mark,
         point=frame.points(frame.node),
-        motion=np.vstack([frame.B @ shift, frame.B @ turn]),
+        motion=np.vstack([frame.B @ shift, frame.B @ turn]) @ columns,
         axes=frame.B,
         arm=float(np.sqrt(np.trace(inv.J) / inv.mass)),
     )

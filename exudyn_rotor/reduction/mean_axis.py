@@ -21,6 +21,7 @@ from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.basis import gram_schmidt, rigid_columns
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.fem_interface import import_model
 from exudyn_rotor.solid.matrices import as_mass, as_nodes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
@@ -133,6 +134,28 @@ def false_softening(rotor: FiniteElementRotor, modes: np.ndarray) -> float:
         for matrix in (stiffening(invariants, "tilt").K2, invariants.C)
     )
     return float(missing) if missing > _SEEN * softening else 0.0
+
+
+def frame_shares(
+    rotor: FiniteElementRotor, reduced: ReducedRotor, modes: np.ndarray
+) -> np.ndarray | None:
+    """Return how the frame of Exudyn's body moves with the columns of a rotor reduced with `modes`.
+
+    Displacements are ``Rρ + Ψη`` with the modes Ψ in Exudyn's body, and ``Rρ' + Qζ`` here with the
+    columns ``Q = (Ψ − RG_r) G_f⁺``, where ``G = [R Q]ᵀMΨ``; so ``ρ = ρ' − G_rG_f⁺ζ``.
+
+    Returns
+    -------
+    ndarray, shape (r, k − r), or None
+        ``−G_rG_f⁺``, shares of the rigid columns of `reduced`; None where it is zero, as for free
+        eigenmodes.
+    """
+    rigid = len(reduced.rigid_kinds)
+    G = reduced.shapes.matrix.T @ (rotor.mass @ modes)
+    energy = np.einsum("ik,ik->k", G, G)
+    if np.all(np.einsum("ik,ik->k", G[:rigid], G[:rigid]) <= _SEEN * energy):
+        return None
+    return -G[:rigid] @ np.linalg.pinv(G[rigid:])
 
 
 def warn_of_held_frame(rotor: FiniteElementRotor, modes: np.ndarray, stacklevel: int) -> None:

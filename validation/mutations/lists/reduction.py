@@ -53,6 +53,15 @@ REDUCTION = [
         ),
     ),
     *mutations(
+        "reduction/mean_axis.py",
+        "test_mean_axis.py::test_what_the_modes_move_exudyns_frame_by",
+        (
+            "frame moved the wrong way by modes that hold it",
+            "return -G[:rigid] @",
+            "return G[:rigid] @",
+        ),
+    ),
+    *mutations(
         "reduction/selection.py",
         "test_reduction.py",
         (
