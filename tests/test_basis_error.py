@@ -15,6 +15,8 @@ from exudyn_rotor import (
     Support,
     campbell,
     craig_bampton_modes,
+    critical_speed_map,
+    critical_speeds,
     keep_modes,
     linear_model,
 )
@@ -169,3 +171,30 @@ def test_full_models_have_no_error_and_unknown_ones_say_so():
 def test_accuracy_is_checked():
     with pytest.raises(ValueError, match="accuracy"):
         campbell(reduced("tilt", "free 4"), [0.0], accuracy=0.0)
+
+
+@pytest.mark.parametrize("kind", ["soft", "stiff", "anisotropic"])
+def test_estimates_of_critical_speeds(kind):
+    """Against a basis with twice the modes and all static responses."""
+    given = {"supports": supports(kind), "max_speed": 3000.0, "nodal_diameters": [1]}
+    better = critical_speeds(reduced("tilt", "free 12").with_attachments, accuracy=None, **given)
+    result = critical_speeds(reduced("tilt", "free 6"), **given)
+    true = np.abs(better.speeds - result.speeds[:, None])
+    expected = true.min(axis=1) / result.speeds
+    assert np.all(result.basis_errors > 0.5 * expected)
+    size = result.basis_errors * result.speeds
+    away = np.abs(true - size[:, None]).min(axis=1)  # of pairs that the mesh splits either one
+    assert np.all(away < 0.1 * size)
+    assert "basis error" in result.table()
+
+
+def test_map_of_critical_speeds_has_the_errors_of_each():
+    rotor, given = reduced("tilt", "free 6"), {"nodal_diameters": [1], "max_speed": 3000.0}
+    with pytest.warns(UserWarning, match="the critical speed of .* Hz errs by about") as told:
+        result = critical_speed_map(rotor, ["left", "right"], [1e6, 1e8], **given)
+    assert len(told) == 1
+    stiff = [Support(name, 1e8) for name in ("left", "right")]
+    one = critical_speeds(rotor, supports=stiff, **given)
+    np.testing.assert_allclose(result.basis_errors[1, : len(one.speeds)], one.basis_errors)
+    assert "basis error up to" in result.table()
+    assert critical_speeds(disc_rotor(order=1), max_speed=1000.0).basis_errors.max(initial=0.0) == 0

@@ -50,6 +50,7 @@ BY_NAME: dict[str, Kind] = {
     "axis": _AXIS,
     "balanced": v.FLAG,
     "base": _FIELD,
+    "basis_errors": v.ANY_VALUES,
     "basis_shifts": v.ANY_VALUES,
     "basis": _FIELD,
     "bearings": _INTERFACES,

@@ -14,8 +14,14 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import excitation
-from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, checked, critical_speeds_of
+from exudyn_rotor.linear.modal.critical_speeds import (
+    CriticalSpeeds,
+    checked,
+    critical_speeds_of,
+    warn_of_critical,
+)
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -40,6 +46,9 @@ class CriticalSpeedMap(Result):
     whirl_codes : ndarray of int, shape (s, c)
         Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
     order : float
+    basis_errors : ndarray, shape (s, c), or None
+        Estimated relative errors by the basis of a reduced rotor, NaN as in
+        :class:`CriticalSpeeds`; None where they are not known.
 
     Examples
     --------
@@ -49,6 +58,7 @@ class CriticalSpeedMap(Result):
       stiffness [N/m]
       10000            50 forward
       40000            100 forward
+    error of the basis: not known
     """
 
     stiffnesses: np.ndarray = numbers("stiffnesses")
@@ -57,15 +67,18 @@ class CriticalSpeedMap(Result):
         "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
     )
     order: float
+    basis_errors: np.ndarray | None = numbers("stiffnesses", "speeds", finite=False, optional=True)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
         shown = Units.of(units)
         rows, places = np.nonzero(self.whirl_codes >= 0)
+        errors = self.basis_errors
         return {
             "stiffness [N/m]": self.stiffnesses[rows],
             f"critical speed [{shown.speed}]": shown.speeds(self.speeds[rows, places]),
             "whirl": np.array(WHIRLS)[self.whirl_codes[rows, places]],
+            "basis error": np.full(len(rows), np.nan) if errors is None else errors[rows, places],
         }
 
     def table(self, *, units: str = "SI") -> str:
@@ -78,8 +91,10 @@ class CriticalSpeedMap(Result):
         """
         shown = Units.of(units)
         lines = [f"critical speeds of order {self.order:g} [{shown.speed}]", "  stiffness [N/m]"]
-        for stiffness, speeds, codes in zip(
-            self.stiffnesses, shown.speeds(self.speeds), self.whirl_codes, strict=True
+        errors = self.basis_errors
+        reduced = errors is not None and np.nansum(errors) > 0.0
+        for i, (stiffness, speeds, codes) in enumerate(
+            zip(self.stiffnesses, shown.speeds(self.speeds), self.whirl_codes, strict=True)
         ):
             entries = (
                 f"{speed:.6g} {WHIRLS[code]}"
@@ -87,7 +102,9 @@ class CriticalSpeedMap(Result):
                 if code >= 0
             )
             lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
-        return "\n".join(lines)
+            if reduced:
+                lines[-1] += f" (basis error up to {np.nanmax(errors[i], initial=0.0):.1e})"
+        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(
         self,
@@ -136,6 +153,7 @@ def critical_speed_map(
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (1,),
     stiffening: str = "tilt",
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> CriticalSpeedMap:
@@ -150,7 +168,7 @@ def critical_speed_map(
         Positive [N/m].
     supports : sequence of Support, optional
         Further supports that do not change.
-    order, max_speed, nodal_diameters, stiffening
+    order, max_speed, nodal_diameters, stiffening, accuracy
         See :func:`critical_speeds`.
     executor : concurrent.futures.Executor, optional
         Computes the stiffnesses.
@@ -188,17 +206,25 @@ def critical_speed_map(
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", LEVELS)
     options.check_sweep(executor, progress)
-    content = WhirlContent.of(linear_model(target, supports=supports, stiffening=stiffening))
+    model = linear_model(target, supports=supports, stiffening=stiffening)
+    basis = BasisError.of(model, accuracy)
+    content = WhirlContent.of(model)
     given = {"content": content, "order": order, "waves": waves, "max_speed": max_speed}
-    task = partial(_at_stiffness, target, names, supports, stiffening, given)
+    task = partial(_at_stiffness, target, names, supports, stiffening, given, accuracy)
     solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
     most = max(len(entry.speeds) for entry in solved)
     speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
+    errors = np.full((len(values), most), np.nan) if basis.is_known else None
     for row, entry in enumerate(solved):
         count = len(entry.speeds)
         speeds[row, :count] = entry.speeds
         codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-    return CriticalSpeedMap(values, speeds, codes.astype(np.int64), order)
+        if errors is not None:
+            errors[row, :count] = entry.basis_errors
+    result = CriticalSpeedMap(values, speeds, codes.astype(np.int64), order, basis_errors=errors)
+    if errors is not None:
+        warn_of_critical(basis, speeds, errors)
+    return result
 
 
 def _at_stiffness(
@@ -207,8 +233,10 @@ def _at_stiffness(
     supports: tuple[Support, ...],
     stiffening: str,
     given: dict,
+    accuracy: float | None,
     stiffness: float,
 ) -> CriticalSpeeds:
     varied = tuple(Support(name, stiffness) for name in names)
     model = linear_model(target, supports=supports + varied, stiffening=stiffening)
-    return critical_speeds_of(model.undamped(), **given)
+    model = model.undamped()
+    return critical_speeds_of(model, **given, basis=BasisError.of(model, accuracy))

@@ -6,7 +6,7 @@ The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,12 +14,15 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
+
+JUDGED = 6  # critical speeds that count where no largest speed is given
 
 
 @storable
@@ -40,6 +43,9 @@ class CriticalSpeeds(Result):
     nodal_diameters : ndarray of int, shape (c,)
     vectors : ndarray, shape (k, c)
         Mode shapes in the coordinates of the rotor frame, unit length; the strongest harmonic.
+    basis_errors : ndarray, shape (c,), or None
+        Estimated relative errors by the basis of a reduced rotor; NaN above the lowest six where
+        no largest speed was given, None where they are not known.
 
     Examples
     --------
@@ -49,6 +55,7 @@ class CriticalSpeeds(Result):
     critical speeds of order 1
       [rad/s]      [Hz]        n  whirl
       100          15.9155     1  forward
+    error of the basis: not known
     """
 
     order: float
@@ -57,6 +64,7 @@ class CriticalSpeeds(Result):
     whirl: tuple[str, ...] = words("speeds")
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
+    basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -66,11 +74,13 @@ class CriticalSpeeds(Result):
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
         rotor = shown.frequencies(self.frequencies_rotor)
+        errors = self.basis_errors
         return {
             f"critical speed [{shown.speed}]": shown.speeds(self.speeds),
             f"frequency in the rotor frame [{shown.frequency}]": rotor,
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(self.whirl),
+            "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
         }
 
     def table(self, *, units: str = "SI") -> str:
@@ -83,11 +93,18 @@ class CriticalSpeeds(Result):
         """
         shown = Units.of(units)
         unit = f"[{shown.speed}]"
-        lines = [f"critical speeds of order {self.order:g}", f"  {unit:<11}  [Hz]        n  whirl"]
-        for speed, n, word in zip(self.speeds, self.nodal_diameters, self.whirl, strict=True):
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors > 0.0)
+        label = "      basis error" if reduced else ""
+        lines = [
+            f"critical speeds of order {self.order:g}",
+            f"  {unit:<11}  [Hz]        n  whirl{label}",
+        ]
+        for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
             count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
+            word = f"{self.whirl[i]:<9}  {errors[i]:.1e}" if reduced else self.whirl[i]
             lines.append(f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}")
-        return "\n".join(lines)
+        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
 
 def critical_speeds(
@@ -101,6 +118,7 @@ def critical_speeds(
     stiffening: str = "tilt",
     tolerance: float = 1e-9,
     residual: float = 1e-5,
+    accuracy: float | None = 1e-2,
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
 
@@ -129,6 +147,10 @@ def critical_speeds(
     residual : float, optional
         Largest relative residual of a large SolidRotor; its critical speeds err by about the
         square.
+    accuracy : float, optional
+        Relative error of a critical speed by the basis of a reduced rotor, estimated, above which
+        a warning is given. It looks at the speeds up to `max_speed`; without, at the lowest six.
+        None for no estimate.
 
     Raises
     ------
@@ -159,9 +181,20 @@ def critical_speeds(
     tolerance = options.accuracy(tolerance, "tolerance")
     residual = options.accuracy(residual, "residual")
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
-    return critical_speeds_of(
-        model, WhirlContent.of(model), order, waves, max_speed, tolerance, residual
+    basis = BasisError.of(model, accuracy)
+    result = critical_speeds_of(
+        model, WhirlContent.of(model), order, waves, max_speed, tolerance, residual, basis
     )
+    if result.basis_errors is not None:
+        warn_of_critical(basis, result.speeds, result.basis_errors)
+    return result
+
+
+def warn_of_critical(basis: BasisError, speeds: np.ndarray, errors: np.ndarray) -> None:
+    """Warn where the basis leaves out too much for some critical speed [rad/s]."""
+    if np.any(errors > 0.0):
+        worst = speeds.flat[np.nanargmax(errors)] / (2.0 * np.pi)
+        basis.warn(np.nan_to_num(errors), f"the critical speed of {worst:.4g} Hz")
 
 
 def critical_speeds_of(
@@ -172,13 +205,20 @@ def critical_speeds_of(
     max_speed: float | None,
     tolerance: float = 1e-9,
     residual: float = 1e-5,
+    basis: BasisError | None = None,
 ) -> CriticalSpeeds:
     """Return the critical speeds of an undamped model; arguments as :func:`checked` returns them.
 
     The `content` is that of the rotor, whatever its supports are.
     """
     critical = resonances(model, content, order, waves, max_speed, tolerance, residual)
-    return _collected(critical, content, order, model.size)
+    errors = None
+    if basis is not None and basis.is_known:
+        errors = np.full(len(critical), np.nan)
+        count = len(critical) if max_speed is not None else JUDGED
+        given = [(entry.speed, entry.multiples, entry.vectors) for entry in critical[:count]]
+        errors[:count] = basis.critical_errors(given)
+    return replace(_collected(critical, content, order, model.size), basis_errors=errors)
 
 
 def checked(

@@ -67,6 +67,17 @@ class BasisError:
         pairs = zip(speeds, modes, strict=True)
         return np.array([self.left_out.shifts(speed, entry) for speed, entry in pairs])
 
+    def critical_errors(
+        self, critical: Sequence[tuple[float, np.ndarray, np.ndarray]]
+    ) -> np.ndarray:
+        """Return relative errors of critical speeds, shape (c,), where they are known.
+
+        Of each the speed [rad/s], the multiples (h,) and harmonics (h, k), see :class:`LeftOut`.
+        """
+        if self.left_out is None:
+            return np.zeros(len(critical))
+        return np.array([abs(self.left_out.critical_shift(*one)) / one[0] for one in critical])
+
     def warn(self, errors: np.ndarray, what: str) -> None:
         """Warn where an estimate exceeds the accuracy; `what` names the worst."""
         worst = np.max(errors, initial=0.0)

@@ -26,10 +26,13 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.hill import hill_matrices
@@ -41,7 +44,39 @@ _OFF_ROOT = 1e-9
 # share of a flexibility that counts as missing; static modes of held interfaces lack 3 % of that
 # with inertia relief
 _MISSING = 0.1
+_FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
+_STEP = 1e-3  # of differences by the speed, relative
 _SMALL = 1e-8  # harmonics of a mode of unit length
+
+
+@dataclass(frozen=True, eq=False)
+class FinerRotor(LinearRotor):
+    """A reduced rotor beside the shapes that its basis lacks first, which move no mesh nodes.
+
+    Attributes
+    ----------
+    given : LinearRotor or None
+        The rotor whose basis is looked at.
+    """
+
+    given: LinearRotor | None = None
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """Nodes of the mesh with the motion that the reduced rotor knows of them."""
+        mesh = self.given.mesh
+        more = self.size - self.given.size
+        return None if mesh is None else _WiderMesh(mesh.nodes, mesh.columns, mesh.axis, more)
+
+
+@dataclass(frozen=True, eq=False)
+class _WiderMesh(Mesh):
+    """Mesh nodes, and how many further coordinates do not move them."""
+
+    more: int
+
+    def motion(self, number: int) -> np.ndarray:
+        return np.pad(super().motion(number), ((0, 0), (0, self.more)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +85,7 @@ class LeftOut:
 
     Attributes
     ----------
-    finer : LinearRotor
+    finer : FinerRotor
         In the coordinates of the reduced rotor, then those that it lacks.
     kept : int
         Number of the former.
@@ -58,7 +93,7 @@ class LeftOut:
         Whether the spin is no coordinate, as nothing holds it and it follows θ = Ωt.
     """
 
-    finer: LinearRotor
+    finer: FinerRotor
     kept: int
     held: bool = False
 
@@ -70,7 +105,8 @@ class LeftOut:
             return None
         with warnings.catch_warnings():  # said where the model was made
             warnings.filterwarnings("ignore", message="the centre of mass is")
-            finer = LinearRotor.of(finer, model.supports, model.stiffening)
+            finer = FinerRotor.of(finer, model.supports, model.stiffening)
+        finer = replace(finer, given=model)
         if not np.any(model.invariants.D):  # of its own or left out, as for critical speeds
             undamped = replace(finer.invariants, D=0.0 * finer.invariants.D)
             finer = replace(finer, invariants=undamped)
@@ -109,6 +145,8 @@ class LeftOut:
         left_out = np.tile(lacking, len(modes.orders))
         sizes = np.linalg.norm(modes.vectors, axis=1) > _SMALL
         shifts = np.zeros(len(modes.values), dtype=complex)
+        if self.finer.size == self.kept:
+            return shifts
         for column in np.flatnonzero(modes.values):
             used = np.where(left_out, central, np.repeat(sizes[:, column], len(lacking)))
             start = np.zeros((len(modes.orders), len(lacking)), dtype=complex)
@@ -118,12 +156,75 @@ class LeftOut:
             shifts[column] = _shift(M, D, K, modes.values[column], start.ravel()[used])
         return shifts
 
+    def _undamped_at(self, speed: float) -> PeriodicSystem:
+        """Return undamped equations; D is linear and K quadratic in Ω where supports are not."""
+        spin = self.finer.spin
+        if self.finer.stiffness_varies or (spin is not None and spin.coupled):
+            return self.finer.at(speed)
+        rest, fast = self._at_two_speeds
+        share = speed / fast.speed
+        D = {n: X + share * (fast.D[n] - X) for n, X in rest.D.items()}
+        K = {n: X + share**2 * (fast.K[n] - X) for n, X in rest.K.items()}
+        return PeriodicSystem(speed, rest.M, D, K)
+
+    @cached_property
+    def _at_two_speeds(self) -> tuple[PeriodicSystem, PeriodicSystem]:
+        """The equations at rest, and at so high a speed that rounding does not count."""
+        fastest = np.sqrt(np.diag(self.finer.invariants.K).max())
+        return self.finer.at(0.0), self.finer.at(float(fastest))
+
+    def critical_shift(self, speed: float, multiples: np.ndarray, vectors: np.ndarray) -> float:
+        """Return the estimated ``Ω − Ω_reduced`` of a critical speed [rad/s].
+
+        As :meth:`shifts`, of the undamped ``H(Ω) = Z(ifΩ, Ω)``, which is close to quadratic in Ω.
+
+        Parameters
+        ----------
+        speed : float
+            Ω_reduced [rad/s].
+        multiples : ndarray, shape (h,)
+            Frequencies f of the harmonics over Ω.
+        vectors : ndarray, shape (h, k)
+            Harmonics of the motion.
+        """
+        if self.finer.size == self.kept:
+            return 0.0
+        middle = multiples[len(multiples) // 2]
+        orders = np.round(multiples - middle).astype(int)
+
+        def dynamic(omega: float) -> tuple[np.ndarray, np.ndarray]:
+            M, D, K = hill_matrices(self._undamped_at(omega), orders)
+            rate = 1j * middle * omega
+            return rate**2 * M + rate * D + K, M
+
+        lacking = np.arange(self.finer.size) >= self.kept
+        x = np.zeros((len(orders), len(lacking)), dtype=complex)
+        x[:, ~lacking] = vectors
+        step = _STEP * speed
+        low, high = dynamic(speed - step)[0], dynamic(speed + step)[0]
+        shifted = speed * (1.0 + _OFF_ROOT)
+        H, M = dynamic(shifted)
+        slope, square = (high - low) / (2.0 * step), (high - 2.0 * H + low) / (2.0 * step**2)
+        # free rigid motions have neither stiffness nor, where they stand still, inertia
+        held = np.flatnonzero(np.abs(H).max(axis=1) > _FREE * speed**2 * M.diagonal().real)
+        parts = (X[np.ix_(held, held)] for X in (H, slope, square, M))
+        return float((_root(*parts, x.ravel()[held]) + shifted - speed).real)
+
+
+_known: WeakKeyDictionary[ReducedRotor, ReducedRotor | None] = WeakKeyDictionary()
+
 
 def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
     """Return a rotor with the columns of `rotor`, then those that it lacks, mass-orthonormal.
 
-    None where these are not known. The latter diagonalise the stiffness, ascending.
+    None where these are not known. The latter diagonalise the stiffness, ascending. Made once.
     """
+    if rotor not in _known:
+        _known[rotor] = _finer_rotor(rotor)
+    return _known[rotor]
+
+
+def _finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
     attached, own = rotor.with_attachments, rotor.in_attached
     if own is None:
         return None
@@ -147,11 +248,18 @@ def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
 def _shift(M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.ndarray) -> complex:
     """Return δ of the eigenvalue of ``λ²M + λD + K`` near `value`, beginning with a vector x."""
     shifted = value * (1.0 + _OFF_ROOT)
-    factor = la.lu_factor(shifted**2 * M + shifted * D + K, check_finite=False)
-    slope = 2.0 * shifted * M + D
-    force = slope @ x
+    dynamic = shifted**2 * M + shifted * D + K
+    return shifted - value + _root(dynamic, 2.0 * shifted * M + D, M, M, x)
+
+
+def _root(
+    constant: np.ndarray, linear: np.ndarray, square: np.ndarray, M: np.ndarray, x: np.ndarray
+) -> complex:
+    """Return δ of ``(constant + δ linear + δ² square) z = 0``, by one inverse iteration from x."""
+    factor = la.lu_factor(constant, check_finite=False)
+    force = linear @ x
     z = la.lu_solve(factor, force, check_finite=False)
     w = la.lu_solve(factor, M @ x, trans=2, check_finite=False)
-    constant, linear, square = np.vdot(w, force), np.vdot(w, slope @ z), np.vdot(w, M @ z)
-    root = np.sqrt(linear**2 - 4.0 * constant * square + 0j)
-    return shifted - value - 2.0 * constant / max(linear + root, linear - root, key=abs)
+    a, b, c = np.vdot(w, square @ z), np.vdot(w, linear @ z), np.vdot(w, force)
+    root = np.sqrt(b**2 - 4.0 * a * c + 0j)
+    return -2.0 * c / max(b + root, b - root, key=abs) if c != 0.0 else 0.0
