@@ -18,8 +18,8 @@ LINEAR = [
         ),
         (
             "slope of the dynamic stiffness halved",
-            "slope = 2.0 * shifted * M + D",
-            "slope = shifted * M + D",
+            "2.0 * shifted * M + D, M, M, x",
+            "shifted * M + D, M, M, x",
         ),
     ),
     *mutations(
