@@ -76,7 +76,9 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         stiffnessProportionalDamping: Rayleigh factor of the component modes' stiffness matrix
         gravity: gravity (3D vector, global)
         color: RGBA color if no contour is drawn
-        superElementRigidMarkersOffsets: local offset per marker, N x 3, mesh axes
+        superElementRigidMarkersOffsets: local offset per marker, N x 3, mesh axes; it turns with
+            the mean rotation of the body, as there. The whole lever of a rigid interface, by its
+            own rotation, has rotorBody.add_marker(interface, offset)
         showMarkers: if True, the markers are drawn
         verbose: if True, a report of the new body is printed
         axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);

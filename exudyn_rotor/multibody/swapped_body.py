@@ -155,14 +155,18 @@ def add_swapped_body(
     offsets: dict[str, np.ndarray] | None = None,
     show_markers: bool = True,
 ) -> RotorBody:
-    """Add the rotor; nothing has been added where this raises ValueError or TypeError."""
+    """Add the rotor; nothing has been added where this raises ValueError or TypeError.
+
+    The offsets of rigid markers turn with the rotor's mean rotation, as on Exudyn's body.
+    """
     speed = _speed_along(start.rotation @ reduced.axis.direction, start.omega)
     translation = suited_translation(more.translation, reduced.grounded)
     formulation = Formulation(translation, more.spin)
     velocity = start.velocity
     if formulation.translation_count:
         velocity = velocity + np.cross(start.omega, start.rotation @ reduced.center_of_mass)
-    return add_rotor(
+    rigid = more.markers == "rigid"
+    body = add_rotor(
         mbs,
         reduced,
         name=name,
@@ -178,13 +182,18 @@ def add_swapped_body(
         mass_damping=start.mass_damping,
         stiffness_damping=start.stiffness_damping,
         markers={} if more.markers is None else more.markers,
-        marker_offsets=offsets,
+        marker_offsets=None if rigid else offsets,
         show_markers=show_markers,
         condense_markers=more.condense_markers,
         locking=more.locking,
         frame_node=MESH_ORIGIN,
         color=start.color,
     )
+    for interface, offset in (offsets or {}).items() if rigid else ():
+        # Exudyn's own, which turns with the mean rotation, not with that of the interface
+        own = body.frame.B @ offset
+        mbs.SetMarkerParameter(body.marker(interface), "offset", own)
+    return body
 
 
 def numbers(body: RotorBody) -> dict:
