@@ -45,8 +45,7 @@ def rotor(attached: bool) -> ReducedRotor:
             RNG.normal(size=3 * count), RNG.normal(size=(count, 6)), 3e8, np.ones((count, 6))
         ),
         dropped=("column 7",),
-        with_attachments=made.with_attachments if attached else None,
-        in_attached=made.in_attached if attached else None,
+        attached=made.attached if attached else None,
     )
 
 

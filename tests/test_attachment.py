@@ -1,6 +1,7 @@
 """What modes leave out: attachment modes against a pseudo-inverse, and estimates against runs."""
 
 import gc
+import pickle
 import re
 import warnings
 from concurrent.futures import ThreadPoolExecutor
@@ -23,6 +24,8 @@ from exudyn_rotor import (
     keep_modes,
     propose,
 )
+from exudyn_rotor.reduction import reduce
+from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.solvers import inertia_relief
 
@@ -55,9 +58,31 @@ def exact_flexibility(rotor: SolidRotor) -> np.ndarray:
 def test_where_columns_are_among_attachments_is_checked(rotor):
     reduced = rotor.reduce(2)
     with pytest.raises(ValueError, match="in_attached: columns are not orthonormal"):
-        replace(reduced, in_attached=1.1 * reduced.in_attached)
-    with pytest.raises(ValueError, match="in_attached: needs with_attachments"):
-        replace(reduced, with_attachments=None)
+        Attached.known(reduced.with_attachments, 1.1 * reduced.in_attached)
+    with pytest.raises(ValueError, match="in_attached"):
+        Attached.known(reduced.with_attachments, reduced.in_attached[1:])
+    with pytest.raises(TypeError, match="attached"):
+        replace(reduced, attached=reduced)
+
+
+def test_attachments_are_computed_when_they_are_asked_for_and_once(rotor, monkeypatch):
+    calls = []
+
+    def counted(*given):
+        calls.append(1)
+        return attachment_modes(*given)
+
+    monkeypatch.setattr(reduce, "attachment_modes", counted)
+    reduced = rotor.reduce(2)
+    fewer, damped = keep_modes(reduced, [0]), reduced.with_damping(stiffness=1e-5)
+    assert not calls
+    first = fewer.with_attachments
+    assert damped.in_attached is reduced.in_attached
+    assert reduced.with_attachments is first
+    assert len(calls) == 1
+    sent = pickle.loads(pickle.dumps(fewer.attached))
+    np.testing.assert_array_equal(sent.columns, fewer.in_attached)
+    assert sent.rotor.labels == first.labels
 
 
 @pytest.mark.parametrize("count", [0, 2, 6])

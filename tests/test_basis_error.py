@@ -161,7 +161,7 @@ def test_full_models_have_no_error_and_unknown_ones_say_so():
     full = reference("tilt", "soft")
     assert not np.any(full.basis_shifts)
     assert "basis" not in full.table()
-    old = replace(reduced("tilt", "free 4"), with_attachments=None, in_attached=None)
+    old = replace(reduced("tilt", "free 4"), attached=None)
     assert campbell(old, [0.0]).basis_shifts is None
     dense = linear_model(disc_rotor(order=1), dense=True)
     assert dense.is_full

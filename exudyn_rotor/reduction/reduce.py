@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -11,6 +12,7 @@ from exudyn.FEM import FEMinterface
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.reduction.basis import OrthonormalBasis, orthonormal_basis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
@@ -72,9 +74,6 @@ def _reduced(
     )
     rigid_count = len(basis.rigid_kinds)
     _check_stable(invariants, rigid_count)
-    added, in_attached = None, None
-    if attach:
-        added, in_attached = _with_attachments(rotor, component, basis, rank_tolerance)
     own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
     if rotor.mass_damping is not None:
         damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
@@ -93,8 +92,9 @@ def _reduced(
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
         centrifugal=_centrifugal(rotor) if keep_shapes else None,
-        with_attachments=added,
-        in_attached=in_attached,
+        attached=Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+        if attach
+        else None,
     )
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from os import PathLike
 from typing import Any, TypeVar
 
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.storage import Entries, read_arrays, write_arrays
@@ -104,11 +105,24 @@ def _fields(entries: Entries, make: Callable[..., Rotor]) -> dict[str, Any]:
         "grounded": entries.flag("grounded"),
         "shapes": _shapes(entries.group("shapes.")),
         "centrifugal": _centrifugal(entries.group("centrifugal.")),
-        "with_attachments": make(**_fields(attached, make)) if attached else None,
-        **entries.arrays(_IN_ATTACHED, optional=True),
     }
+    if attached:
+        columns = entries.arrays(_IN_ATTACHED, optional=True).get(_IN_ATTACHED)
+        fields["attached"] = _attached(make(**_fields(attached, make)), columns, fields)
     attached.close()
     return fields
+
+
+def _attached(rotor: Rotor, columns: np.ndarray | None, fields: Mapping[str, Any]) -> Attached:
+    """Return the finer rotor, if it fits what the file says of the rotor itself."""
+    if rotor.interfaces.keys() != fields["interfaces"].keys():
+        raise ValueError("with_attachments: needs the interfaces of the rotor")
+    size = fields["invariants"].size
+    if columns is not None and columns.shape != (rotor.size, size):
+        raise ValueError(
+            f"in_attached: needs the shape ({rotor.size}, {size}), got {columns.shape}"
+        )
+    return Attached.known(rotor, columns)
 
 
 def _kinds(names: tuple[str, ...]) -> tuple[ModeKind, ...]:

@@ -10,6 +10,7 @@ from os import PathLike
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.fields import (
     Centrifugal,
     ModeShapes,
@@ -21,7 +22,6 @@ from exudyn_rotor.reduction.reduced_file import load_reduced, save_reduced
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 
-_ORTHONORMAL = 1e-6
 _SAME_DIRECTION = 1e-9  # of unit vectors: a file keeps them to the last bit
 
 
@@ -53,13 +53,9 @@ class ReducedRotor:
         None when the rotor was reduced without them: then no mesh nodes, no drawing.
     centrifugal : Centrifugal or None
         None when the rotor was reduced without a computed prestress, or without shapes.
-    with_attachments : ReducedRotor or None
-        The same rotor with static responses to loads at its interfaces and to the inertia forces
-        of its modes in a turning frame beside the modes, without shapes: what says how much the
-        modes leave out. None where that is not known.
-    in_attached : ndarray, shape (l, k), or None
-        The columns of this rotor in the basis of `with_attachments`, orthonormal. None where that
-        is not known, as in files of version 0.1.
+    attached : Attached or None
+        The same rotor with static responses beside the modes, computed when it is first asked for:
+        :attr:`with_attachments`. None where that is not known.
 
     Raises
     ------
@@ -95,8 +91,7 @@ class ReducedRotor:
     grounded: bool = False
     shapes: ModeShapes | None = None
     centrifugal: Centrifugal | None = None
-    with_attachments: ReducedRotor | None = None
-    in_attached: np.ndarray | None = None
+    attached: Attached | None = None
 
     def __post_init__(self) -> None:
         checks.instance(self.axis, "axis", SpinAxis)
@@ -136,24 +131,25 @@ class ReducedRotor:
             nodes = self.centrifugal.node_count
             if self.shapes is None or nodes != len(self.shapes.nodes):
                 raise ValueError(f"centrifugal: needs shapes of its {nodes} nodes")
-        if self.with_attachments is not None:
-            added = checks.instance(self.with_attachments, "with_attachments", ReducedRotor)
-            if added.interfaces.keys() != self.interfaces.keys():
-                raise ValueError("with_attachments: needs the interfaces of the rotor")
-        if self.in_attached is not None:
-            self._check_in_attached()
+        if self.attached is not None:
+            checks.instance(self.attached, "attached", Attached, "SolidRotor.reduce(…) makes one")
 
-    def _check_in_attached(self) -> None:
-        if self.with_attachments is None:
-            raise ValueError("in_attached: needs with_attachments")
-        shape = (self.with_attachments.size, self.size)
-        columns = checks.array(self.in_attached, "in_attached", shape=shape)
-        away = np.abs(columns.T @ columns - np.eye(self.size)).max(initial=0.0)
-        if away > _ORTHONORMAL:
-            raise ValueError(
-                f"in_attached: columns are not orthonormal, they miss it by {away:.3g}"
-            )
-        set_checked(self, in_attached=columns)
+    @property
+    def with_attachments(self) -> ReducedRotor | None:
+        """The same rotor with more columns, without shapes: how much the modes leave out.
+
+        Beside the modes it has static responses to loads at the interfaces and to the inertia
+        forces of the modes in a turning frame. None where that is not known.
+        """
+        return None if self.attached is None else self.attached.rotor
+
+    @property
+    def in_attached(self) -> np.ndarray | None:
+        """The columns of this rotor in the basis of :attr:`with_attachments`, shape (l, k).
+
+        Orthonormal. None where that is not known, as in files of version 0.1.
+        """
+        return None if self.attached is None else self.attached.columns
 
     @property
     def size(self) -> int:
@@ -216,15 +212,15 @@ class ReducedRotor:
         loss = checks.number(loss, "loss", least=0.0)
         if mass == 0.0 and stiffness == 0.0 and loss == 0.0:
             return self
-        inv, added = self.invariants, self.with_attachments
+        inv, attached = self.invariants, self.attached
         structural = inv.H
         if loss:
             structural = loss * inv.K + (0.0 if inv.H is None else inv.H)
         damping = inv.D + mass * self.mode_mass + stiffness * inv.K
-        if added is not None:
-            added = added.with_damping(mass=mass, stiffness=stiffness, loss=loss)
+        if attached is not None:
+            attached = attached.with_damping(mass=mass, stiffness=stiffness, loss=loss)
         damped = replace(inv, D=damping, H=structural)
-        return replace(self, invariants=damped, with_attachments=added)
+        return replace(self, invariants=damped, attached=attached)
 
     def static_displacement(self, speed: float) -> np.ndarray:
         """Return the static centrifugal displacement at a spin speed.

@@ -53,7 +53,7 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
     if shapes is not None:
         stress = None if shapes.stress is None else shapes.stress[:, :, columns]
         shapes = replace(shapes, matrix=shapes.matrix[:, columns], stress=stress)
-    in_attached = reduced.in_attached
+    attached = reduced.attached
     return replace(
         reduced,
         invariants=reduced.invariants.in_basis(np.eye(reduced.size)[:, columns]),
@@ -63,7 +63,7 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
         },
         mode_mass=reduced.mode_mass[np.ix_(columns, columns)],
         shapes=shapes,
-        in_attached=None if in_attached is None else in_attached[:, columns],
+        attached=None if attached is None else attached.of_columns(columns),
     )
 
 

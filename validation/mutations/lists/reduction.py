@@ -18,6 +18,15 @@ REDUCTION = [
         ),
     ),
     *mutations(
+        "reduction/attached.py",
+        "test_damping.py::test_factors_add_up_and_reach_the_attachment_modes",
+        (
+            "attachments without damping",
+            "self.rotor.with_damping(**factors)",
+            "self.rotor",
+        ),
+    ),
+    *mutations(
         "reduction/spinning.py",
         "test_rotating_blade.py::test_modes_at_speed_of_a_mass_on_a_string_and_oblique_springs",
         (
