@@ -21,10 +21,10 @@ with warnings.catch_warnings(record=True) as raised:
     solid = er.SolidRotor.from_ngsolve(mesh, steel, axis="z")
     for name, place in (("drive end", 0.06), ("midspan", 0.6), ("free end", 1.14)):
         solid = solid.interface_at(name, place, width=0.08)
-    rotor = solid.reduce(8, prestress=True)
-    bearings = [er.Support(end, np.diag([4e7, 6e7, 5e7]), 2e5 * np.eye(3)) for end in ENDS]
+    rotor = solid.reduce(er.craig_bampton_modes(solid, 8, coupling="RBE3"), prestress=True)
+    bearings = [er.Support(end, np.diag([2e7, 3e7, 2e7]), 3e4 * np.eye(3)) for end in ENDS]
     given = {"supports": bearings, "stiffening": "full"}
-    diagram = er.campbell(rotor, np.linspace(0.0, 14e3, 11) * RPM, modes=10, **given)
+    diagram = er.campbell(rotor, np.linspace(1e3, 14e3, 14) * RPM, modes=10, **given)
     over = {"max_speed": 30e3 * RPM, "stiffening": "full"}
     critical = er.critical_speed_map(rotor, ENDS, np.geomspace(1e6, 1e10, 9), **over)
     loads = er.bearing_masses(rotor, ENDS)
@@ -42,5 +42,5 @@ contents += [{"Campbell diagram": [picture, diagram]}, critical, response, margi
 er.report("report.html", [*contents, growth, level_one], title="Compressor rotor", raised=raised)
 volume = np.pi * (0.05**2 * 1.2 + 3 * (0.16**2 - 0.05**2) * 0.06)
 assert abs(loads.sum() / (7830.0 * volume) - 1.0) < 1e-3
-assert np.allclose(margins.peaks / RPM, 5600.0, rtol=0.02)
+assert np.allclose(margins.peaks / RPM, 4175.0, rtol=0.01)
 assert all([*margins.accepted, *growth.stable, not level_one.needs_level_two])

@@ -74,6 +74,8 @@ class Coupled:
             for name, q in self.amounts.items()
         ]
         given = {"supports": (*self.supports, *coupled), "stiffening": self.stiffening}
+        if multiple > 0.0:  # the basis is the same
+            given["accuracy"] = None
         found = campbell(self.target, self.speed, **given)
         momenta = self._mass_matrix @ found.vectors[0]
         size = np.sqrt(np.sum(found.vectors[0].conj() * momenta, axis=0).real)
