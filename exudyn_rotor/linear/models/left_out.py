@@ -115,6 +115,9 @@ class LeftOut:
     def at(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
         """Return the finer equations at a speed [rad/s], and which coordinates are left out."""
         system, lacking = self.finer.at(speed), np.arange(self.finer.size) >= self.kept
+        if speed == 0.0:  # at rest nothing turns: coefficients are what they are at θ = 0
+            M, D, K = ({0: X} for X in system.matrices(0.0))
+            system = PeriodicSystem(0.0, M, D, K, system.H)
         if not self.held:
             return system, lacking
         others = self.finer.spin.rest()
