@@ -28,13 +28,14 @@ from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceRe
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.steady_state import SteadyState, steady_state
 from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
-from exudyn_rotor.linear.stability.stability import (
-    Stability,
-    stability,
+from exudyn_rotor.linear.stability.stability import stability
+from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
+from exudyn_rotor.linear.stability.stability_result import Stability
+from exudyn_rotor.linear.stability.thresholds import (
+    StabilityThresholds,
     stability_threshold,
     unstable_ranges,
 )
-from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
@@ -99,6 +100,7 @@ __all__ = [
     "Stability",
     "StabilityLevelOne",
     "StabilityMap",
+    "StabilityThresholds",
     "StartState",
     "SteadyState",
     "Stiffening",

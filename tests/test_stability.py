@@ -17,13 +17,10 @@ from exudyn_rotor.linear.periodic.exponents import (
 )
 from exudyn_rotor.linear.periodic.fundamental import _magnus, floquet_exponents, monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
-from exudyn_rotor.linear.stability.stability import (
-    Stability,
-    stability,
-    stability_threshold,
-    unstable_ranges,
-)
+from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.stability_map import stability_map
+from exudyn_rotor.linear.stability.stability_result import Stability
+from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
 from exudyn_rotor.results import load_result
 
 STIFFNESS, OUTER, INNER, MASS = 2e5, 60.0, 40.0, 5.0
@@ -131,7 +128,7 @@ def test_internal_damping_sets_in_at_the_closed_form_speed():
     inner = Support("all", damping=INNER, frame="rotor")
     expected = np.sqrt(STIFFNESS / MASS) * (1.0 + OUTER / INNER)
     found = stability_threshold(rotor, 100.0, 900.0, supports=[outer, inner])
-    assert found == pytest.approx(expected, rel=1e-6)
+    assert found.values == pytest.approx([expected], rel=1e-6)
     result = stability(rotor, [0.0, 0.99 * expected, 1.01 * expected], supports=[outer, inner])
     assert result.stable.tolist() == [True, True, False]
     assert np.all(result.base == 0.0)
@@ -307,8 +304,10 @@ def test_more_bad_input():
     resting = PeriodicSystem(0.0, *({0: np.eye(1)} for _ in range(3)))
     with pytest.raises(ValueError, match="no period"):
         monodromy(resting)
-    with pytest.raises(ValueError, match="stable at 10 as well as at 20"):
-        stability_threshold(asymmetric_shaft(), 10.0, 20.0, supports=anisotropic())
+    with pytest.raises(ValueError, match="speed: is the parameter"):
+        stability_threshold(asymmetric_shaft(), 10.0, 20.0, supports=anisotropic(), speed=5.0)
+    with pytest.raises(ValueError, match="speed: needs the spin speed"):
+        stability_threshold(lambda stiffness: asymmetric_shaft(), 10.0, 20.0)
     with pytest.raises(TypeError, match="unknown option guess"):
         unstable_ranges(asymmetric_shaft(), [10.0, 20.0], guess=1)
     with pytest.raises(ValueError, match=r"y: needs .* ascending order"):

@@ -267,8 +267,8 @@ def test_analyses_in_time_say_that_they_leave_it_out():
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         stability(rotor, [50.0])
     without = pytest.warns(UserWarning, match="stability finds exponents without it")
-    with without, pytest.raises(ValueError, match="stable at 10 as well as at 20"):
-        stability_threshold(rotor, 10.0, 20.0)
+    with without:
+        assert not stability_threshold(rotor, 10.0, 20.0).values.size
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         unstable = unstable_ranges(rotor, [10.0, 20.0])
     assert unstable.shape == (0, 2)

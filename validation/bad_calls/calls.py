@@ -57,6 +57,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "StabilityLevelOne": lambda w: w.level_one,
     "StabilityMap": lambda w: w.stability_map,
     "EnergyBalance": lambda w: er.energy_balance(w.recorded),
+    "StabilityThresholds": lambda w: w.thresholds,
     "Stiffening": lambda w: er.Stiffening(np.eye(3), np.eye(3)),
     "StartState": lambda w: w.steady.state(),
     "SteadyState": lambda w: w.steady,

@@ -234,6 +234,11 @@ class World:
         """Growth over stiffness and speed."""
         return er.stability_map(self.build, [1e6, 2e6], SPEEDS)
 
+    @cached_property
+    def thresholds(self) -> er.StabilityThresholds:
+        """The range of speeds that has none."""
+        return er.stability_threshold(self.reduced, 10.0, 20.0, supports=self.supports, samples=2)
+
     def build(self, stiffness: float, speed: float) -> tuple[Any, float]:
         """Return a target of the stability map."""
         supports = (*self.axial, er.Support("left", stiffness), er.Support("right", stiffness))

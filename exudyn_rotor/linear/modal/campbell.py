@@ -14,7 +14,7 @@ from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of
 from exudyn_rotor.linear.models.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -23,7 +23,6 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.eigenvalues import groups
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
@@ -172,11 +171,7 @@ Solved = tuple[FloquetModes, np.ndarray, np.ndarray, np.ndarray]
 
 def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count: int) -> Solved:
     """Return the modes with inertial frequency, whirl and nodal diameter, each (k,)."""
-    vectors = modes.vectors.astype(complex)
-    for group in groups(modes.values, modes.resolution):
-        if len(group) > 1:
-            vectors[:, :, group] = content.polarised(vectors[:, :, group], modes.orders)
-    classified = content.classify(vectors, modes.orders, modes.values.imag, speed)
+    vectors, *classified = content.named(modes, speed)
     lowest = FloquetModes(
         modes.values[:count], vectors[:, :, :count], modes.orders, modes.resolution
     )
@@ -210,16 +205,13 @@ def _collected(
     eigenvalues = np.array([entry.values for entry in modes]) + 0.0
     inertial = np.array(inertial)
     growth = eigenvalues.real
-    size = np.hypot(growth, inertial)
-    still = size == 0.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        decrement = np.where(growth == 0.0, 0.0, -2.0 * np.pi * growth / inertial)
+    ratio, decrement = damping_of(growth, inertial)
     return Campbell(
         speeds=speeds,
         frequencies_rotor=eigenvalues.imag,
         growth=growth,
         frequencies_inertial=inertial,
-        damping_ratio=np.where(still, 0.0, -growth / np.where(still, 1.0, size)),
+        damping_ratio=ratio,
         log_decrement=decrement,
         whirl_codes=np.array(whirl, dtype=np.int64),
         nodal_diameters=np.array(diameters, dtype=np.int64),

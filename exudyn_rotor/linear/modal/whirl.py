@@ -16,10 +16,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
+from exudyn_rotor.linear.periodic.eigenvalues import groups
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
 WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
 FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))
+
+# kinds of motion: 'lateral' has one nodal diameter, 'disc' more; 'other' are radial ones and those
+# that neither shapes nor interfaces show
+FAMILIES = ("lateral", "torsional", "axial", "disc", "other")
 
 # a mode is mixed when the weaker sense has more than this share of the energy of the stronger
 MIXED_SHARE = 0.25
@@ -28,6 +34,8 @@ DIAMETER_SHARE = 0.7
 
 # inertial frequencies below this share of the speed are round-off
 _STATIC = 1e-7
+# share of |λ| below which a frequency is that of critical damping
+_NO_OSCILLATION = 1e-6
 _HIGHEST = 4
 _SAMPLES = 800
 _AXIAL_TERMS = 6
@@ -121,6 +129,23 @@ class WhirlContent:
         combined = span @ np.linalg.solve(lower.conj().T, directions)
         return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
 
+    def named(
+        self, modes: FloquetModes, speed: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return vectors, repeated modes as waves of one sense, and what :meth:`classify` does.
+
+        Modes with Im λ < 0 are looked at as their conjugates.
+        """
+        vectors = modes.vectors.astype(complex)
+        negative = modes.values.imag < 0.0
+        vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
+        for half in (np.flatnonzero(~negative), np.flatnonzero(negative)):
+            for group in groups(modes.values[half], modes.resolution):
+                if len(group) > 1:
+                    copies = vectors[:, :, half[group]]
+                    vectors[:, :, half[group]] = self.polarised(copies, modes.orders)
+        return vectors, *self.classify(vectors, modes.orders, np.abs(modes.values.imag), speed)
+
     def classify(
         self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float | np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -187,6 +212,28 @@ class WhirlContent:
 
     def _chosen(self, vectors: np.ndarray) -> np.ndarray:
         return vectors if self.rows is None else vectors[:, self.rows]
+
+
+def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
+    """Return which of :data:`FAMILIES` modes belong to, from whirl codes and nodal diameters."""
+    special = {TORSIONAL: 1, AXIAL: 2, RADIAL: 4, UNKNOWN: 4}
+    kinds = np.where(np.asarray(diameters) >= 2, 3, 0)
+    for code, kind in special.items():
+        kinds = np.where(np.asarray(codes) == code, kind, kinds)
+    return np.array(FAMILIES)[kinds]
+
+
+def damping_of(growth: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return damping ratio and logarithmic decrement at inertial frequencies [rad/s].
+
+    The ratio lies from −1 to 1. The decrement is NaN where a motion decays or grows without
+    oscillating: at critical damping the root of the rounding is the least frequency that is one.
+    """
+    size = np.hypot(growth, frequency)
+    still = frequency <= _NO_OSCILLATION * np.abs(growth)
+    ratio = np.where(still, -np.sign(growth), -growth / np.where(size > 0.0, size, 1.0))
+    decrement = -2.0 * np.pi * growth / np.where(still, np.nan, frequency)
+    return ratio + 0.0, np.where(growth == 0.0, 0.0, decrement) + 0.0
 
 
 def _energy(amplitudes: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -84,10 +84,13 @@ class Space(Protocol):
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return at least the modes asked for; `tolerance` is that of :func:`floquet_modes`."""
 
-    def exponents(
-        self, speed: float, method: str, tolerance: float
-    ) -> tuple[np.ndarray, PeriodicSystem]:
-        """Return exponents [1/s], descending in their real parts, and the equations behind them."""
+    def motions(
+        self, speed: float, method: str, tolerance: float, shapes: bool = True
+    ) -> tuple[FloquetModes, PeriodicSystem]:
+        """Return exponents in any order, not folded, and the equations in this space.
+
+        With their motions in all coordinates, unless `shapes` is False.
+        """
 
     def steady_motion(
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float

@@ -19,10 +19,9 @@ import scipy.sparse as sp
 from exudyn_rotor.linear.models.full_equations import FullEquations
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.spin import seeds
-from exudyn_rotor.linear.periodic.exponents import in_order
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, floquet_modes
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion, senses_of_turning
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -114,10 +113,10 @@ class Subspace:
         """
         return self._converged(speed, lambda modes: np.arange(self.count), tolerance)
 
-    def exponents(
-        self, speed: float, method: str, tolerance: float
-    ) -> tuple[np.ndarray, PeriodicSystem]:
-        """Return one exponent of each pair [1/s], of the modes of smallest |λ|; see :class:`Space`.
+    def motions(
+        self, speed: float, method: str, tolerance: float, shapes: bool = True
+    ) -> tuple[FloquetModes, PeriodicSystem]:
+        """Return one mode of each pair, those of smallest |λ|; see :class:`Space`.
 
         Not of smallest |Im λ|: damping of the material makes the highest modes overdamped.
 
@@ -134,9 +133,8 @@ class Subspace:
         def slowest(modes: FloquetModes) -> np.ndarray:
             return np.argsort(np.abs(modes.values), kind="stable")[: self.count]
 
-        values = self._converged(speed, slowest, tolerance).values.astype(complex)
-        system = self.at(speed)
-        return in_order(fold(values, abs(system.base)), speed), system
+        found = self._converged(speed, slowest, tolerance)
+        return replace(found, values=found.values.astype(complex)), self.at(speed)
 
     def _converged(
         self, speed: float, choose: Callable[[FloquetModes], np.ndarray], tolerance: float

@@ -8,7 +8,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.exponents import exponents
+from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, floquet_modes
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -59,12 +59,15 @@ class WholeSpace:
         """Return all modes."""
         return floquet_modes(self.at(speed), tolerance=tolerance)
 
-    def exponents(
-        self, speed: float, method: str, tolerance: float
-    ) -> tuple[np.ndarray, PeriodicSystem]:
-        """Return all exponents [1/s], and the equations."""
+    def motions(
+        self, speed: float, method: str, tolerance: float, shapes: bool = True
+    ) -> tuple[FloquetModes, PeriodicSystem]:
+        """Return all exponents with their motions, and the equations."""
         system = self.at(speed)
-        return exponents(system, method, tolerance), system
+        found = motions(system, method, tolerance, shapes)
+        if shapes and self.others is not None:
+            found = replace(found, vectors=self.others @ found.vectors)
+        return found, system
 
     def steady_motion(
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import Companion
-from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
+from exudyn_rotor.linear.periodic.eigenvalues import Companion, inverse_iterated, resolution_of
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.fundamental import floquet_exponents, floquet_motions
 from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
@@ -45,11 +46,7 @@ def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1
         For 'eigen' where the system is periodic, and where `tolerance` is not reached.
     """
     constant = system.is_constant or system.speed == 0.0
-    if method == "eigen" and not constant:
-        raise ValueError(
-            f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
-            "supports or a foundation); use 'auto', 'hill' or 'floquet'"
-        )
+    check_eigen(system, method)
     if constant and method != "floquet":
         values = constant_exponents(system).astype(complex)
     elif method == "floquet":
@@ -59,10 +56,73 @@ def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1
     return in_order(values, system.speed)
 
 
+def motions(
+    system: PeriodicSystem, method: str = "auto", tolerance: float = 1e-9, shapes: bool = True
+) -> FloquetModes:
+    """Return the 2k exponents with their motions, in any order; arguments of :func:`exponents`.
+
+    Without `shapes` they may lack coordinates, which is faster where the system is constant.
+
+    Their imaginary parts are those of the most central copies. By Floquet's method they are known
+    but for multiples of the base, and a motion is what it is at θ = 0, as one harmonic.
+    """
+    check_eigen(system, method)
+    constant = system.is_constant or system.speed == 0.0
+    if constant and method != "floquet":
+        return _constant_motions(system, shapes)
+    if method != "floquet":
+        try:
+            chosen, solution, _ = _solve_by_hill(system, tolerance)
+        except UnconvergedError:
+            if method == "hill":
+                raise
+        else:
+            rest = solution.orders, solution.resolution
+            return FloquetModes(chosen.values, chosen.shapes, *rest)
+    values, states = floquet_motions(system, tolerance)
+    return FloquetModes(values, states[None, : system.size], np.array([0]), 0.0)
+
+
+def _constant_motions(system: PeriodicSystem, shapes: bool) -> FloquetModes:
+    if not shapes:
+        values = constant_exponents(system).astype(complex)
+        nothing = np.zeros((1, 0, len(values)))
+        return FloquetModes(_resolved(values), nothing, np.array([0]), resolution_of(values))
+    matrices = system.matrices(0.0)
+    values, states = Companion.of(*matrices).modes()
+    resolution, values = resolution_of(values), _resolved(values.astype(complex))
+    vectors = inverse_iterated(values, states[: system.size], *matrices)
+    return FloquetModes(values, vectors[None], np.array([0]), resolution)
+
+
+def _resolved(values: np.ndarray) -> np.ndarray:
+    """Return values with zero for those that cannot be told from it."""
+    return np.where(np.abs(values) <= resolution_of(values), 0.0, values)
+
+
 def in_order(values: np.ndarray, speed: float) -> np.ndarray:
     """Return exponents with neutral ones set to zero, descending in their real parts."""
-    values = np.where(np.abs(values) < _NEUTRAL * speed, 0.0, values)
-    return values[np.lexsort((-values.imag, -values.real))]
+    values = without_neutral(values, speed)
+    return values[descending(values)]
+
+
+def without_neutral(values: np.ndarray, speed: float) -> np.ndarray:
+    """Return exponents with free rigid motions set to zero."""
+    return np.where(np.abs(values) < _NEUTRAL * speed, 0.0, values)
+
+
+def descending(values: np.ndarray) -> np.ndarray:
+    """Return the order of descending real parts."""
+    return np.lexsort((-values.imag, -values.real))
+
+
+def check_eigen(system: PeriodicSystem, method: str) -> None:
+    """Refuse the method 'eigen' where the system is periodic."""
+    if method == "eigen" and not (system.is_constant or system.speed == 0.0):
+        raise ValueError(
+            f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
+            "supports or a foundation); use 'auto', 'hill' or 'floquet'"
+        )
 
 
 def constant_exponents(system: PeriodicSystem) -> np.ndarray:
@@ -87,6 +147,12 @@ def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.
     UnconvergedError
         If the error does not fall below `tolerance`.
     """
+    chosen, _, error = _solve_by_hill(system, tolerance)
+    return fold(chosen.values, system.base), error
+
+
+def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> tuple[Chosen, HillSolution, float]:
+    """Return the most central copies of all exponents, with their motions, and the error."""
 
     def choose(solution: HillSolution) -> Chosen | None:
         columns = _central(solution, system.step, 2 * system.size)
@@ -95,8 +161,7 @@ def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.
         sizes = np.full(len(columns), abs(system.speed))
         return Chosen(columns, solution.values[columns], solution.shapes[:, :, columns], sizes)
 
-    chosen, _, error = solve_hill(system, choose, tolerance)
-    return fold(chosen.values, system.base), error
+    return solve_hill(system, choose, tolerance)
 
 
 def _central(solution: HillSolution, step: int, count: int) -> np.ndarray | None:

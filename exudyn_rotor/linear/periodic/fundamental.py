@@ -83,9 +83,17 @@ def _commutator(A: np.ndarray, B: np.ndarray) -> np.ndarray:
 
 def floquet_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
     """Return the 2k exponents from the fundamental matrix [1/s], see :func:`monodromy`."""
-    multipliers = np.linalg.eigvals(monodromy(system, tolerance)).astype(complex)
-    base = system.base or system.speed
-    return fold(np.log(multipliers) * abs(base) / (2.0 * np.pi), abs(base))
+    return floquet_motions(system, tolerance)[0]
+
+
+def floquet_motions(
+    system: PeriodicSystem, tolerance: float = 1e-9
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the 2k exponents [1/s], and the states (x, ẋ) at θ = 0 as columns."""
+    multipliers, states = np.linalg.eig(monodromy(system, tolerance))
+    base = abs(system.base or system.speed)
+    values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
+    return fold(values, base), states.astype(complex)
 
 
 def _state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:

@@ -18,26 +18,33 @@ import cmath
 import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated
+from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 
-def verified(values: np.ndarray, limits: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+def verified(
+    values: np.ndarray, limits: np.ndarray, system: PeriodicSystem, orders: np.ndarray | None = None
+) -> np.ndarray:
     """Return exponents; where growth above the limit is rounding, that of the scalar equation.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Exponents of a system with constant coefficients [1/s].
+        Exponents [1/s].
     limits : ndarray, shape (n,)
         Growth that is not looked at [1/s].
     system : PeriodicSystem
+    orders : ndarray of int, optional
+        Harmonics by which exponents of a periodic system were found, not folded; Hill's matrices
+        of a system without damping have the same symmetries.
     """
     growing = np.flatnonzero(values.real > limits)
     if growing.size == 0:
         return values
-    matrices = system.matrices(0.0)
+    periodic = orders is not None and len(orders) > 1
+    matrices = hill_matrices(system, orders) if periodic else system.matrices(0.0)
     result = values.astype(complex)
-    start = np.ones((system.size, growing.size))
+    start = np.ones((len(matrices[0]), growing.size))
     motions = inverse_iterated(values[growing], start, *matrices)
     for index, x in zip(growing, motions.T, strict=True):
         checked = _by_its_motion(values[index], x, *matrices)
@@ -50,12 +57,13 @@ def _by_its_motion(
     value: complex, x: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
 ) -> complex:
     """Return the root next to `value` of the scalar equation, with the most favourable rounding."""
-    stiff = 0.5 * (K + K.T)
+    stiff = 0.5 * (K + K.conj().T)
     a = np.vdot(x, M @ x).real
-    b = np.vdot(x, 0.5 * (D + D.T) @ x).real + 1j * np.vdot(x, 0.5 * (D - D.T) @ x).imag
+    damping = np.vdot(x, 0.5 * (D + D.conj().T) @ x).real
+    b = damping + 1j * np.vdot(x, 0.5 * (D - D.conj().T) @ x).imag
     k = np.vdot(x, stiff @ x).real
     rounding = len(x) * np.finfo(float).eps * float(np.abs(x) @ np.abs(stiff) @ np.abs(x))
-    c = k + 1j * np.vdot(x, 0.5 * (K - K.T) @ x).imag
+    c = k + 1j * np.vdot(x, 0.5 * (K - K.conj().T) @ x).imag
     roots = [_nearest_root(a, b, c + shift, value) for shift in (0.0, rounding)]
     return min(roots, key=lambda root: root.real)
 

@@ -15,9 +15,9 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.periodic.exponents import exponents
+from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.linear.stability.stability import check_method, excess_growth, held_space
+from exudyn_rotor.linear.stability.growth import GrowthAt, check_method, growth_of, held_space
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.units import Units
@@ -156,7 +156,7 @@ def _map_point(
 ) -> tuple[float, float]:
     built = build(*point)
     if isinstance(built, PeriodicSystem):
-        values, system = exponents(built, method, tolerance), built
+        growth = growth_of(motions(built, method, tolerance, False), built, tolerance)
     else:
         if not isinstance(built, tuple) or len(built) != 2:
             raise TypeError(
@@ -165,5 +165,5 @@ def _map_point(
             )
         speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
         space = held_space(linear_model(built[0]), speed, None, _RESIDUAL)
-        values, system = space.exponents(speed, method, tolerance)
-    return values.real.max(), excess_growth(values, system, tolerance)
+        growth = GrowthAt(space, method, tolerance)(speed)
+    return growth.values.real.max(), growth.excess

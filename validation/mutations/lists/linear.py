@@ -276,8 +276,8 @@ LINEAR = [
         "test_growth_by_rounding.py",
         (
             "skew damping taken for symmetric",
-            "0.5 * (D - D.T) @ x).imag",
-            "0.5 * (D + D.T) @ x).imag",
+            "0.5 * (D - D.conj().T) @ x).imag",
+            "0.5 * (D + D.conj().T) @ x).imag",
         ),
         ("stiffness with the other sign", "b * b - 4.0 * a * c", "b * b + 4.0 * a * c"),
     ),
@@ -305,8 +305,8 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/stability/stability.py",
-        "test_stability.py",
+        "linear/stability/growth.py",
+        "test_stability.py test_stability_names.py",
         (
             "least growth for the largest",
             "return float(np.max(excess[moving] if np.any(moving) else excess))",
@@ -318,14 +318,38 @@ LINEAR = [
             "return 0.1 * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
         ),
         (
-            "multipliers over half a period",
-            "multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])",
-            "multipliers = np.exp(np.pi * exponents / periodic[:, None])",
+            "names of folded exponents",
+            "content.named(replace(modes, values=values), speed)",
+            "content.named(replace(modes, values=fold(values, abs(system.base))), speed)",
+        ),
+    ),
+    *mutations(
+        "linear/stability/thresholds.py",
+        "test_stability.py test_stability_names.py",
+        (
+            "modes that meet are not followed",
+            "if gaps[0] * gaps[1] >= 0.0:",
+            "if gaps[0] * gaps[1] <= 0.0:",
+        ),
+        ("peaks between samples", "return -float(_nearest(", "return float(_nearest("),
+        (
+            "mode of a threshold from its stable side",
+            "(1 if on else -1)) for value, on in found",
+            "(-1 if on else 1)) for value, on in found",
         ),
         (
             "ranges in the wrong order of their ends",
             "edges = [values[0]] if unstable[0] else []",
             "edges = [values[0]] if not unstable[0] else []",
+        ),
+    ),
+    *mutations(
+        "linear/stability/stability.py",
+        "test_stability.py",
+        (
+            "multipliers over half a period",
+            "multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])",
+            "multipliers = np.exp(np.pi * exponents / periodic[:, None])",
         ),
     ),
     *mutations(
@@ -338,8 +362,8 @@ LINEAR = [
         ),
         (
             "damping taken for growth",
-            "return values.real.max(), excess_growth(values, system, tolerance)",
-            "return -values.real.min(), excess_growth(values, system, tolerance)",
+            "return growth.values.real.max(), growth.excess",
+            "return -growth.values.real.min(), growth.excess",
         ),
     ),
     *mutations(

@@ -1,0 +1,128 @@
+"""Growth of the motions of a rotor at one speed, and what of it is rounding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.linear_model import warn_of_structural_damping
+from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.periodic.exponents import METHODS, descending, without_neutral
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+from exudyn_rotor.linear.periodic.verified import verified
+from exudyn_rotor.threads import one_thread
+
+_ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
+_MODES = 10  # of a large SolidRotor
+
+
+class Growth(NamedTuple):
+    """Exponents at one speed, descending in their real parts.
+
+    `bounds` (n,) are real parts that rounding and truncation can feign [1/s]; `names` are inertial
+    frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty.
+    """
+
+    values: np.ndarray
+    bounds: np.ndarray
+    base: float
+    names: tuple[np.ndarray, ...]
+
+    @property
+    def excess(self) -> float:
+        """Largest real part above what rounding and truncation can feign.
+
+        Neutral motions, which never exceed it, count only where there are no others: as the largest
+        they would hide how stable the others are, and root finding would be slow.
+        """
+        real = self.values.real
+        moving, excess = np.abs(real) > self.bounds, real - self.bounds
+        return float(np.max(excess[moving] if np.any(moving) else excess))
+
+    @property
+    def least_stable(self) -> int:
+        """Which motion that is not neutral is the least stable."""
+        moving = np.abs(self.values.real) > self.bounds
+        return int(np.argmax(moving)) if np.any(moving) else 0
+
+
+@dataclass(frozen=True, eq=False)
+class GrowthAt:
+    """Growth at a speed; picklable where the space is. Without `content` it has no names."""
+
+    space: Space
+    method: str
+    tolerance: float
+    content: WhirlContent | None = None
+
+    @one_thread()
+    def __call__(self, speed: float) -> Growth:
+        shapes = self.content is not None
+        modes, system = self.space.motions(speed, self.method, self.tolerance, shapes)
+        return growth_of(modes, system, self.tolerance, self.content)
+
+
+def growth_of(
+    modes: FloquetModes,
+    system: PeriodicSystem,
+    tolerance: float,
+    content: WhirlContent | None = None,
+) -> Growth:
+    """Return the growth of all motions of a system, in order."""
+    values, speed = without_neutral(modes.values, system.speed), system.speed
+    bounds = _bounds(values, system, tolerance)
+    if system.is_constant or speed == 0.0 or len(modes.orders) > 1:
+        values = verified(values, bounds, system, modes.orders)
+    names: tuple[np.ndarray, ...] = ()
+    if content is not None:
+        names = content.named(replace(modes, values=values), speed)[1:]
+    folded = fold(values, abs(system.base))
+    order = descending(folded)
+    names = tuple(name[order] for name in names)
+    return Growth(folded[order], bounds[order], abs(system.base), names)
+
+
+def _bounds(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> np.ndarray:
+    fastest = np.sqrt(np.abs(np.diag(system.K[0]) / np.diag(system.M[0])).max())
+    return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest
+
+
+def held_space(model: LinearModel, fastest: float, modes: int | None, residual: float) -> Space:
+    """Return where exponents are found: a spin that nothing holds follows θ = Ωt.
+
+    It is neutral, which round-off would feign to be unstable.
+
+    Raises
+    ------
+    ValueError
+        For a number of modes where all are found, or of more than a quarter of the coordinates.
+    """
+    warn_of_structural_damping(model, "stability finds exponents")
+    if model.gives_all and modes is not None:
+        raise ValueError("modes: is only for a large SolidRotor; this target gives all exponents")
+    count = _MODES if modes is None else modes
+    if not model.gives_all and count > model.size // 4:
+        raise ValueError(
+            f"modes: {count} is not between 1 and {model.size // 4}, a quarter of the coordinates"
+        )
+    return model.space(count, fastest, held=True, residual=residual)
+
+
+def check_method(method: str, tolerance: float) -> None:
+    """Refuse an unknown method and an impossible tolerance."""
+    checks.choice(method, "method", METHODS)
+    options.accuracy(tolerance, "tolerance")
+
+
+def check_options(method: str, tolerance: float, modes: int | None, residual: float) -> None:
+    """Refuse impossible options of :func:`exudyn_rotor.stability`."""
+    check_method(method, tolerance)
+    options.accuracy(residual, "residual")
+    if modes is not None:
+        checks.count(modes, "modes", least=1)

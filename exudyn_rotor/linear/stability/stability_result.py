@@ -1,0 +1,175 @@
+"""Exponents over spin speed: what an analysis of stability returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
+from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.units import Units
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Stability(Result):
+    """Exponents over spin speed.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (s,)
+        Spin speeds [rad/s].
+    exponents : ndarray, shape (s, 2k)
+        λ, the least stable first; real part [1/s], imaginary part [rad/s] in the rotor frame.
+        Where the system is periodic, frequencies are known but for multiples of `base` and lie in
+        (−base/2, base/2]. Of a large SolidRotor one of each conjugate pair, and of two real ones
+        the less damped, shape (s, modes).
+    multipliers : ndarray, as exponents
+        ``exp(2πλ/base)``; over one revolution where the system is constant; NaN at 0 rad/s.
+    growth : ndarray, shape (s,)
+        Largest real part [1/s].
+    stable : ndarray of bool, shape (s,)
+        No exponent has a real part above its bound.
+    base : ndarray, shape (s,)
+        Frequency of the coefficients [rad/s], 0 where they are constant.
+    bounds : ndarray, as exponents
+        Real parts that truncation and rounding can feign [1/s]: ``tolerance · max(Ω, |λ|)`` and
+        rounding. Growth above it that the motion's own energies do not confirm is rounding, too.
+    frequencies_inertial : ndarray, as exponents
+        Frequency of the motion's strongest wave seen from outside [rad/s], not modulo `base`; by
+        Floquet's method, where Hill's does not converge, modulo `base`.
+    whirl_codes, nodal_diameters : ndarray of int, as exponents
+        As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
+    tolerance : float
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import Stability
+    >>> values = [[-1.0 + 100.0j, -1.0 - 100.0j]]
+    >>> names = {"frequencies_inertial": [[150.0, 150.0]], "whirl_codes": [[0, 0]]}
+    >>> names |= {"nodal_diameters": [[1, 1]], "bounds": [[1e-7, 1e-7]]}
+    >>> result = Stability([50.0], values, values, [-1.0], [True], [0.0], **names, tolerance=1e-9)
+    >>> print(result.table())
+    speed [rad/s]   lateral [1/s]  torsional    axial   frequency [rad/s]  n  whirl     verdict
+          50.0000              -1          -        -                 150  1  forward   stable
+    """
+
+    speeds: np.ndarray = numbers("speeds")
+    exponents: np.ndarray = numbers("speeds", "modes", dtype=complex)
+    multipliers: np.ndarray = numbers("speeds", "modes", dtype=complex, finite=False)
+    growth: np.ndarray = numbers("speeds")
+    stable: np.ndarray = numbers("speeds", dtype=bool)
+    base: np.ndarray = numbers("speeds")
+    bounds: np.ndarray = numbers("speeds", "modes", least=0.0)
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes")
+    whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
+    tolerance: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.number(self.tolerance, "tolerance", least=0.0)
+
+    def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
+        """Draw the growth over the spin speed; unstable speeds are shaded.
+
+        `units` are 'Hz', 'rpm' or 'SI', rad/s.
+        """
+        shown = Units.of(units)
+        ax = plotting.axes_or_new(ax)
+        speeds = shown.speeds(self.speeds)
+        ax.plot(speeds, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
+        low, high = ax.get_ylim()
+        ax.fill_between(
+            speeds, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
+        )
+        ax.set_ylim(low, high)
+        ax.axhline(0.0, color="0.3", lw=0.8)
+        ax.set_xlabel(f"spin speed [{shown.speed}]")
+        ax.set_ylabel("growth of the least stable motion [1/s]")
+        ax.grid(alpha=0.3)
+        return ax
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of every motion, shape as exponents; the words of :attr:`Campbell.whirl`."""
+        return np.array(WHIRLS)[self.whirl_codes]
+
+    @property
+    def families(self) -> np.ndarray:
+        """Kind of every motion, shape as exponents.
+
+        'lateral', 'torsional', 'axial', 'disc' (two nodal diameters and more), or 'other'.
+        """
+        return families(self.whirl_codes, self.nodal_diameters)
+
+    @property
+    def damping_ratio(self) -> np.ndarray:
+        """``−Re λ / |Re λ + iω|`` at the inertial frequency ω, from −1 to 1."""
+        return damping_of(self.exponents.real, self.frequencies_inertial)[0]
+
+    @property
+    def log_decrement(self) -> np.ndarray:
+        """``−2π Re λ / ω`` at the inertial frequency ω; NaN for motions that do not oscillate."""
+        return damping_of(self.exponents.real, self.frequencies_inertial)[1]
+
+    @property
+    def least_stable(self) -> np.ndarray:
+        """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
+        return np.argmax(np.abs(self.exponents.real) > self.bounds, axis=1)
+
+    def growth_of(self, family: str) -> np.ndarray:
+        """Return the largest real part within a family [1/s], shape (s,).
+
+        0 for motions that are neutral within :attr:`bounds`, NaN where the family has none.
+
+        Parameters
+        ----------
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other'}
+        """
+        checks.choice(family, "family", FAMILIES)
+        growth = np.where(np.abs(self.exponents.real) <= self.bounds, 0.0, self.exponents.real)
+        largest = np.where(self.families == family, growth, -np.inf).max(axis=1)
+        return np.where(np.isfinite(largest), largest, np.nan)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of :meth:`plot`."""
+        shown = Units.of(units)
+        rows = np.arange(len(self.speeds)), self.least_stable
+        growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
+        return {
+            f"speed [{shown.speed}]": shown.speeds(self.speeds),
+            "growth [1/s]": self.exponents[rows].real,
+            **growth,
+            f"inertial [{shown.frequency}]": shown.frequencies(self.frequencies_inertial[rows]),
+            "nodal diameters": self.nodal_diameters[rows],
+            "whirl": self.whirl[rows],
+            "stable": self.stable,
+        }
+
+    def table(self, *, units: str = "SI") -> str:
+        """Return speed, growth of the families, the least stable motion and verdict as text.
+
+        `units` are those of :meth:`plot`.
+        """
+        shown = Units.of(units)
+        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
+        lines = [
+            f"{speed:>13}   lateral [1/s]  torsional    axial   {frequency:>17}  n  whirl     "
+            "verdict"
+        ]
+        growth = np.array([self.growth_of(name) for name in FAMILIES[:3]]).T
+        for row, column in enumerate(self.least_stable):
+            parts = ["-" if np.isnan(value) else f"{value:.4g}" for value in growth[row]]
+            n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
+            heard = shown.frequencies(self.frequencies_inertial[row, column])
+            lines.append(
+                f"{at:13.4f}   {parts[0]:>13}  {parts[1]:>9}{parts[2]:>9}   {heard:17.5g}  "
+                f"{n if n >= 0 else '-'}  {self.whirl[row, column]:9} "
+                + ("stable" if self.stable[row] else "unstable")
+            )
+        return "\n".join(lines)

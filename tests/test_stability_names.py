@@ -1,0 +1,123 @@
+"""Kind, whirl and frequency of what grows, margins by kind, and all thresholds of a range."""
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+from point_rotors import ring_rotor
+from test_stability import BEARING, INNER, MASS, OUTER, STIFFNESS, anisotropic, asymmetric_limits
+
+from exudyn_rotor import SolidRotor, Support, campbell, stability, stability_threshold
+
+TORSION, AXIAL = 3e3, 4e5
+POLAR = MASS * 0.1**2
+
+
+@pytest.fixture(scope="module")
+def rings():
+    return ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+
+
+def bearings(inner: float) -> list[Support]:
+    """Return springs in all directions, dampers across the axis in the ground and the rotor."""
+    tilt = np.diag([1e4, 1e4, TORSION])
+    outer = Support("all", np.diag([STIFFNESS, STIFFNESS, AXIAL]), OUTER, tilt, 1.0)
+    return [outer, Support("all", damping=inner, frame="rotor")]
+
+
+def lateral(speed: float, inner: float) -> np.ndarray:
+    """Return λ of ``m z̈ + (c_e + c_i) ż + (k − iΩ c_i) z = 0``, z = x + iy in inertial axes."""
+    return np.roots([MASS, OUTER + inner, STIFFNESS - 1j * speed * inner])
+
+
+def test_an_undamped_axial_mode_does_not_hide_the_lateral_growth(rings):
+    """Each kind apart; the torsion's damping is d/(2 I_p)."""
+    speeds = np.array([100.0, 300.0, 600.0])
+    result = stability(rings, speeds, supports=bearings(INNER))
+    expected = [max(lateral(speed, INNER).real) for speed in speeds]
+    np.testing.assert_allclose(result.growth_of("lateral"), expected, rtol=1e-9)
+    np.testing.assert_array_equal(result.growth_of("axial"), 0.0)
+    np.testing.assert_array_equal(result.growth_of("torsional"), 0.0)
+    assert np.isnan(result.growth_of("disc")).all()
+    assert result.stable.tolist() == [True, True, False]
+    at = 2, result.least_stable[2]
+    assert (result.whirl[at], result.families[at], result.nodal_diameters[at]) == (
+        "forward", "lateral", 1
+    )  # fmt: skip
+    root = max(lateral(600.0, INNER), key=lambda value: value.real)
+    assert result.frequencies_inertial[at] == pytest.approx(root.imag, rel=1e-9)
+    assert result.damping_ratio[at] == pytest.approx(-root.real / abs(root), rel=1e-9)
+    assert result.log_decrement[at] == pytest.approx(-2.0 * np.pi * root.real / root.imag)
+    assert "forward" in result.table()
+    for word, omega in (("axial", AXIAL / MASS), ("torsional", TORSION / POLAR)):
+        found = result.frequencies_inertial[result.whirl == word]
+        np.testing.assert_allclose(found, np.sqrt(omega), rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [0.0, 17.0, 150.0])
+def test_frequencies_of_a_periodic_system_are_those_seen_from_outside(rings, speed):
+    """Springs that differ along n1 and n2: √(k/m − (c/2m)²), also far above the base 2Ω."""
+    k = np.array([4e5, 1e5, 2e5])
+    support = Support("all", np.diag(k), 8.0 * np.eye(3), np.diag([1e4, 1e4, TORSION]))
+    result = stability(rings, [speed], supports=[support])
+    decay = 8.0 / MASS / 2.0
+    for stiffness in k:
+        expected = np.sqrt(stiffness / MASS - decay**2)
+        near = np.abs(result.frequencies_inertial - expected) < 1e-6 * expected
+        assert np.count_nonzero(near) == 2
+        np.testing.assert_allclose(result.exponents[near].real, -decay, rtol=1e-6)
+    assert np.all(result.families[result.whirl == "axial"] == "axial")
+
+
+def test_what_does_not_oscillate_has_no_decrement():
+    """One kilogram with k = 1e4, d: overdamped in all three directions, ratio 1."""
+    point = SolidRotor.from_matrices(
+        np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z", interfaces={"at": [0]}
+    )
+    support = Support("at", 1e4 * np.eye(3), 250.0 * np.eye(3))
+    for result in (
+        stability(point, [0.0, 70.0], supports=[support]),
+        campbell(point, [0.0, 70.0], supports=[support]),
+    ):
+        np.testing.assert_allclose(result.damping_ratio, 1.0, rtol=1e-12)
+        assert np.isnan(result.log_decrement).all()
+    light = campbell(point, [0.0, 70.0], supports=[Support("at", 1e4 * np.eye(3), np.eye(3))])
+    assert np.all(light.log_decrement < 0.1)
+
+
+def test_thresholds_over_any_parameter(rings):
+    """The inner damping from which a speed is unstable, and the stiffness below which it is."""
+    speed, omega = 500.0, np.sqrt(STIFFNESS / MASS)
+    inner = stability_threshold(rings, 10.0, 200.0, supports=bearings, speed=speed)
+    np.testing.assert_allclose(inner.values, OUTER / (speed / omega - 1.0), rtol=1e-6)
+    assert inner.onset.tolist() == [True]
+    assert inner.frequencies_inertial == pytest.approx([omega], rel=1e-4)
+
+    def softer(stiffness: float) -> list[Support]:
+        return [Support("all", stiffness), *bearings(INNER)]
+
+    added = stability_threshold(rings, 1.0, 9e5, supports=softer, speed=600.0, samples=3)
+    expected = MASS * (600.0 / (1.0 + OUTER / INNER)) ** 2 - STIFFNESS
+    np.testing.assert_allclose(added.values, expected, rtol=1e-6)
+    assert added.onset.tolist() == [False]
+    np.testing.assert_allclose(added.ranges, [[1.0, expected]], rtol=1e-6)
+
+
+def test_a_narrow_range_between_samples_is_found():
+    """An asymmetric shaft between its critical speeds, which no sample meets: ν = 0 there."""
+    limits = asymmetric_limits()
+    supports = [Support(name, np.diag([BEARING[0, 0]] * 3)) for name in ("left", "right")]
+    samples = np.linspace(20.0, 250.0, 4)
+    assert not np.any((samples > limits[0]) & (samples < limits[1]))
+    found = stability_threshold(asymmetric_shaft(), 20.0, 250.0, supports=supports, samples=3)
+    np.testing.assert_allclose(found.values, limits, rtol=1e-6)
+    assert found.onset.tolist() == [True, False]
+    np.testing.assert_allclose(found.frequencies_inertial, limits, rtol=1e-4)
+    assert set(found.nodal_diameters) == {1}
+
+
+def test_both_ranges_of_an_asymmetric_shaft_on_anisotropic_supports():
+    """The gap between them, 163.6 to 165.3 rad/s, is between two unstable samples."""
+    found = stability_threshold(asymmetric_shaft(), 150.0, 180.0, supports=anisotropic(), samples=3)
+    assert len(found.ranges) == 2
+    assert "unstable" in found.table()
+    assert found.plot().get_xlim() == (150.0, 180.0)
