@@ -328,10 +328,14 @@ LINEAR = [
         "test_stability.py test_stability_names.py",
         (
             "modes that meet are not followed",
-            "if gaps[0] * gaps[1] >= 0.0:",
-            "if gaps[0] * gaps[1] <= 0.0:",
+            "if gaps[0] * gaps[1] < 0.0 and near:",
+            "if gaps[0] * gaps[1] > 0.0 and near:",
         ),
-        ("peaks between samples", "return -float(_nearest(", "return float(_nearest("),
+        (
+            "another leader does not count",
+            "return bool(values[leader] < values.max()",
+            "return bool(values[leader] > values.max()",
+        ),
         (
             "mode of a threshold from its stable side",
             "(1 if on else -1)) for value, on in found",
