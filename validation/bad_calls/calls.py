@@ -145,6 +145,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "places": ["left"],
     },
     "spinning_modes": lambda w: {"rotor": w.stressed, "count": 1, "speeds": (5.0, 10.0)},
+    "Stability.growth_of": lambda w: {"family": "lateral"},
     "stability": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
     "stability_level_one": lambda w: {
         "target": w.reduced,

@@ -19,6 +19,7 @@ from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.sweep import ascending_from_zero
+from exudyn_rotor.units import Units
 
 _ROOT = 1e-8  # of the largest parameter
 _ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
@@ -77,6 +78,19 @@ class StabilityThresholds(Result):
         edges += self.values.tolist()
         edges += [self.high] if len(edges) % 2 else []
         return np.array(edges).reshape(-1, 2)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of the frequencies."""
+        shown = Units.of(units)
+        frequencies = shown.frequencies(self.frequencies_inertial)
+        return {
+            self.label: self.values,
+            "onset": self.onset,
+            f"inertial [{shown.frequency}]": frequencies,
+            "nodal diameters": self.nodal_diameters,
+            "whirl": np.array(WHIRLS)[self.whirl_codes],
+            "kind": families(self.whirl_codes, self.nodal_diameters),
+        }
 
     def table(self) -> str:
         """Return the thresholds with the modes that grow there as lines of text."""
