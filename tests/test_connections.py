@@ -20,6 +20,7 @@ from exudyn.itemInterface import (
     MarkerNodeRotationCoordinate,
     MarkerSuperElementRigid,
     NodePointGround,
+    SensorNode,
     Torque,
 )
 from exudyn.utilities import (
@@ -219,6 +220,21 @@ def test_coordinates_of_a_node_off_the_centre_of_mass_move_that():
             found = body.check_connections(warn=False)
             assert len(found) == (expected if index == 1 else 0)
             assert all("0.2 m off the node's place" in sentence for sentence in found)
+
+
+def test_sensors_that_show_the_frame_alone():
+    kinds = exu.OutputVariableType
+    for kind, expected in (
+        (kinds.AngularVelocityLocal, 1),
+        (kinds.Acceleration, 1),
+        (kinds.AngularVelocity, 0),
+        (kinds.Coordinates, 0),
+    ):
+        s = Scene()
+        s.mbs.AddSensor(SensorNode(nodeNumber=s.node, outputVariableType=kind))
+        found = s.found()
+        assert len(found) == expected
+        assert all("without tilts" in sentence for sentence in found)
 
 
 def test_offset_without_a_lever():

@@ -183,8 +183,9 @@ def add_rotor(
     the centre of mass, its angle the rotor's mean rotation about the axis. Rigid and position
     markers that are added at it (``MarkerNodeRigid``, ``MarkerNodePosition``), and sensors of
     position, displacement, velocity, rotation and angular velocity, are put on virtual nodes of the
-    flexible body, so that forces, torques, springs and joints there act as on Exudyn's body.
-    Markers of single coordinates stay; ``body.check_connections()`` tells what they lack.
+    flexible body, so that forces, torques, springs and joints there act as on Exudyn's body. They
+    cost as much as a marker at an interface. Markers of single coordinates stay;
+    ``body.check_connections()`` tells what they lack.
 
     Locking and solvers:
 

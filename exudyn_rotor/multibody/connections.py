@@ -19,6 +19,8 @@ from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
 _COORDINATES = ("NodeCoordinate", "NodeCoordinates", "NodeRotationCoordinate")
+_KINDS = exudyn.OutputVariableType
+_OF_THE_FRAME = (_KINDS.Acceleration, _KINDS.AngularVelocityLocal, _KINDS.AngularAcceleration)
 _APART = 1e-3  # of the radius of gyration, by which the node is off the centre of mass
 _INSTEAD = "; use body.marker(interface) or body.add_marker(nodes)"
 
@@ -42,7 +44,8 @@ def lost_connections(body: RotorItems) -> tuple[str, ...]:
     if "marker_body" not in body.objects:
         return ()
     walk = _Walk(body)
-    return tuple(f"{item}: {reason}" for item, reason in (*walk.loads(), *walk.objects()))
+    found = (*walk.loads(), *walk.objects(), *walk.sensors())
+    return tuple(f"{item}: {reason}" for item, reason in found)
 
 
 class _Walk:
@@ -56,11 +59,11 @@ class _Walk:
         self.apart = self._distance_to_centre_of_mass()
         count = self.mbs.systemData.NumberOfMarkers()
         every = {number: self.mbs.GetMarker(number) for number in range(count)}
-        node, flexible = int(body.nodes["rigid"]), int(body.objects["marker_body"])
+        self.node, flexible = int(body.nodes["rigid"]), int(body.objects["marker_body"])
         self.coordinates = {
             number: marker
             for number, marker in every.items()
-            if marker["markerType"] in _COORDINATES and int(marker["nodeNumber"]) == node
+            if marker["markerType"] in _COORDINATES and int(marker["nodeNumber"]) == self.node
         }
         rigid = {
             number: marker
@@ -109,6 +112,20 @@ class _Walk:
                 if reason:
                     yield f"{item['objectType']} {item['name']!r}", reason
 
+    def sensors(self) -> Iterator[tuple[str, str]]:
+        """Yield sensors of the frame's node that show less than on Exudyn's body."""
+        for number in range(self.mbs.systemData.NumberOfSensors()):
+            sensor = self.mbs.GetSensor(number)
+            if sensor["sensorType"] != "Node" or int(sensor["nodeNumber"]) != self.node:
+                continue
+            kind = sensor["outputVariableType"]
+            if kind in _OF_THE_FRAME:
+                yield (
+                    f"sensor {sensor['name']!r}",
+                    f"{kind.name} of the frame's node is that of spin and centre of mass alone, "
+                    "without tilts; take Velocity or AngularVelocity",
+                )
+
     def _connector(self, item: dict[str, Any], place: int, number: int) -> str | None:
         marker = self.coordinates[number]
         if marker["markerType"] == "NodeCoordinate":
@@ -156,8 +173,7 @@ class _Walk:
 
     def _axes(self, marker: int) -> np.ndarray:
         """Return the axes of a rigid marker in space."""
-        kind = exudyn.OutputVariableType.RotationMatrix
-        return np.reshape(self.mbs.GetMarkerOutput(marker, kind), (3, 3))
+        return np.reshape(self.mbs.GetMarkerOutput(marker, _KINDS.RotationMatrix), (3, 3))
 
 
 def _tilts(what: str) -> str:

@@ -119,8 +119,9 @@ class RotorBody(RotorItems):
 
         Loads and connectors on coordinates of the frame's node that are locked (tilts, translations
         that the formulation does not have) or that move the centre of mass and not the node's
-        place, dampers of tilts at the node, and forces at a marker's own offset that has no lever:
-        one sentence for each, with what to use instead. Exudyn's own body carries them.
+        place, dampers of tilts at the node, forces at a marker's own offset that has no lever, and
+        sensors of the node that show no tilts: one sentence for each, with what to use instead.
+        Exudyn's own body carries them.
         ``mbs.Assemble()`` warns of each once, and :func:`exudyn_rotor.check_run` has a row of this.
 
         Parameters
