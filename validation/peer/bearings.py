@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from exudyn.itemInterface import LoadForceVector
 
 from validation.peer import parts
 from validation.peer.scene import Flexible, Scene, Script
 
 SPEED = 100.0  # rad/s
 WEIGHT = 9.81
+COURSE = "Examples/CMSexampleCourse"
 TEST_MODEL = "TestModels/objectFFRFreducedOrderTest"
 DAMPED_TILTS = (
     "Exudyn gives a rigid marker's local angular velocity in axes of the frame, not of the marker; "
@@ -51,6 +53,41 @@ def markers_of_the_call(script: Script) -> None:
     """Springs at the markers that the call itself makes, gravity as its argument."""
     body = spinning(script, gravity=[0.0, -WEIGHT, 0.0])
     on_springs(script, body, body.markers)
+
+
+def offsets_of_the_call(script: Script) -> None:
+    """Springs at markers of the call whose offsets put them 0.05 m beyond the end faces."""
+    beyond = np.array([[0.0, 0.0, -0.05], [0.0, 0.0, 0.05]])
+    body = spinning(script, gravity=[0.0, -WEIGHT, 0.0], superElementRigidMarkersOffsets=beyond)
+    for offset, (end, marker) in zip(beyond, body.markers.items(), strict=True):
+        seat = script.ground_marker(parts.mean_position(body.fem, end) + offset)
+        script.spring(seat, marker, [1e6] * 3, [1e3] * 3)
+        script.observe(marker)
+
+
+def mounted(script: Script) -> None:
+    """The rotor stands upright along inertial y; a force that beats in space pulls at its rim."""
+    upright = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    body = script.flexible(
+        parts.rotor("z"),
+        axis="z",
+        referencePosition=[1.0, 0.5, 0.0],
+        referenceRotationMatrix=upright,
+        initialAngularVelocity=SPEED * upright[:, 2],
+    )
+    body.weigh([0.0, -WEIGHT, 0.0])
+    for end in parts.ENDS:
+        marker = body.rigid_marker(end)
+        seat = np.array([1.0, 0.5, 0.0]) + upright @ parts.mean_position(body.fem, end)
+        script.spring(script.ground_marker(seat), marker, [1e6] * 3, [1e3] * 3)
+        script.observe(marker)
+    rim = [0.0, parts.DISC_RADIUS, parts.DISC_START]
+    script.mbs.AddLoad(
+        LoadForceVector(
+            markerNumber=body.node_marker(rim),
+            loadVectorUserFunction=lambda mbs, t, load: [20.0 * np.sin(150.0 * t), 0.0, 5.0],
+        )
+    )
 
 
 def axis_x(script: Script) -> None:
@@ -150,13 +187,15 @@ def boundary_modes(script: Script) -> None:
 
 SCENES = (
     Scene("position markers on springs, z", position_markers, 0.1, 1e-4, TEST_MODEL),
-    Scene("rigid markers on springs, z", rigid_markers, 0.1, 1e-4, TEST_MODEL),
+    Scene("rigid markers on springs, z", rigid_markers, 0.1, 1e-4, TEST_MODEL, by_class=True),
     Scene("markers of the call, z", markers_of_the_call, 0.1, 1e-4, TEST_MODEL),
-    Scene("rigid markers with offset, x", axis_x, 0.1, 1e-4, TEST_MODEL),
+    Scene("markers of the call with offset, z", offsets_of_the_call, 0.1, 1e-4),
+    Scene("mounted along inertial y, force at the rim", mounted, 0.1, 1e-4),
+    Scene("rigid markers with offset, x", axis_x, 0.1, 1e-4, TEST_MODEL, by_class=True),
     Scene("rigid markers with offset, y", axis_y, 0.1, 1e-4, TEST_MODEL),
     Scene("rigid markers with offset, skew", axis_skew, 0.1, 1e-4, TEST_MODEL),
     Scene("bearings that resist tilts, z", rigid_body_springs, 0.1, 1e-4, note=DAMPED_TILTS),
-    Scene("journal bearings, user function", journal_bearings, 0.1, 1e-4),
+    Scene("journal bearings, user function", journal_bearings, 0.1, 1e-4, by_class=True),
     Scene("squeeze film, six forces", squeeze_film, 0.1, 1e-4, note=DAMPED_TILTS),
-    Scene("Craig–Bampton modes, z", boundary_modes, 0.1, 1e-4, "Examples/CMSexampleCourse"),
+    Scene("Craig–Bampton modes, z", boundary_modes, 0.1, 1e-4, COURSE, by_class=True),
 )
