@@ -10,15 +10,19 @@ from small_results import rotor as stored_rotor
 
 from exudyn_rotor import (
     Campbell,
+    HarmonicForce,
     ReducedRotor,
     SolidRotor,
     Support,
+    Unbalance,
     campbell,
     craig_bampton_modes,
     critical_speed_map,
     critical_speeds,
+    harmonic_response,
     keep_modes,
     linear_model,
+    unbalance_response,
 )
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
@@ -198,3 +202,37 @@ def test_map_of_critical_speeds_has_the_errors_of_each():
     np.testing.assert_allclose(result.basis_errors[1, : len(one.speeds)], one.basis_errors)
     assert "basis error up to" in result.table()
     assert critical_speeds(disc_rotor(order=1), max_speed=1000.0).basis_errors.max(initial=0.0) == 0
+
+
+@pytest.mark.parametrize("modes", ["free 4", "RBE3 2"])
+def test_errors_of_unbalance_responses(modes):
+    """Against the full model, at interfaces: the finer rotor has their static responses."""
+    speeds = [300.0, 1000.0, 2500.0]
+    given = {"unbalances": Unbalance("left", 1e-4), "supports": supports("stiff")}
+    full = unbalance_response(solid("tilt"), speeds, **given)
+    result = unbalance_response(reduced("tilt", modes), speeds, **given)
+    assert not np.any(full.basis_errors)
+    better, motion = (each.motion[:, :, list(each.orders).index(1), :3] for each in (full, result))
+    sizes = np.linalg.norm(better, axis=2)
+    sizes = np.maximum(sizes, 0.1 * sizes.max(axis=1, keepdims=True))
+    true = np.linalg.norm(better - motion, axis=2) / sizes
+    np.testing.assert_allclose(result.basis_errors, true, rtol=0.05, atol=SMALL)
+    assert true.max() > 0.01
+    assert "basis" in result.table()
+
+
+def test_errors_of_harmonic_responses_and_of_a_few_speeds_on_anisotropic_supports():
+    rotor = reduced("tilt", "free 4")
+    force = HarmonicForce("right", (1.0, 0.5j))
+    given = {"supports": supports("stiff"), "speed": 500.0, "at": ["left", "right", 3]}
+    with pytest.warns(UserWarning, match="the motion of .* at .* Hz errs by about"):
+        result = harmonic_response(rotor, [200.0, 800.0], force, **given)
+    full = harmonic_response(solid("tilt"), [200.0, 800.0], force, **given)
+    true = np.linalg.norm((full.motion - result.motion)[:, :2, :, :3], axis=(2, 3))
+    sizes = np.linalg.norm(full.motion[..., :3], axis=(2, 3))
+    true = true / np.maximum(sizes[:, :2], 0.1 * sizes.max(axis=1, keepdims=True))
+    np.testing.assert_allclose(result.basis_errors[:, :2], true, rtol=0.1, atol=SMALL)
+    given = {"unbalances": Unbalance("left", 1e-4), "supports": supports("anisotropic")}
+    few = unbalance_response(rotor, np.linspace(100.0, 400.0, 7), **given)
+    assert 3 <= np.sum(np.isfinite(few.basis_errors[:, 0])) <= 4
+    assert np.nanmax(few.basis_errors) > 0.0

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
 from exudyn_rotor.linear.response.refinement import peak_between
@@ -42,12 +43,18 @@ class Response(RunStart, ABC):
         rotations of a node are NaN.
     frame : {'inertial', 'rotor'}
         Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
+    basis_errors : ndarray, shape (s, p), or None
+        Estimated relative errors by the basis of a reduced rotor, of the displacement in the
+        harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
+        at that speed or frequency. NaN where it was not looked at, on anisotropic supports at all
+        but a few; None where they are not known.
     """
 
     places: tuple[str, ...] = words("places")
     orders: np.ndarray = numbers("orders", dtype=int)
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str
+    basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -187,7 +194,11 @@ class Response(RunStart, ABC):
             phasor = self.phasor(place, name, order)
             found |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": _degrees(phasor)}
         forward, backward = np.abs(self.whirl(place, order))
-        return found | {"forward [m]": forward, "backward [m]": backward}
+        errors = np.full(count, np.nan)
+        if self.basis_errors is not None:
+            errors = self.basis_errors[:, self.places.index(place)]
+        ends = {"forward [m]": forward, "backward [m]": backward, "basis error": errors}
+        return found | ends
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         """Return what the response was computed over in its unit, and that unit."""
@@ -209,20 +220,25 @@ class Response(RunStart, ABC):
         values, unit = self._shown(units)
         a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
         forward, backward = self.whirl(place, order)
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors > 0.0)
+        labels = ("  basis", "  error") if reduced else ("", "")
         lines = [
             f"{place}, order {order}, {self.frame} frame",
             f"{self._what:>16}  {'n1':>11} {'phase':>7}  {'n2':>11} {'phase':>7}  "
-            f"{'forward':>11} {'backward':>11}",
+            f"{'forward':>11} {'backward':>11}{labels[0]}",
             f"{'[' + unit + ']':>16}  {'[m]':>11} {'[deg]':>7}  {'[m]':>11} {'[deg]':>7}  "
-            f"{'[m]':>11} {'[m]':>11}",
+            f"{'[m]':>11} {'[m]':>11}{labels[1]}",
         ]
-        for row in zip(values, a, b, forward, backward, strict=True):
-            at, x, y, f, g = row
+        column = np.zeros(len(values)) if errors is None else errors[:, self.places.index(place)]
+        for row in zip(values, a, b, forward, backward, column, strict=True):
+            at, x, y, f, g, error = row
+            shown = f"  {error:5.0e}" if reduced else ""
             lines.append(
                 f"{at:16.6g}  {abs(x):11.4e} {_degrees(x):7.1f}  {abs(y):11.4e} {_degrees(y):7.1f}"
-                f"  {abs(f):11.4e} {abs(g):11.4e}"
+                f"  {abs(f):11.4e} {abs(g):11.4e}{shown}"
             )
-        return "\n".join(lines)
+        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(
         self,

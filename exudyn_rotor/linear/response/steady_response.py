@@ -5,7 +5,7 @@ Both are steady motions: they are reached in time only where the rotor is stable
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,10 +15,17 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_inertial_frame
+from exudyn_rotor.linear.response.basis_check import (
+    HARMONICS,
+    looked_at,
+    motion_error,
+    warn_of_response,
+)
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
     HarmonicForce,
@@ -52,6 +59,7 @@ def unbalance_response(
     tolerance: float = 1e-9,
     residual: float = 1e-9,
     refine: bool = False,
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> UnbalanceResponse:
@@ -91,6 +99,9 @@ def unbalance_response(
         Add speeds around resonances until the phase of the motion turns by less than 0.3 rad
         between neighbours, so that a peak is known within 1 %. An interval in which two resonances
         cancel each other's phase is not seen.
+    accuracy : float, optional
+        Relative error of a motion by the basis of a reduced rotor, estimated, above which a warning
+        is given: see :attr:`Response.basis_errors`. None for no estimate.
     executor : concurrent.futures.Executor, optional
         Computes the speeds; see :func:`exudyn_rotor.sweep.sweep`. A SolidRotor does not use
         it: its speeds share one subspace.
@@ -127,6 +138,7 @@ def unbalance_response(
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
     observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
+    basis = BasisError.of(model, accuracy)
     space = model.space(_MODES, values[-1], loads=[load], residual=residual)
     observation = _Observation.of(observed, frame, tolerance, model)
     task = _UnbalanceTask(space.prepared(values[values > 0.0]), load, observation)
@@ -141,7 +153,17 @@ def unbalance_response(
         values, solved = refined(solve, values, solved)
     labels = tuple(one.label for one in observed)
     collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
-    return UnbalanceResponse(labels, *collected, frame, values, **_kept(model, solved))
+
+    def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
+        load = unbalance_load(finer, unbalances, own)
+        space = finer.space(_MODES, values[-1], loads=[load])
+        return _UnbalanceTask(space, load, observation)
+
+    constant = space.at(values[-1]).is_constant
+    errors = _basis_errors(basis, observation, at, values, solved, better, constant)
+    warn_of_response(basis, errors, labels, values)
+    kept = _kept(model, solved)
+    return UnbalanceResponse(labels, *collected, frame, values, basis_errors=errors, **kept)
 
 
 def harmonic_response(
@@ -158,6 +180,7 @@ def harmonic_response(
     tolerance: float = 1e-9,
     residual: float = 1e-9,
     refine: bool = False,
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> HarmonicResponse:
@@ -171,7 +194,9 @@ def harmonic_response(
         All of one frequency, with their complex amplitudes.
     speed : float, optional
         Spin speed Ω [rad/s].
-    target, supports, body, at, frame, stiffening, tolerance, residual, refine, executor, progress
+    target, supports, body, at, frame, stiffening, tolerance, residual, refine, accuracy
+        See :func:`unbalance_response`.
+    executor, progress
         See :func:`unbalance_response`.
 
     Raises
@@ -207,6 +232,7 @@ def harmonic_response(
     observed = places(model, at)
     load = total(loads, model)
     fastest = max(values[-1], abs(speed))
+    basis = BasisError.of(model, accuracy)
     space = model.space(_MODES, fastest, loads=list(load.values()), residual=residual)
     observation = _Observation.of(observed, frame, tolerance, model)
     task = _HarmonicTask(space.prepared([speed]), speed, load, observation)
@@ -217,7 +243,41 @@ def harmonic_response(
         values, solved = refined(partial(sweep, task, **given), values, solved)
     labels = tuple(one.label for one in observed)
     collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
-    return HarmonicResponse(labels, *collected, frame, values, speed, **_kept(model, solved))
+
+    def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
+        space = finer.space(_MODES, fastest, loads=list(load.values())).prepared([speed])
+        return _HarmonicTask(space, speed, total(loads, finer), observation)
+
+    constant = space.at(speed).is_constant
+    errors = _basis_errors(basis, observation, at, values, solved, better, constant)
+    warn_of_response(basis, errors, labels, values)
+    kept = _kept(model, solved)
+    return HarmonicResponse(labels, *collected, frame, values, speed, basis_errors=errors, **kept)
+
+
+def _basis_errors(
+    basis: BasisError,
+    observation: _Observation,
+    at: Sequence[At] | None,
+    values: np.ndarray,
+    solved: Sequence[_Solved],
+    task: Callable[[LinearModel, _Observation], Callable[[float], _Solved]],
+    constant: bool,
+) -> np.ndarray | None:
+    """Return relative errors (s, p) by the basis; None where they are not known."""
+    if not basis.is_known:
+        return None
+    if basis.left_out is None:
+        return np.zeros((len(solved), len(observation.rows)))
+    finer = basis.left_out.finer
+    rows = np.array([one.motion for one in places(finer, at)])
+    tolerance = max(observation.tolerance, HARMONICS)
+    better = task(finer, replace(observation, rows=rows, keeps=False, tolerance=tolerance))
+    motions = [one.motion for one in solved]
+    errors = np.full((len(solved), len(rows)), np.nan)
+    for index in looked_at(motions, constant):
+        errors[index] = motion_error(motions[index], better(float(values[index])).motion)
+    return errors
 
 
 @dataclass(frozen=True, eq=False)

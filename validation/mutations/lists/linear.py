@@ -37,6 +37,15 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/response/basis_check.py",
+        "test_basis_error.py::test_errors_of_unbalance_responses",
+        (
+            "errors of motions doubled",
+            "finer[order] - given.get(order, 0.0)",
+            "2.0 * (finer[order] - given.get(order, 0.0))",
+        ),
+    ),
+    *mutations(
         "linear/models/basis_error.py",
         "test_basis_error.py::test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning",
         (
