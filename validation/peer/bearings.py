@@ -190,7 +190,7 @@ SCENES = (
     Scene("rigid markers on springs, z", rigid_markers, 0.1, 1e-4, TEST_MODEL, by_class=True),
     Scene("markers of the call, z", markers_of_the_call, 0.1, 1e-4, TEST_MODEL),
     Scene("markers of the call with offset, z", offsets_of_the_call, 0.1, 1e-4),
-    Scene("mounted along inertial y, force at the rim", mounted, 0.1, 1e-4),
+    Scene("mounted along y, force at the rim", mounted, 0.1, 1e-4),
     Scene("rigid markers with offset, x", axis_x, 0.1, 1e-4, TEST_MODEL, by_class=True),
     Scene("rigid markers with offset, y", axis_y, 0.1, 1e-4, TEST_MODEL),
     Scene("rigid markers with offset, skew", axis_skew, 0.1, 1e-4, TEST_MODEL),
