@@ -22,6 +22,7 @@ from exudyn_rotor import (
     harmonic_response,
     keep_modes,
     linear_model,
+    stability,
     unbalance_response,
 )
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
@@ -236,3 +237,21 @@ def test_errors_of_harmonic_responses_and_of_a_few_speeds_on_anisotropic_support
     few = unbalance_response(rotor, np.linspace(100.0, 400.0, 7), **given)
     assert 3 <= np.sum(np.isfinite(few.basis_errors[:, 0])) <= 4
     assert np.nanmax(few.basis_errors) > 0.0
+
+
+@pytest.mark.parametrize("modes", ["free 4", "RBE3 4"])
+def test_errors_of_the_least_stable_motion(modes):
+    """Damping in the rotor drives it; against the full model's motion of the same name."""
+    given = {"supports": [*supports("stiff"), Support("left", damping=2e4, frame="rotor")]}
+    speeds = [800.0, 2500.0]
+    full = stability(solid("tilt"), speeds, modes=8, **given)
+    with pytest.warns(UserWarning, match="the least stable motion .* errs by about"):
+        result = stability(reduced("tilt", modes), speeds, accuracy=1e-5, **given)
+    row = np.arange(2)
+    values = result.exponents[row, result.least_stable]
+    found = values + result.basis_shifts
+    away = np.abs(full.exponents - np.where(found.imag < 0.0, found.conj(), found)[:, None])
+    assert np.all(away.min(axis=1) < 0.2 * np.abs(result.basis_shifts) + SMALL * np.abs(values))
+    assert np.abs(result.basis_shifts).max() > 10.0 * SMALL * np.abs(values).max()
+    assert "basis error" in result.table()
+    assert not np.any(full.basis_shifts)

@@ -67,6 +67,19 @@ class BasisError:
         pairs = zip(speeds, modes, strict=True)
         return np.array([self.left_out.shifts(speed, entry) for speed, entry in pairs])
 
+    def shifts_of(
+        self, speeds: np.ndarray, modes: Sequence[FloquetModes | None]
+    ) -> np.ndarray | None:
+        """Return ``λ_full − λ`` of one mode at each speed, shape (s,); NaN where it is None."""
+        if not self.is_known:
+            return None
+        shifts = np.full(len(speeds), np.nan, dtype=complex)
+        for index, (speed, mode) in enumerate(zip(speeds, modes, strict=True)):
+            if mode is not None:
+                full = self.left_out is None
+                shifts[index] = 0.0 if full else self.left_out.shifts(speed, mode)[0]
+        return shifts
+
     def critical_errors(
         self, critical: Sequence[tuple[float, np.ndarray, np.ndarray]]
     ) -> np.ndarray:

@@ -150,10 +150,13 @@ class LeftOut:
         shifts = np.zeros(len(modes.values), dtype=complex)
         if self.finer.size == self.kept:
             return shifts
+        vectors = modes.vectors
+        if self.held:
+            vectors = self.finer.given.spin.rest().T @ vectors
         for column in np.flatnonzero(modes.values):
             used = np.where(left_out, central, np.repeat(sizes[:, column], len(lacking)))
             start = np.zeros((len(modes.orders), len(lacking)), dtype=complex)
-            start[:, ~lacking] = modes.vectors[:, :, column]
+            start[:, ~lacking] = vectors[:, :, column]
             used = np.flatnonzero(used)
             M, D, K = (X[np.ix_(used, used)] for X in pencil)
             shifts[column] = _shift(M, D, K, modes.values[column], start.ravel()[used])

@@ -26,13 +26,15 @@ class Growth(NamedTuple):
     """Exponents at one speed, descending in their real parts.
 
     `bounds` (n,) are real parts that rounding and truncation can feign [1/s]; `names` are inertial
-    frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty.
+    frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty. `critical` is the
+    least stable motion, None without names and by Floquet's method.
     """
 
     values: np.ndarray
     bounds: np.ndarray
     base: float
     names: tuple[np.ndarray, ...]
+    critical: FloquetModes | None = None
 
     @property
     def excess(self) -> float:
@@ -85,7 +87,11 @@ def growth_of(
     folded = fold(values, abs(system.base))
     order = descending(folded)
     names = tuple(name[order] for name in names)
-    return Growth(folded[order], bounds[order], abs(system.base), names)
+    growth = Growth(folded[order], bounds[order], abs(system.base), names)
+    constant = system.is_constant or speed == 0.0
+    if content is None or not (constant or len(modes.orders) > 1):
+        return growth
+    return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
 
 
 def _bounds(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> np.ndarray:

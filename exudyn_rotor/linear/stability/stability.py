@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.stability.growth import GrowthAt, check_options, held_space
@@ -35,6 +36,7 @@ def stability(
     tolerance: float = 1e-9,
     modes: int | None = None,
     residual: float = 1e-7,
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Stability:
@@ -64,6 +66,10 @@ def stability(
         default. The growth of modes above them is not looked at.
     residual : float, optional
         Largest relative residual of those modes; see :meth:`Subspace.modes`.
+    accuracy : float, optional
+        Relative error of the least stable motion's growth by the basis of a reduced rotor,
+        estimated, above which a warning is given: see :attr:`Stability.basis_errors`. None for no
+        estimate.
     executor : concurrent.futures.Executor, optional
         Where the exponents are computed; see :func:`exudyn_rotor.sweep.sweep`. A large
         SolidRotor does not use it: its speeds share one subspace.
@@ -106,7 +112,8 @@ def stability(
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])
     multipliers[periodic == 0.0] = np.nan
-    return Stability(
+    basis = BasisError.of(model, accuracy, held=True)
+    result = Stability(
         speeds=values,
         exponents=exponents,
         multipliers=multipliers,
@@ -116,4 +123,20 @@ def stability(
         bounds=np.array([entry.bounds for entry in solved]),
         **{name: np.array([s.names[i] for s in solved]) for i, name in enumerate(names)},
         tolerance=tolerance,
+        basis_shifts=basis.shifts_of(values, [entry.critical for entry in solved]),
     )
+    _warn_of_basis(basis, result)
+    return result
+
+
+def _warn_of_basis(basis: BasisError, result: Stability) -> None:
+    """Warn where the basis leaves out too much for the growth of a least stable motion."""
+    errors = result.basis_errors
+    if errors is None or np.all(np.isnan(errors)):
+        return
+    row = int(np.nanargmax(errors))
+    column = result.least_stable[row]
+    heard = result.frequencies_inertial[row, column] / (2.0 * np.pi)
+    motion = f"the least stable motion ({result.whirl[row, column]}, {heard:.4g} Hz)"
+    speed = result.speeds[row] / (2.0 * np.pi)
+    basis.warn(np.nan_to_num(errors), f"{motion} at {speed:.4g} Hz")

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
 
@@ -44,6 +45,9 @@ class Stability(Result):
     whirl_codes, nodal_diameters : ndarray of int, as exponents
         As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
     tolerance : float
+    basis_shifts : ndarray, shape (s,), or None
+        Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
+        :attr:`Campbell.basis_shifts`; NaN by Floquet's method.
 
     Examples
     --------
@@ -56,6 +60,7 @@ class Stability(Result):
     >>> print(result.table())
     speed [rad/s]   lateral [1/s]  torsional    axial   frequency [rad/s]  n  whirl     verdict
           50.0000              -1          -        -                 150  1  forward   stable
+    error of the basis: not known
     """
 
     speeds: np.ndarray = numbers("speeds")
@@ -69,6 +74,7 @@ class Stability(Result):
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
     tolerance: float
+    basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -122,6 +128,20 @@ class Stability(Result):
         """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
         return np.argmax(np.abs(self.exponents.real) > self.bounds, axis=1)
 
+    @property
+    def basis_errors(self) -> np.ndarray | None:
+        """Estimated relative error of the least stable motion by the basis, shape (s,).
+
+        As :attr:`Campbell.basis_errors`; None where it is not known.
+        """
+        if self.basis_shifts is None:
+            return None
+        rows = np.arange(len(self.speeds)), self.least_stable
+        given = self.exponents[rows].real, self.frequencies_inertial[rows]
+        columns = (each[:, None] for each in (self.basis_shifts, *given))
+        errors = relative_errors(*columns, self.speeds)[:, 0]
+        return np.where(np.isnan(self.basis_shifts), np.nan, errors)
+
     def growth_of(self, family: str) -> np.ndarray:
         """Return the largest real part within a family [1/s], shape (s,).
 
@@ -140,6 +160,7 @@ class Stability(Result):
         """Return the table as columns; `units` are those of :meth:`plot`."""
         shown = Units.of(units)
         rows = np.arange(len(self.speeds)), self.least_stable
+        errors = self.basis_errors
         growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
         return {
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
@@ -149,6 +170,7 @@ class Stability(Result):
             "nodal diameters": self.nodal_diameters[rows],
             "whirl": self.whirl[rows],
             "stable": self.stable,
+            "basis error": np.full(len(self.speeds), np.nan) if errors is None else errors,
         }
 
     def table(self, *, units: str = "SI") -> str:
@@ -158,9 +180,11 @@ class Stability(Result):
         """
         shown = Units.of(units)
         speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors > 0.0)
         lines = [
             f"{speed:>13}   lateral [1/s]  torsional    axial   {frequency:>17}  n  whirl     "
-            "verdict"
+            "verdict" + ("   basis error" if reduced else "")
         ]
         growth = np.array([self.growth_of(name) for name in FAMILIES[:3]]).T
         for row, column in enumerate(self.least_stable):
@@ -172,4 +196,6 @@ class Stability(Result):
                 f"{n if n >= 0 else '-'}  {self.whirl[row, column]:9} "
                 + ("stable" if self.stable[row] else "unstable")
             )
-        return "\n".join(lines)
+            if reduced:
+                lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{errors[row]:11.1e}"
+        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
