@@ -221,14 +221,16 @@ def test_force_at_the_node_tilts_a_rigid_rotor_about_its_centre_of_mass():
 
 
 def test_position_marker_of_the_node_takes_the_lever_of_the_tilts():
-    """A spring there exerts the same as at a rigid marker."""
+    """A force there does the same as at a rigid marker, or at the node for Exudyn's calls."""
     found = []
-    for kind in (MarkerNodePosition, MarkerNodeRigid):
-        mbs, body, _, seen = node_scene()
-        point = mbs.AddMarker(kind(nodeNumber=body.nodes["rigid"]))
-        mbs.CreateForce(itemNumber=point, loadVector=[50.0, 20.0, 0.0])
+    for kind in (MarkerNodePosition, MarkerNodeRigid, None):
+        mbs, body, _, seen = node_scene(axis="skew")
+        node = body.nodes["rigid"]
+        at = node if kind is None else mbs.AddMarker(kind(nodeNumber=node))
+        mbs.CreateForce(itemNumber=at, loadVector=[50.0, 20.0, 0.0])
         found.append(solved(mbs, seen))
-    assert abs(found[0] - found[1]).max() < 1e-9 * abs(found[0]).max()
+    for other in found[1:]:
+        assert abs(other - found[0]).max() < 1e-9 * abs(found[0]).max()
 
 
 def test_place_of_the_node_changes_nothing_else():

@@ -10,8 +10,6 @@ import numpy as np
 from exudyn.itemInterface import (
     LoadMassProportional,
     MarkerBodyMass,
-    MarkerSuperElementPosition,
-    MarkerSuperElementRigid,
     NodeGenericODE2,
     NodeRigidBodyRxyz,
     ObjectGenericODE2,
@@ -31,7 +29,12 @@ from exudyn_rotor.multibody.locking import (
     add_spin_guide,
     guiding_force,
 )
-from exudyn_rotor.multibody.marker_body import MarkerBodyMesh, marker_body_mesh, marker_body_object
+from exudyn_rotor.multibody.marker_body import (
+    MarkerBodyMesh,
+    interface_markers,
+    marker_body_mesh,
+    marker_body_object,
+)
 from exudyn_rotor.multibody.node_markers import carry_markers
 from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -113,7 +116,7 @@ def add_rotor(
     rotation : array_like, shape (3, 3), optional
         Mesh axes → inertial axes at θ = 0.
     initial_velocity : array_like, shape (3,)
-        Of the frame origin (the centre of mass), inertial axes [m/s]; in the plane of rotation
+        Of the centre of mass, wherever the node is, inertial axes [m/s]; in the plane of rotation
         where the translation is in-plane.
     initial_angle, initial_speed : float, optional
         Of a free spin [rad], [rad/s].
@@ -340,7 +343,7 @@ def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMe
         plan,
         nodes={"rigid": rigid, "modes": modes},
         objects={"physics": physics, "marker_body": marker_body},
-        markers=_add_markers(mbs, plan, marker_body, mesh),
+        markers=interface_markers(mbs, plan.setup, marker_body, mesh, plan.frame),
         constraints=constraints,
         gravity_load=load,
         mesh_node_count=mesh.mesh_node_count,
@@ -379,31 +382,3 @@ def _generic_node(
         initialCoordinates=values,
         initialCoordinates_t=rates,
     )
-
-
-def _add_markers(
-    mbs: exudyn.MainSystem, plan: Plan, marker_body: exudyn.ObjectIndex, mesh: MarkerBodyMesh
-) -> dict[str, exudyn.MarkerIndex]:
-    """Add one marker per interface; rigid markers have the mesh axes as their frame."""
-    markers = {}
-    for interface, request in plan.setup.markers.items():
-        common = {
-            "name": inputs.marker_name(plan.setup.name, interface),
-            "bodyNumber": marker_body,
-            "visualization": {"show": request.show, "showMarkerNodes": False},
-        }
-        if request.kind == "rigid":
-            turn = np.eye(4)
-            turn[:3, :3] = plan.frame.B
-            item = MarkerSuperElementRigid(
-                meshNodeNumbers=mesh.rigid_nodes[interface],
-                weightingFactors=[1.0 / 3.0] * 3,
-                localHT=turn,
-                **common,
-            )
-        else:
-            item = MarkerSuperElementPosition(
-                meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
-            )
-        markers[interface] = mbs.AddMarker(item)
-    return markers

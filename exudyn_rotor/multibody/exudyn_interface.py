@@ -56,8 +56,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     rigidBodyNodeType : str or exudyn.NodeType
         Accepted, and without effect: the frame's node always has Tait–Bryan angles.
     roundMassMatrix, roundStiffnessMatrix : float
-        Accepted, and without effect: the modes are made mass-orthonormal, and both matrices
-        diagonal.
+        Accepted, and without effect: the modes are made mass-orthonormal.
     axis : SpinAxis, {'x', 'y', 'z'} or array_like, optional
         Spin axis in mesh coordinates; None takes the direction of `initialAngularVelocity` when the
         body is added, its largest component positive, if a principal axis of inertia is within 10°;
@@ -102,6 +101,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
 
     Notes
     -----
+    Markers and sensors at the node ``nRigidBody`` move as on Exudyn's body, in the mesh origin.
     The flexible object is the first object that is added. Stress modes that a script sets later,
     six columns for each mode of the FEMinterface, are converted to the rotor's coordinates.
     A warning tells where Exudyn's own body would soften falsely with these modes; see

@@ -7,9 +7,15 @@ from dataclasses import dataclass
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import ObjectFFRFreducedOrder, VObjectFFRFreducedOrder
+from exudyn.itemInterface import (
+    MarkerSuperElementPosition,
+    MarkerSuperElementRigid,
+    ObjectFFRFreducedOrder,
+    VObjectFFRFreducedOrder,
+)
 
 from exudyn_rotor.multibody.frame import BodyFrame
+from exudyn_rotor.multibody.inputs import Setup, marker_name
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.theory.axis import SpinAxis
@@ -175,3 +181,35 @@ def marker_body_object(
             triangleMesh=mesh.triangles.tolist(), color=color, showNodes=False
         ),
     )
+
+
+def interface_markers(
+    mbs: exudyn.MainSystem,
+    setup: Setup,
+    marker_body: exudyn.ObjectIndex,
+    mesh: MarkerBodyMesh,
+    frame: BodyFrame,
+) -> dict[str, exudyn.MarkerIndex]:
+    """Add one marker per interface; rigid markers have the mesh axes as their frame."""
+    markers = {}
+    for interface, request in setup.markers.items():
+        common = {
+            "name": marker_name(setup.name, interface),
+            "bodyNumber": marker_body,
+            "visualization": {"show": request.show, "showMarkerNodes": False},
+        }
+        if request.kind == "rigid":
+            turn = np.eye(4)
+            turn[:3, :3] = frame.B
+            item = MarkerSuperElementRigid(
+                meshNodeNumbers=mesh.rigid_nodes[interface],
+                weightingFactors=[1.0 / 3.0] * 3,
+                localHT=turn,
+                **common,
+            )
+        else:
+            item = MarkerSuperElementPosition(
+                meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
+            )
+        markers[interface] = mbs.AddMarker(item)
+    return markers
