@@ -298,12 +298,14 @@ def test_a_run_starts_from_the_steady_state_of_springs_at_the_node():
 
 
 def test_nodes_of_others_are_left_alone():
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rings()[1])
-    number = int(body.nodes["rigid"])
+    container = exu.SystemContainer()
+    number = int(add_rotor(container.AddSystem(), rings()[1]).nodes["rigid"])
+    mbs = container.GetSystem(0)  # nothing but the container holds the system meanwhile
     other = mbs.AddNode(NodeRigidBodyRxyz())
     marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=other))
     assert mbs.GetMarker(marker)["markerType"] == "NodeRigid"
+    marker = mbs.AddMarker(MarkerNodeRigid(nodeNumber=number))
+    assert mbs.GetMarker(marker)["markerType"] == "SuperElementRigid"
     mbs.Reset()
     while mbs.systemData.NumberOfNodes() <= number:
         other = mbs.AddNode(NodeRigidBodyRxyz())

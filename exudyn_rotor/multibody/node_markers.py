@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from weakref import WeakKeyDictionary
 
 import exudyn
 import numpy as np
@@ -35,6 +34,7 @@ _MARKERS = ("NodeRigid", "NodePosition")
 _KINDS = exudyn.OutputVariableType
 _OF_PLACE = (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity)
 _OF_ROTATION = (_KINDS.Rotation, _KINDS.RotationMatrix, _KINDS.AngularVelocity)
+_PLACES = "exudyn_rotor: what moves as the nodes of rotors"  # key in mbs.sys, by their marks
 _Z = SpinAxis([0.0, 0.0, 1.0])  # of the plane of the three nodes; any serves
 
 
@@ -81,10 +81,6 @@ class NodePlace:
         return self.virtual[key]
 
 
-# for every system: mark of the equations → place of the frame's node
-_places: WeakKeyDictionary[exudyn.MainSystem, dict[Mark | None, NodePlace]] = WeakKeyDictionary()
-
-
 def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
     """Let markers and sensors that are added at the node of a rotor's frame move with the rotor.
 
@@ -100,7 +96,7 @@ def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
     turn = inv.mean_rotation[:, :rigid]
     arm = frame.node - reduced.center_of_mass
     shift = inv.S[:, :rigid] / inv.mass - skew(arm) @ turn
-    _places.setdefault(body.mbs, {})[body.mark] = NodePlace(
+    body.mbs.sys.setdefault(_PLACES, {})[body.mark] = NodePlace(
         physics=int(body.objects["physics"]),
         node=int(body.nodes["rigid"]),
         marker_body=int(body.objects["marker_body"]),
@@ -114,7 +110,7 @@ def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
 
 def rigid_nodes(body: RotorItems) -> list[list[int]]:
     """Return the nodes of all rigid markers that have been put on the node of a rotor's frame."""
-    place = _places.get(body.mbs, {}).get(body.mark)
+    place = body.mbs.sys.get(_PLACES, {}).get(body.mark)
     return [] if place is None else [nodes for key, nodes in place.virtual.items() if key[0]]
 
 
@@ -124,7 +120,7 @@ def _place_of(mbs: exudyn.MainSystem, entries: dict) -> NodePlace | None:
         number = int(entries["nodeNumber"])
     except (KeyError, TypeError, ValueError):
         return None
-    for place in _places[mbs].values():
+    for place in mbs.sys[_PLACES].values():
         if place.node == number and mark_of(mbs, place.physics) == place.mark:
             return place
     return None
@@ -181,10 +177,10 @@ def _moved_sensor(mbs: exudyn.MainSystem, item: object) -> object:
 @wraps_method("AddMarker")
 def _add_marker(add: Callable, mbs: exudyn.MainSystem, pyObject: object) -> exudyn.MarkerIndex:
     """Add a marker as Exudyn does, one of a rotor's frame to the flexible body."""
-    return add(mbs, _moved_marker(mbs, pyObject) if mbs in _places else pyObject)
+    return add(mbs, _moved_marker(mbs, pyObject) if _PLACES in mbs.sys else pyObject)
 
 
 @wraps_method("AddSensor")
 def _add_sensor(add: Callable, mbs: exudyn.MainSystem, pyObject: object) -> exudyn.SensorIndex:
     """Add a sensor as Exudyn does, one of a rotor's frame to a marker there."""
-    return add(mbs, _moved_sensor(mbs, pyObject) if mbs in _places else pyObject)
+    return add(mbs, _moved_sensor(mbs, pyObject) if _PLACES in mbs.sys else pyObject)
