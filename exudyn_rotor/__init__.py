@@ -43,6 +43,9 @@ from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOr
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.multibody.start_state import StartState
+from exudyn_rotor.pictures.motion_shapes import MotionShapes
+from exudyn_rotor.pictures.shapes import mode_shapes, response_shapes
+from exudyn_rotor.pictures.spectra import Spectra, plot_orbit, spectra
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.mean_axis import use_mean_axis_modes
@@ -84,6 +87,7 @@ __all__ = [
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
     "Motion",
+    "MotionShapes",
     "ObjectFixedAxisFFRFreducedOrderInterface",
     "PointMass",
     "PrescribedMotion",
@@ -96,6 +100,7 @@ __all__ = [
     "RunCheck",
     "SeparationMargins",
     "SolidRotor",
+    "Spectra",
     "SpinAxis",
     "Stability",
     "StabilityLevelOne",
@@ -123,12 +128,16 @@ __all__ = [
     "keep_modes",
     "linear_model",
     "load_result",
+    "mode_shapes",
     "permissible_unbalance",
+    "plot_orbit",
     "propose",
     "recommended_settings",
     "report",
+    "response_shapes",
     "select_modes",
     "separation_margins",
+    "spectra",
     "spinning_modes",
     "stability",
     "stability_level_one",

@@ -82,6 +82,8 @@ def draw_surface(
     values: ArrayLike,
     label: str,
     ax: Axes3D | None = None,
+    *,
+    room: ArrayLike | None = None,
 ) -> Axes3D:
     """Draw nodal values on a surface.
 
@@ -98,6 +100,8 @@ def draw_surface(
     ax : Axes3D, optional
         Made by ``pyplot.subplots(subplot_kw={"projection": "3d"})``; those of a new figure by
         default.
+    room : array_like, shape (p, 3), optional
+        Points between which the picture reaches, where that is more than the surface [m].
 
     Raises
     ------
@@ -127,6 +131,8 @@ def draw_surface(
     # edges of the faces' own colour close the gaps between them
     faces = Poly3DCollection(positions[corners], facecolors=colors, edgecolors=colors, lw=0.3)
     points = positions[np.unique(corners)]
+    if room is not None:
+        points = np.vstack([points, checks.array(room, "room", "m", shape=(None, 3))])
     if ax is not None:
         checks.instance(ax, "ax", Axes3D, 'subplot_kw={"projection": "3d"} of pyplot.subplots')
         ax.add_collection3d(faces)

@@ -80,8 +80,19 @@ def write_text(path: str | PathLike, text: str) -> None:
     TypeError, OSError
         As :func:`write_arrays`.
     """
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str | PathLike, data: bytes) -> None:
+    """Write bytes to `path` in the way of :func:`write_arrays`.
+
+    Raises
+    ------
+    TypeError, OSError
+        As :func:`write_arrays`.
+    """
     with _replacing(_target(path)) as file:
-        file.write(text.encode("utf-8"))
+        file.write(data)
 
 
 def read_arrays(path: str | PathLike, kind: str) -> dict[str, np.ndarray]:

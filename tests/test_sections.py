@@ -65,6 +65,9 @@ def test_interface_at_takes_the_outer_surface_of_a_band(axis):
     expected = np.flatnonzero(outer & (along > 0.04 - 1e-9) & (along < 0.12 + 1e-9))
     assert seat.nodes.tolist() == expected.tolist()
     assert seat.nodes.size > 20
+    # a band at the end takes the edge of the end face, and not the face
+    end = rotor.interface_at("end", 0.0, 0.08).interfaces["end"]
+    np.testing.assert_allclose(np.linalg.norm(axis.radial(end.positions), axis=1), 0.06, rtol=1e-9)
 
 
 def test_area_weights_of_a_band_are_those_of_its_surface():

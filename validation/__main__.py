@@ -29,6 +29,7 @@ SCRIPTS = {
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
+    "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),
     "blade": Script("stiffening.blade", "rotating beams"),

@@ -25,8 +25,9 @@ from exudyn_rotor.solid.matrices import as_node_numbers
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import rotations, translations
 
-# springs of a rigid section over its own stiffness: it strains by less than 1e-4 of what it would
-_STIFF = 1e4
+# springs of a rigid section over its own stiffness: a shaft 40 diameters long errs by 6e-6 in its
+# first frequency; stiffer ones cost digits of every static solution
+_STIFF = 1e2
 # nodes that tell the mean motion; a rigid section needs no more
 _MEAN_NODES = 12
 # of the largest second moment, and of the largest arm: rounding of what was given

@@ -250,6 +250,17 @@ class World:
         return er.StressField.of(self.reduced, self.selection)
 
     @cached_property
+    def shapes(self) -> er.MotionShapes:
+        """Its two lowest modes."""
+        return er.mode_shapes(self.reduced, 10.0, supports=self.supports, modes=2)
+
+    @cached_property
+    def spectra(self) -> er.Spectra:
+        """Spectra of some record."""
+        time = 1e-3 * np.arange(40)
+        return er.spectra(time, np.sin(200.0 * time), 10.0, length=0.02)
+
+    @cached_property
     def coordinates(self) -> np.ndarray:
         """Modal coordinates at four instants."""
         return 1e-6 * np.ones((4, len(self.selection.labels)))

@@ -31,7 +31,8 @@ class FullRotor(FullEquations):
     @property
     def mesh(self) -> Mesh:
         """Nodes of the mesh."""
-        return Mesh(self.nodes, sp.eye_array(self.size, format="csr"), self.axis)
+        columns = sp.eye_array(self.size, format="csr")
+        return Mesh(self.nodes, columns, self.axis, self.rotor.triangles)
 
     @cached_property
     def free_motions(self) -> tuple[str, ...]:

@@ -26,11 +26,14 @@ class Mesh:
     columns : ndarray or scipy.sparse.csr_array, shape (3n, k)
         Displacement of the nodes per coordinate, mesh axes.
     axis : SpinAxis
+    triangles : ndarray of int, shape (t, 3) or (t, 6)
+        Surface for drawing.
     """
 
     nodes: np.ndarray
     columns: np.ndarray | sp.csr_array
     axis: SpinAxis
+    triangles: np.ndarray
 
     def motion(self, number: int) -> np.ndarray:
         """Return a node's displacement along (n1, n2, e), shape (6, k); no rotation."""

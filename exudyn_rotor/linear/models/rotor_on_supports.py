@@ -122,7 +122,9 @@ class LinearRotor(SupportedRotor):
     def mesh(self) -> Mesh | None:
         """Nodes of the mesh; None where the rotor was stored without mode shapes."""
         shapes = self.rotor.shapes
-        return None if shapes is None else Mesh(shapes.nodes, shapes.matrix, self.rotor.axis)
+        if shapes is None:
+            return None
+        return Mesh(shapes.nodes, shapes.matrix, self.rotor.axis, shapes.triangles)
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, k): displacement and rotation along (n1, n2, e)."""

@@ -4,6 +4,7 @@ from validation.mutations.lists.advice import ADVICE
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.multibody import MULTIBODY
+from validation.mutations.lists.pictures import PICTURES
 from validation.mutations.lists.prestress import PRESTRESS
 from validation.mutations.lists.reduction import REDUCTION
 from validation.mutations.lists.solid import SOLID
@@ -21,6 +22,7 @@ ALL = (
     *MULTIBODY,
     *LINEAR,
     *EVALUATION,
+    *PICTURES,
     *STRENGTH,
     *ADVICE,
     *TOP,

@@ -1,0 +1,322 @@
+"""Shapes of harmonic motions of a rotor on its surface: pictures, animations, VTK files."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+
+import numpy as np
+from mpl_toolkits.mplot3d import Axes3D
+
+from exudyn_rotor import checks
+from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, axes_of
+from exudyn_rotor.pictures.drawing import Orbit, animated, draw_motion
+from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.solid.interface import Interface
+from exudyn_rotor.storage import write_bytes
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.units import Units
+from exudyn_rotor.vtk import write_surface
+
+HERTZ = 1.0 / (2.0 * np.pi)
+_STATIONS = 15  # along the axis
+# of the larger amplitude: an orbit with less of the smaller one is neither forward nor backward
+_STRAIGHT = 0.02
+# frequencies that differ by less than this share are one
+_SAME = 1e-6
+# harmonics below this share of the largest are not written
+_WRITTEN = 1e-6
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class MotionShapes(Result):
+    """Motions ``u(t) = Re Σ_m X_m exp(i(ν + mΩ)t)`` of a rotor, seen in its frame.
+
+    Made by :func:`mode_shapes` and :func:`response_shapes`.
+
+    Attributes
+    ----------
+    positions : ndarray, shape (n, 3)
+        Mesh nodes, mesh coordinates [m].
+    triangles : ndarray of int, shape (t, 3) or (t, 6)
+        Surface of the rotor.
+    direction, point : ndarray, shape (3,)
+        Of the spin axis.
+    speeds : ndarray, shape (k,)
+        Spin speed Ω of every shape [rad/s].
+    labels : tuple of str
+        What every shape is.
+    rates : ndarray, shape (k,)
+        ν, seen in the rotor frame [rad/s].
+    frequencies : ndarray, shape (k,)
+        Of the strongest wave seen from outside [rad/s].
+    orders : ndarray of int, shape (h,)
+        The harmonics m.
+    motion : ndarray of complex, shape (k, h, 3n)
+        X_m along mesh axes; of modes the size is arbitrary, of responses it is in metres.
+    """
+
+    positions: np.ndarray = numbers("nodes", 3)
+    triangles: np.ndarray = numbers("triangles", "corners", dtype=int, least=0)
+    direction: np.ndarray = numbers(3)
+    point: np.ndarray = numbers(3)
+    speeds: np.ndarray = numbers("shapes")
+    labels: tuple[str, ...] = words("shapes")
+    rates: np.ndarray = numbers("shapes")
+    frequencies: np.ndarray = numbers("shapes")
+    orders: np.ndarray = numbers("orders", dtype=int)
+    motion: np.ndarray = numbers("shapes", "orders", "coordinates", dtype=complex)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.motion.shape[2] != self.positions.size:
+            raise ValueError(
+                f"motion: needs three values for each of the {len(self.positions)} nodes, got "
+                f"{self.motion.shape[2]}"
+            )
+        if self.triangles.size and (
+            self.triangles.shape[1] not in (3, 6) or self.triangles.max() >= len(self.positions)
+        ):
+            raise ValueError("triangles: needs 3 or 6 numbers of nodes each")
+
+    @property
+    def axis(self) -> SpinAxis:
+        """The spin axis in mesh coordinates."""
+        return SpinAxis(self.direction, self.point)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of :meth:`Units.of`."""
+        shown = Units.of(units)
+        return {
+            f"speed [{shown.speed}]": shown.speeds(self.speeds),
+            f"frequency [{shown.frequency}]": shown.frequencies(self.frequencies),
+            "what": np.array(self.labels),
+        }
+
+    def table(self) -> str:
+        """Return the frequencies of all shapes as text."""
+        lines = ["shape  speed [Hz]  frequency [Hz]  what"]
+        for index, label in enumerate(self.labels):
+            lines.append(
+                f"{index:5d}{HERTZ * self.speeds[index]:12.5g}"
+                f"{HERTZ * self.frequencies[index]:16.6g}  {label}"
+            )
+        return "\n".join(lines)
+
+    def displacement(self, index: int, time: float) -> np.ndarray:
+        """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3)."""
+        index = checks.count(index, "index", most=len(self.labels) - 1)
+        time = checks.number(time, "time", "s")
+        turns = self.rates[index] + self.orders * self.speeds[index]
+        values = np.exp(1j * turns * time) @ self.motion[index]
+        return values.real.reshape(-1, 3)
+
+    def orbits(self, index: int, points: int = 49) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return centre (3,) and orbit (points, 3) of stations along the axis.
+
+        The orbits are those of the mean motion of a slice of the rotor at the frequency seen from
+        outside, in mesh axes that stand still, relative to the centre and in the unit of `motion`.
+        """
+        index = checks.count(index, "index", most=len(self.labels) - 1)
+        angles = np.linspace(0.0, 2.0 * np.pi, checks.count(points, "points", least=2))
+        axes, found = axes_of(self.axis), []
+        for center, forward, backward, along in self._whirls(index):
+            turn = np.exp(1j * angles)
+            lateral = forward * turn + backward * turn.conj()
+            local = np.stack([lateral.real, lateral.imag, (along * turn).real], axis=1)
+            found.append((center, local @ axes.T))
+        return found
+
+    def plot(self, index: int = 0, ax: Axes3D | None = None, *, share: float = 0.1) -> Axes3D:
+        """Draw the rotor at the time zero and the orbits of its centre line.
+
+        Orbits are blue where the rotor whirls forward, seen from outside and relative to the spin,
+        and orange where it whirls backward.
+
+        Parameters
+        ----------
+        index : int, optional
+            Which shape.
+        ax : Axes3D, optional
+            3D axes to draw in; those of a new figure by default.
+        share : float, optional
+            Largest displacement as drawn, over the size of the rotor.
+
+        Raises
+        ------
+        ValueError
+            If there is no surface, no motion, or no such shape.
+        """
+        index = checks.count(index, "index", most=len(self.labels) - 1)
+        scale = self._scale(index, share)
+        moved = self.displacement(index, 0.0)
+        reach = scale * self._amplitudes(index)
+        low, high = (self.positions - reach).min(axis=0), (self.positions + reach).max(axis=0)
+        orbits = [
+            Orbit(center + scale * points, sense)
+            for (center, points), sense in zip(self.orbits(index), self._senses(index), strict=True)
+        ]
+        sizes = np.linalg.norm(reach, axis=1)
+        sizes = sizes / sizes.max()
+        title = (
+            f"{self.labels[index]}\n{HERTZ * self.frequencies[index]:.5g} Hz at a spin of "
+            f"{HERTZ * self.speeds[index]:.5g} Hz"
+        )
+        places = self.positions + scale * moved
+        room = np.array([low, high])
+        return draw_motion(places, self.triangles, sizes, orbits, room, title, ax)
+
+    def animate(
+        self,
+        path: str | PathLike,
+        index: int = 0,
+        *,
+        frame: str = "inertial",
+        share: float = 0.1,
+        frames: int = 24,
+        seconds: float = 2.0,
+    ) -> None:
+        """Write one period of the motion as an animated GIF.
+
+        In the inertial frame the rotor also spins by Ω times the period; a motion that stands
+        still there is shown over one revolution. In its own frame the period is that of ν.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Ends with '.gif'; a file there is replaced by a complete one only.
+        index : int, optional
+            Which shape.
+        frame : {'inertial', 'rotor'}
+        share : float, optional
+            See :meth:`plot`.
+        frames : int, optional
+            Number of pictures.
+        seconds : float, optional
+            How long one period lasts in the film [s].
+
+        Raises
+        ------
+        TypeError, ValueError, OSError
+            If an argument is of another kind, there is no surface, or the file cannot be written.
+        """
+        target = checks.path(path)
+        if target.suffix != ".gif":
+            raise ValueError(f"path: needs the ending .gif, got {str(target)!r}")
+        index = checks.count(index, "index", most=len(self.labels) - 1)
+        inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
+        count = checks.count(frames, "frames", least=2, most=1000)
+        seconds = checks.number(seconds, "seconds", "s", above=0.0)
+        scale = self._scale(index, share)
+        speed = self.speeds[index]
+        rate = self.frequencies[index] if inertial else abs(self.rates[index])
+        rate = rate or abs(speed) or 1.0
+        times = 2.0 * np.pi / rate * np.arange(count) / count
+        ax = self.plot(index, share=share)
+        shown = self.triangles[:, :3]
+        if self.triangles.shape[1] == 6:
+            shown = self.triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+        stations = self._stations
+
+        def places(time: float) -> tuple[np.ndarray, np.ndarray]:
+            moved = scale * self.displacement(index, time)
+            centers = [center + (mean @ moved.ravel()) for center, mean in stations]
+            nodes, centers = self.positions + moved, np.array(centers).reshape(-1, 3)
+            if not inertial:
+                return nodes, centers
+            turn = self.axis.rotation(speed * time).T
+            return ((part - self.point) @ turn + self.point for part in (nodes, centers))
+
+        write_bytes(target, animated(ax, shown, places, times, seconds))
+
+    def to_vtk(self, path: str | PathLike) -> None:
+        """Write all shapes on the surface for ParaView; needs the package meshio.
+
+        Every harmonic of a shape gives two vectors, its real and its imaginary part, in mesh axes
+        of the rotor frame: the displacement at the time zero, and with the opposite sign that of
+        a quarter of its period later.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Ends with '.vtu' or '.vtk'.
+
+        Raises
+        ------
+        ImportError
+            Without meshio: ``pip install "exudyn-rotor[vtk]"``.
+        ValueError
+            For another ending, or without a surface.
+        """
+        values = {}
+        for index, label in enumerate(self.labels):
+            sizes = np.abs(self.motion[index]).max(axis=1)
+            for row in np.flatnonzero(sizes > _WRITTEN * sizes.max()):
+                name = f"{index} {label}, order {self.orders[row]}"
+                shape = self.motion[index, row].reshape(-1, 3)
+                values[f"{name}, real"] = shape.real
+                values[f"{name}, imaginary"] = shape.imag
+        write_surface(path, self.positions, self.triangles, values)
+
+    # ------------------------------------------------------------------ parts
+
+    @cached_property
+    def _stations(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Points of the axis, and the mean motion (3, 3n) of a slice of the rotor there."""
+        axis = self.axis
+        along = (self.positions - axis.point) @ axis.direction
+        edges = np.linspace(along.min(), along.max(), _STATIONS + 1)
+        edges[-1] += 1e-9 * np.ptp(edges)
+        stations = []
+        for low, high in itertools.pairwise(edges):
+            nodes = np.flatnonzero((along >= low) & (along < high))
+            if nodes.size < 3:
+                continue
+            center = axis.point + 0.5 * (low + high) * axis.direction
+            part = Interface("station", nodes, None, self.positions[nodes]).centered_on(center)
+            stations.append((center, part.mean_motion(len(self.positions))[:3]))
+        return stations
+
+    def _whirls(self, index: int) -> list[tuple[np.ndarray, complex, complex, complex]]:
+        """Return centre, forward and backward amplitude, and axial amplitude of all stations."""
+        axes, speed, seen = axes_of(self.axis), self.speeds[index], self.frequencies[index]
+        turns = self.rates[index] + self.orders * speed
+        near = _SAME * max(abs(speed), seen, 1e-300)
+        found = []
+        for center, mean in self._stations:
+            local = np.array([axes.T @ (mean @ row) for row in self.motion[index]])
+            a = 0.5 * (local[:, 0] + 1j * local[:, 1])
+            b = 0.5 * (local[:, 0] - 1j * local[:, 1]).conj()
+            rates = np.concatenate([turns + speed, speed - turns])
+            both = np.concatenate([a, b])
+            forward = both[np.abs(rates - seen) <= near].sum()
+            backward = both[(np.abs(rates + seen) <= near) & (seen > 0.0)].sum()
+            axial = local[np.abs(np.abs(turns) - seen) <= near, 2].sum()
+            found.append((center, forward, backward, axial))
+        return found
+
+    def _senses(self, index: int) -> list[str]:
+        sign = np.sign(self.speeds[index]) or 1.0
+        senses = []
+        for _, forward, backward, _ in self._whirls(index):
+            sizes = sorted((abs(forward), abs(backward)))
+            if sizes[1] - sizes[0] <= _STRAIGHT * sizes[1]:
+                senses.append("straight")
+            else:
+                ahead = (abs(forward) > abs(backward)) == (sign > 0.0)
+                senses.append("forward" if ahead else "backward")
+        return senses
+
+    def _amplitudes(self, index: int) -> np.ndarray:
+        """Return the largest displacement of every node along each axis, (n, 3)."""
+        return np.abs(self.motion[index]).sum(axis=0).reshape(-1, 3)
+
+    def _scale(self, index: int, share: float) -> float:
+        share = checks.number(share, "share", above=0.0)
+        largest = np.linalg.norm(self._amplitudes(index), axis=1).max()
+        if largest == 0.0:
+            raise ValueError(f"index: the shape {index}, {self.labels[index]!r}, has no motion")
+        return share * np.ptp(self.positions, axis=0).max() / largest

@@ -1,0 +1,305 @@
+"""Spectra over a run: cascade (waterfall) over the spin speed, spectrogram over time."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks, plotting
+from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.units import Units
+
+HERTZ = 1.0 / (2.0 * np.pi)
+# of the largest amplitude: what a spectrogram shows [dB]
+_RANGE = 60.0
+# largest change of the time step, relative: rounding of what a file holds
+_EVEN = 1e-3
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class Spectra(Result):
+    """Amplitudes of a run over time and frequency, made by :func:`spectra`.
+
+    Attributes
+    ----------
+    times : ndarray, shape (w,)
+        Middles of the windows [s].
+    speeds : ndarray, shape (w,)
+        Spin speeds there [rad/s].
+    frequencies : ndarray, shape (f,)
+        Ascending [rad/s]; of a motion in a plane those below zero turn backward, from n2 to n1.
+    amplitudes : ndarray, shape (w, f)
+        In the unit of the signal: of a harmonic its amplitude, of a circular motion its radius.
+    """
+
+    times: np.ndarray = numbers("windows")
+    speeds: np.ndarray = numbers("windows")
+    frequencies: np.ndarray = numbers("frequencies")
+    amplitudes: np.ndarray = numbers("windows", "frequencies", least=0.0)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        highest: float | None = None,
+        orders: ArrayLike = (1.0,),
+    ) -> Axes:
+        """Draw the cascade: one spectrum above the other, by spin speed.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            A new figure without a window by default.
+        highest : float, optional
+            Highest frequency in the picture [rad/s]; all by default.
+        orders : array_like, optional
+            Multiples of the spin speed to draw as lines.
+        """
+        orders = checks.array(orders, "orders", shape=(None,))
+        inside, most = self._inside(highest)
+        ax = plotting.axes_or_new(ax)
+        base = HERTZ * self.speeds
+        step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
+        scale = 4.0 * step / (most or 1.0)
+        abscissa = HERTZ * self.frequencies[inside]
+        ends = abscissa[[-1, 0]]
+        rows = []
+        for index in np.argsort(-base, kind="stable"):
+            heights = base[index] + scale * self.amplitudes[index, inside]
+            line = np.column_stack([abscissa, heights])
+            rows.append(np.vstack([line, np.column_stack([ends, np.full(2, base[index])])]))
+        ax.add_collection(
+            PolyCollection(rows, facecolors="white", edgecolors=plotting.COLORS[0], lw=0.7)
+        )
+        for order, style in zip(orders, itertools.cycle(plotting.LINES[1:]), strict=False):
+            ax.plot(order * base, base, ls=style, color="0.4", lw=0.9, label=f"{order:g} ×")
+        ax.set_xlim(*_limits(abscissa))
+        ax.set_ylim(base.min() - step, base.max() + 5.0 * step)
+        ax.set_xlabel(_FREQUENCY)
+        ax.set_ylabel(f"spin speed [Hz]; {step / scale:.3g} per {step:.3g} Hz")
+        if orders.size:
+            plotting.legend_above(ax, 4)
+        return ax
+
+    def plot_spectrogram(self, ax: Axes | None = None, *, highest: float | None = None) -> Axes:
+        """Draw the amplitudes over time and frequency in decibels below the largest one.
+
+        Parameters as of :meth:`plot`.
+        """
+        inside, most = self._inside(highest)
+        ax = plotting.axes_or_new(ax)
+        floor = 10.0 ** (-_RANGE / 20.0)
+        sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
+        mesh = ax.pcolormesh(
+            self.times, HERTZ * self.frequencies[inside], 20.0 * np.log10(sizes).T,
+            shading="nearest", cmap="viridis", vmin=-_RANGE, vmax=0.0,
+        )  # fmt: skip
+        ax.plot(self.times, HERTZ * self.speeds, "--", color="white", lw=0.9, label="spin speed")
+        ax.set_ylim(*_limits(HERTZ * self.frequencies[inside]))
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel(_FREQUENCY)
+        ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB of {most:.3g}]")
+        return ax
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the strongest frequency of every window as columns, in :meth:`Units.of`."""
+        shown = Units.of(units)
+        best = np.argmax(self.amplitudes, axis=1)
+        return {
+            "time [s]": self.times,
+            f"speed [{shown.speed}]": shown.speeds(self.speeds),
+            f"strongest frequency [{shown.frequency}]": shown.frequencies(self.frequencies[best]),
+            "amplitude": self.amplitudes.max(axis=1),
+        }
+
+    def table(self) -> str:
+        """Return the strongest frequency of every window as text."""
+        lines = ["  time [s]  speed [Hz]  strongest [Hz]   amplitude"]
+        for row in zip(*self.columns("Hz").values(), strict=True):
+            time, speed, frequency, amplitude = row
+            lines.append(f"{time:10.4g}{speed:12.5g}{frequency:16.5g}{amplitude:12.4g}")
+        return "\n".join(lines)
+
+    def _inside(self, highest: float | None) -> tuple[np.ndarray, float]:
+        """Return which frequencies are shown, and the largest of their amplitudes."""
+        inside = np.ones(len(self.frequencies), dtype=bool)
+        if highest is not None:
+            highest = checks.number(highest, "highest", "rad/s", above=0.0)
+            inside = np.abs(self.frequencies) <= highest
+        if np.count_nonzero(inside) < 2:
+            raise ValueError(
+                f"highest: needs two frequencies or more below it, got {highest}; their spacing is "
+                f"{np.diff(self.frequencies).max():.4g} rad/s"
+            )
+        return inside, float(self.amplitudes[:, inside].max())
+
+
+_FREQUENCY = "frequency [Hz]"
+
+
+def spectra(
+    time: ArrayLike,
+    motion: ArrayLike,
+    speed: ArrayLike,
+    *,
+    length: float,
+    overlap: float = 0.5,
+) -> Spectra:
+    """Return spectra of a recorded motion in windows of time.
+
+    Each window is weighted by Hann's function and its mean is taken out; the amplitude of a steady
+    harmonic is that of the signal, up to 15 % less between two frequencies. Frequencies are told
+    apart from ``2/length`` Hz on.
+
+    Parameters
+    ----------
+    time : array_like, shape (s,)
+        Evenly ascending [s]; the first column of what a sensor of Exudyn stored.
+    motion : array_like, shape (s,) or (s, 2)
+        A signal, or the two displacements across the axis, along n1 and n2: then frequencies above
+        zero turn forward for a positive spin, and those below zero backward.
+    speed : float or array_like, shape (s,)
+        Spin speed [rad/s].
+    length : float
+        Of a window [s].
+    overlap : float, optional
+        Share of a window that the next one has, too, from 0 to below 1.
+
+    Raises
+    ------
+    TypeError
+        If they are no numbers.
+    ValueError
+        If shapes do not fit, the time is not even, or a window has less than 8 steps or more than
+        there are.
+
+    Examples
+    --------
+    A backward circle of radius 2 at 3 rad/s beside a forward one of radius 1 at 9 rad/s:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import spectra
+    >>> time = np.arange(0.0, 2 * np.pi, 0.02 * np.pi)
+    >>> z = np.exp(9j * time) + 2.0 * np.exp(-3j * time)
+    >>> found = spectra(time, np.column_stack([z.real, z.imag]), 9.0, length=2 * np.pi)
+    >>> best = np.argsort(found.amplitudes[0])[-1]
+    >>> found.frequencies[best].round(6), found.amplitudes[0, best].round(6)
+    (np.float64(-3.0), np.float64(2.0))
+    """
+    time = checks.array(time, "time", "s", shape=(None,))
+    values = checks.array(motion, "motion")
+    if values.shape not in ((len(time),), (len(time), 2)):
+        raise ValueError(
+            f"motion: needs the shape ({len(time)},) or ({len(time)}, 2), got {values.shape}"
+        )
+    given = checks.array(speed, "speed", "rad/s")
+    if given.shape not in ((), time.shape):
+        raise ValueError(f"speed: needs one number or {len(time)}, got the shape {given.shape}")
+    speeds = np.broadcast_to(given, time.shape)
+    step = _even_step(time)
+    length = checks.number(length, "length", "s", above=0.0)
+    overlap = checks.number(overlap, "overlap", least=0.0, below=1.0)
+    size = round(length / step)
+    if not 8 <= size <= len(time):
+        raise ValueError(
+            f"length: a window of {length:g} s has {size} steps of {step:g} s; needs 8 to "
+            f"{len(time)}"
+        )
+    hop = max(1, round((1.0 - overlap) * size))
+    plane = values.ndim == 2
+    signal = values[:, 0] + 1j * values[:, 1] if plane else values
+    starts = np.arange(0, len(time) - size + 1, hop)
+    weights = np.hanning(size + 1)[:-1]
+    weights = weights / weights.sum()
+    rows = signal[starts[:, None] + np.arange(size)]
+    rows = (rows - rows @ weights[:, None]) * weights
+    found = np.fft.fftshift(np.fft.fft(rows), axes=1)
+    frequencies = 2.0 * np.pi * np.fft.fftshift(np.fft.fftfreq(size, step))
+    if not plane:
+        kept = frequencies >= 0.0
+        found, frequencies = 2.0 * found[:, kept], frequencies[kept]
+    middles = starts + 0.5 * (size - 1)
+    return Spectra(
+        times=np.interp(middles, np.arange(len(time)), time),
+        speeds=np.array([speeds[start : start + size].mean() for start in starts]),
+        frequencies=frequencies,
+        amplitudes=np.abs(found),
+    )
+
+
+def plot_orbit(
+    motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None, *, label: str = "orbit"
+) -> Axes:
+    """Draw an orbit with a dot where the keyphasor passes: at whole turns of the rotor.
+
+    Dots that stay in place tell a motion at the spin speed or its multiples; one more or less of
+    them for each loop tells a part of it, as half of it for whirl of bearings' oil.
+
+    Parameters
+    ----------
+    motion : array_like, shape (s, 2)
+        Displacement across the axis, along n1 and n2 [m].
+    angle : array_like, shape (s,)
+        Spin angle, ascending or descending [rad].
+    ax : matplotlib.axes.Axes, optional
+        A new figure without a window by default.
+    label : str, optional
+
+    Raises
+    ------
+    TypeError
+        If they are no numbers.
+    ValueError
+        If shapes do not fit, or the angle does not go one way.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from matplotlib import pyplot
+    >>> from exudyn_rotor import plot_orbit
+    >>> angle = np.linspace(0.0, 6 * np.pi, 200)
+    >>> half = 1e-6 * np.column_stack([np.cos(angle / 2), np.sin(angle / 2)])
+    >>> ax = plot_orbit(half, angle)
+    >>> marks = ax.lines[1].get_xydata()  # [µm], on both sides of the orbit in turn
+    >>> marks[:, 0].round(2).tolist()
+    [1.0, -1.0, 1.0, -1.0]
+    >>> pyplot.close(ax.figure)
+    """
+    angle = checks.array(angle, "angle", "rad", shape=(None,))
+    motion = checks.array(motion, "motion", "m", shape=(len(angle), 2))
+    checks.label(label, "label")
+    if len(angle) < 2 or not (np.all(np.diff(angle) > 0.0) or np.all(np.diff(angle) < 0.0)):
+        raise ValueError(
+            "angle: needs a spin angle that goes one way all the time, at two points or more; "
+            "integrate the spin speed over the time if only that was recorded"
+        )
+    order = slice(None) if angle[-1] > angle[0] else slice(None, None, -1)
+    turns = angle[order] / (2.0 * np.pi)
+    rounding = 1e-9 * max(1.0, np.abs(turns).max())
+    whole = np.arange(np.ceil(turns[0] - rounding), np.floor(turns[-1] + rounding) + 1.0)
+    marks = np.column_stack([np.interp(whole, turns, part) for part in motion[order].T])
+    ax = plotting.axes_or_new(ax, (5.0, 5.0))
+    plotting.plot_orbits(ax, {label: motion})
+    ax.plot(*(1e6 * marks.T), "o", color=plotting.COLORS[1], ms=6, label="keyphasor")
+    plotting.legend_above(ax)
+    return ax
+
+
+def _even_step(time: np.ndarray) -> float:
+    steps = np.diff(time)
+    if len(steps) == 0 or steps.min() <= 0.0 or np.ptp(steps) > _EVEN * steps.mean():
+        raise ValueError(
+            "time: needs two instants or more, ascending in even steps; interpolate the record to "
+            "such steps"
+        )
+    return float(steps.mean())
+
+
+def _limits(values: np.ndarray) -> tuple[float, float]:
+    return float(values.min()), float(values.max())

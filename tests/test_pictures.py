@@ -1,0 +1,256 @@
+"""Shapes of modes and responses, their files; spectra and orbits of runs."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from models import disc_rotor
+from PIL import Image
+from point_rotors import SKEW_AXIS
+
+from exudyn_rotor import (
+    MotionShapes,
+    ReducedRotor,
+    SolidRotor,
+    SpinAxis,
+    StressField,
+    Support,
+    Unbalance,
+    campbell,
+    mode_shapes,
+    plot_orbit,
+    response_shapes,
+    spectra,
+    unbalance_response,
+)
+from exudyn_rotor.plotting import COLORS
+from exudyn_rotor.theory.nodal import block_diagonal
+
+SPEED = 300.0
+EQUAL = [Support(name, 2e7, damping=200.0) for name in ("left", "right")]
+UNEQUAL = [Support(name, [[2e7, 0.0], [0.0, 8e6]], damping=200.0) for name in ("left", "right")]
+
+
+@cache
+def reduced() -> ReducedRotor:
+    """Return a disc on a shaft along z with first-order elements."""
+    return disc_rotor(1).center_interfaces().reduce(4)
+
+
+@cache
+def modes() -> MotionShapes:
+    return mode_shapes(reduced(), SPEED, supports=EQUAL, modes=6)
+
+
+def test_modes_are_those_of_the_campbell_diagram():
+    result = campbell(reduced(), [SPEED], supports=EQUAL)
+    order = np.argsort(result.frequencies_inertial[0], kind="stable")[:6]
+    np.testing.assert_allclose(
+        modes().frequencies, result.frequencies_inertial[0, order], rtol=1e-9, atol=1e-6
+    )
+    assert [label.split(", ")[1] for label in modes().labels] == result.whirl[0, order].tolist()
+    assert "backward" in modes().table()
+
+
+@pytest.mark.parametrize("supports", [EQUAL, UNEQUAL])
+def test_orbits_are_those_of_the_response(supports):
+    """Of the places that the unbalance response looks at, forward and backward, any supports."""
+    given = {"supports": supports, "own": False}
+    heavy = [Unbalance("right", 1e-4)]
+    shapes = response_shapes(reduced(), [SPEED], heavy, **given)
+    response = unbalance_response(reduced(), [SPEED], heavy, at=["left", "right"], **given)
+    found = [orbit for _, orbit in shapes.orbits(0, points=9)]
+    largest = np.abs(found).max()
+    ends = found[0], found[-1]
+    for place, orbit in zip(("left", "right"), ends, strict=True):
+        # the shaft is a thirtieth of its length further in, where its motion is the mean of a slice
+        expected = response.orbit(SPEED, place, points=9)
+        np.testing.assert_allclose(orbit[:, :2], expected, atol=0.1 * largest)
+    # what the rotor frame sees, turned into space, is the same motion
+    node = int(np.argmax(disc_rotor(1).nodes[:, 2]))
+    at_node = unbalance_response(reduced(), [SPEED], heavy, at=[node], **given)
+    for time in (0.0, 0.4 / SPEED):
+        local = shapes.displacement(0, time)[node]
+        seen = shapes.axis.rotation(SPEED * time) @ local
+        orders = at_node.orders
+        exact = sum(
+            (at_node.phasor(None, "n1", n)[0] * np.exp(1j * n * SPEED * time)).real for n in orders
+        )
+        np.testing.assert_allclose(seen[0], exact, rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_orbits_of_whirl_are_circles_of_their_sense(speed):
+    """Forward whirl turns with the spin, whatever its sign; circles on equal supports."""
+    shapes = mode_shapes(reduced(), speed, supports=EQUAL, modes=6)
+    for index, label in enumerate(shapes.labels):
+        word = label.split(", ")[1]
+        if word not in ("forward", "backward"):
+            continue
+        _, orbit = max(shapes.orbits(index, 13), key=lambda pair: np.abs(pair[1]).max())
+        radii = np.hypot(*orbit[:, :2].T)
+        np.testing.assert_allclose(radii, radii[0], rtol=0.05)
+        turn = np.cross(orbit[0], orbit[1])[2] * np.sign(speed)
+        assert (turn > 0.0) == (word == "forward")
+
+
+def test_shapes_of_any_axis():
+    """The same orbits about a skew axis that does not pass through the origin."""
+    axis = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
+    turn = np.column_stack([axis.plane, axis.direction])
+    plain = disc_rotor(1).center_interfaces()
+    blocks = block_diagonal(turn, plain.node_count)
+    rotor = SolidRotor.from_matrices(
+        plain.mass, blocks @ plain.stiffness @ blocks.T, plain.nodes @ turn.T + axis.point, axis,
+        interfaces={name: (i.nodes, i.weights) for name, i in plain.interfaces.items()},
+        triangles=plain.triangles,
+    ).center_interfaces()  # fmt: skip
+    shapes = mode_shapes(rotor.reduce(4), SPEED, supports=EQUAL, modes=6)
+    np.testing.assert_allclose(shapes.frequencies, modes().frequencies, rtol=1e-6, atol=1e-3)
+    for index in (2, 3):
+        pairs = zip(shapes.orbits(index), modes().orbits(index), strict=True)
+        for (center, orbit), (plain_center, plain_orbit) in pairs:
+            np.testing.assert_allclose(center, turn @ plain_center + axis.point, atol=1e-9)
+            sizes = [np.hypot(*(part @ axes).T[:2]) for part, axes in
+                     ((orbit, turn), (plain_orbit, np.eye(3)))]  # fmt: skip
+            # a node on the edge of two slices may be in either
+            np.testing.assert_allclose(sizes[0], sizes[1], atol=1e-2 * sizes[1].max())
+
+
+def test_full_models_have_shapes():
+    rotor = disc_rotor(1).center_interfaces()
+    shapes = mode_shapes(rotor, SPEED, supports=EQUAL, modes=4)
+    np.testing.assert_allclose(shapes.frequencies[2:], modes().frequencies[2:4], rtol=2e-2)
+
+
+def test_pictures_colour_forward_and_backward():
+    for word, color in (("forward", COLORS[0]), ("backward", COLORS[1])):
+        index = next(i for i, label in enumerate(modes().labels) if word in label)
+        ax = modes().plot(index)
+        assert {line.get_color() for line in ax.lines[:-1]} == {color}
+        pyplot.close(ax.figure)
+
+
+@pytest.mark.parametrize("frame", ["inertial", "rotor"])
+def test_animation_is_a_film_of_one_period(tmp_path, frame):
+    path = tmp_path / "mode.gif"
+    modes().animate(path, 3, frame=frame, frames=3, seconds=1.5)
+    with Image.open(path) as film:
+        assert film.n_frames == 3
+        assert film.info["duration"] == 500
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_files_for_paraview(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    modes().to_vtk(tmp_path / "modes.vtu")
+    read = meshio.read(tmp_path / "modes.vtu")
+    assert read.cells[0].type == "triangle"
+    used = np.unique(modes().triangles)
+    np.testing.assert_allclose(read.points, modes().positions[used])
+    name = f"3 {modes().labels[3]}, order 0, real"
+    expected = modes().displacement(3, 0.0)[used]
+    np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
+
+
+def test_stress_in_the_order_of_paraview(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]]
+    modes_of = np.zeros((4, 6, 1))
+    modes_of[:, :, 0] = np.arange(1.0, 7.0)  # xx, yy, zz, yz, xz, xy
+    none = np.zeros((4, 6))
+    field = StressField(nodes, [[0, 1, 2]], modes_of, none, True, none)
+    field.to_vtk(tmp_path / "stress.vtu", [2.0], 0.0)
+    read = meshio.read(tmp_path / "stress.vtu")
+    assert read.point_data["stress"].tolist() == [[2, 4, 6, 12, 8, 10]] * 3
+
+
+def test_files_without_meshio_say_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
+    with pytest.raises(ImportError, match=r"exudyn-rotor\[vtk\]"):
+        modes().to_vtk(tmp_path / "modes.vtu")
+
+
+def test_wrong_requests_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="ending"):
+        modes().to_vtk(tmp_path / "modes.stl")
+    with pytest.raises(ValueError, match=r"ending .gif"):
+        modes().animate(tmp_path / "modes.mp4")
+    with pytest.raises(ValueError, match="index"):
+        modes().plot(99)
+    with pytest.raises(ValueError, match="no mesh nodes"):
+        mode_shapes(reduced().without_shapes(), SPEED, supports=EQUAL)
+    with pytest.raises(ValueError, match="above zero"):
+        response_shapes(reduced(), [0.0, 1.0], [Unbalance("left", 1e-4)], supports=EQUAL)
+
+
+def run_up() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, motion and speed: unbalance of 3 µm, and a backward circle of 1 µm at 40 Hz."""
+    time = np.arange(0.0, 4.0, 1e-3)
+    speed = 2.0 * np.pi * (20.0 + 10.0 * time)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    z = 3e-6 * np.exp(1j * angle) + 1e-6 * np.exp(-2j * np.pi * 40.0 * time)
+    return time, np.column_stack([z.real, z.imag]), speed
+
+
+def test_spectra_part_forward_from_backward():
+    time, motion, speed = run_up()
+    found = spectra(time, motion, speed, length=0.2, overlap=0.75)
+    spacing = np.diff(found.frequencies)[0]
+    ahead = np.where(found.frequencies > 0.0, found.amplitudes, 0.0)
+    strongest = found.frequencies[np.argmax(ahead, axis=1)]
+    np.testing.assert_allclose(strongest, found.speeds, atol=0.6 * spacing)
+    behind = np.argmin(np.abs(found.frequencies + 2.0 * np.pi * 40.0))
+    np.testing.assert_allclose(found.amplitudes[:, behind], 1e-6, rtol=0.02)
+    np.testing.assert_allclose(found.speeds, np.interp(found.times, time, speed), rtol=1e-9)
+    assert len(found.table().splitlines()) == len(found.times) + 1
+
+
+def test_amplitude_of_one_signal():
+    """A harmonic on a line of the spectrum, and a constant that is taken out."""
+    time = np.arange(0.0, 1.0, 1e-3)
+    found = spectra(time, 5.0 + 2.0 * np.cos(2.0 * np.pi * 50.0 * time), 300.0, length=0.5)
+    best = np.argmax(found.amplitudes[0])
+    np.testing.assert_allclose(found.frequencies[best], 2.0 * np.pi * 50.0, rtol=1e-9)
+    np.testing.assert_allclose(found.amplitudes[0, best], 2.0, rtol=1e-9)
+    assert found.amplitudes[:, 0].max() < 1e-9
+
+
+def test_cascade_and_spectrogram_are_drawn():
+    found = spectra(*run_up(), length=0.4)
+    figure, axes = pyplot.subplots(1, 2)
+    limit = 2.0 * np.pi * 100.0
+    found.plot(axes[0], highest=limit, orders=(1.0, -1.0))
+    found.plot_spectrogram(axes[1], highest=limit)
+    np.testing.assert_allclose(axes[0].get_xlim(), (-100.0, 100.0), atol=3.0)
+    assert len(axes[0].collections[0].get_paths()) == len(found.times)
+    pyplot.close(figure)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"length": 0.004}, "steps"),
+        ({"overlap": 1.0}, "overlap"),
+        ({"time": [0.0, 1.0, 3.0, 4.0]}, "motion: needs the shape"),
+        ({"time": np.geomspace(1.0, 2.0, 100)}, "even steps"),
+        ({"speed": [1.0, 2.0]}, "speed: needs one number"),
+    ],
+)
+def test_records_that_make_no_spectra_are_refused(change, words):
+    time = np.arange(100) * 1e-3
+    given = {"time": time, "motion": np.sin(time), "speed": 1.0, "length": 0.05, **change}
+    with pytest.raises(ValueError, match=words):
+        spectra(**given)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_keyphasor_marks_stand_at_whole_turns(sign):
+    angle = sign * np.linspace(-1.0, 20.0, 4000)
+    ax = plot_orbit(1e-6 * np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]), angle)
+    marks = ax.lines[1].get_xydata()
+    np.testing.assert_allclose(marks, [[1.0, 0.0]] * 4, atol=1e-5)
+    pyplot.close(ax.figure)
+    with pytest.raises(ValueError, match="one way"):
+        plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5])
