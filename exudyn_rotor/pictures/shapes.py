@@ -86,7 +86,7 @@ def mode_shapes(
         **_surface(mesh),
         speeds=np.full(len(chosen), speed),
         labels=tuple(f"mode {i + 1}, {WHIRLS[codes[j]]}" for i, j in enumerate(chosen)),
-        rates=found.values.imag[chosen],
+        rates=np.abs(found.values.imag[chosen]),
         frequencies=seen[chosen],
         orders=found.orders,
         motion=motion,
