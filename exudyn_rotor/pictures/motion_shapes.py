@@ -57,6 +57,19 @@ class MotionShapes(Result):
         The harmonics m.
     motion : ndarray of complex, shape (k, h, 3n)
         X_m along mesh axes; of modes the size is arbitrary, of responses it is in metres.
+
+    Examples
+    --------
+    A point that whirls forward at twice the spin speed of 3 rad/s, seen a quarter turn later:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import MotionShapes
+    >>> axis, rate = ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]), [3.0]
+    >>> circle = [[[1.0, -1.0j, 0.0]]]
+    >>> shape = MotionShapes([[0.0, 0.0, 0.0]], np.zeros((0, 3), int), *axis, [3.0], ("whirl",),
+    ...                      rate, [6.0], [0], circle)
+    >>> print(shape.displacement(0, np.pi / 6.0).round(6) + 0.0)
+    [[0. 1. 0.]]
     """
 
     positions: np.ndarray = numbers("nodes", 3)

@@ -36,6 +36,14 @@ class Spectra(Result):
         Ascending [rad/s]; of a motion in a plane those below zero turn backward, from n2 to n1.
     amplitudes : ndarray, shape (w, f)
         In the unit of the signal: of a harmonic its amplitude, of a circular motion its radius.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Spectra
+    >>> print(Spectra([0.5, 1.5], [60.0, 90.0], [-90.0, 0.0, 90.0], [[0, 0, 1], [2, 0, 1]]).table())
+      time [s]  speed [Hz]  strongest [Hz]   amplitude
+           0.5      9.5493          14.324           1
+           1.5      14.324         -14.324           2
     """
 
     times: np.ndarray = numbers("windows")
