@@ -241,9 +241,7 @@ def spectra(
     )
 
 
-def plot_orbit(
-    motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None, *, label: str = "orbit"
-) -> Axes:
+def plot_orbit(motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None) -> Axes:
     """Draw an orbit with a dot where the keyphasor passes: at whole turns of the rotor.
 
     Dots that stay in place tell a motion at the spin speed or its multiples; one more or less of
@@ -257,7 +255,6 @@ def plot_orbit(
         Spin angle, ascending or descending [rad].
     ax : matplotlib.axes.Axes, optional
         A new figure without a window by default.
-    label : str, optional
 
     Raises
     ------
@@ -281,7 +278,6 @@ def plot_orbit(
     """
     angle = checks.array(angle, "angle", "rad", shape=(None,))
     motion = checks.array(motion, "motion", "m", shape=(len(angle), 2))
-    checks.label(label, "label")
     if len(angle) < 2 or not (np.all(np.diff(angle) > 0.0) or np.all(np.diff(angle) < 0.0)):
         raise ValueError(
             "angle: needs a spin angle that goes one way all the time, at two points or more; "
@@ -293,7 +289,7 @@ def plot_orbit(
     whole = np.arange(np.ceil(turns[0] - rounding), np.floor(turns[-1] + rounding) + 1.0)
     marks = np.column_stack([np.interp(whole, turns, part) for part in motion[order].T])
     ax = plotting.axes_or_new(ax, (5.0, 5.0))
-    plotting.plot_orbits(ax, {label: motion})
+    plotting.plot_orbits(ax, {"orbit": motion})
     ax.plot(*(1e6 * marks.T), "o", color=plotting.COLORS[1], ms=6, label="keyphasor")
     plotting.legend_above(ax)
     return ax
