@@ -65,8 +65,10 @@ class FinerRotor(LinearRotor):
     def mesh(self) -> Mesh | None:
         """Nodes of the mesh with the motion that the reduced rotor knows of them."""
         mesh = self.given.mesh
+        if mesh is None:
+            return None
         more = self.size - self.given.size
-        return None if mesh is None else _WiderMesh(mesh.nodes, mesh.columns, mesh.axis, more)
+        return _WiderMesh(mesh.nodes, mesh.columns, mesh.axis, mesh.triangles, more)
 
 
 @dataclass(frozen=True, eq=False)
