@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from matplotlib import pyplot
+from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     SeparationMargins,
@@ -13,7 +14,9 @@ from exudyn_rotor import (
     UnbalanceResponse,
     anticipated_cross_coupling,
     bearing_masses,
+    campbell,
     separation_margins,
+    stability,
     stability_level_one,
     standard_unbalances,
     unbalance_response,
@@ -215,6 +218,26 @@ def test_anisotropic_bearings_raise_the_threshold():
     bearing = Support("disc", np.diag([0.9e4, 1.1e4]), damping=20.0 * np.eye(2))
     found = stability_level_one(point().reduce(0), 300.0, 500.0, "disc", supports=bearing)
     assert found.threshold == pytest.approx(np.hypot(20.0 * OMEGA, 1e3), rel=1e-6)
+
+
+def test_the_forward_mode_is_followed_and_unstable_beyond_the_threshold():
+    """Gyroscopic moments part forward and backward whirl; `stability` knows nothing of modes."""
+    rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
+    rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
+    held = [Support("left", 1e5, damping=40.0), Support("right", 4e5, damping=40.0)]
+    found = stability_level_one(rotor, 300.0, 4e3, "left", supports=held)
+    modes = campbell(rotor, 300.0, supports=held)
+    forward = modes.frequencies_inertial[modes.whirl == "forward"].min()
+    backward = modes.frequencies_inertial[modes.whirl == "backward"].min()
+    assert backward < 0.9 * forward
+    assert found.frequencies[0] == pytest.approx(forward, rel=1e-9)
+    for share, stable in ((0.999, True), (1.001, False)):
+        q = share * found.threshold
+        coupled = [*held, Support("left", [[0.0, q], [-q, 0.0]])]
+        assert stability(rotor, 300.0, supports=coupled).stable.tolist() == [stable]
+    # at the other end the second forward mode, 389 rad/s, loses its damping first
+    with pytest.warns(UserWarning, match=r"another mode, at 61\.\d+ Hz, is unstable from Q"):
+        stability_level_one(rotor, 300.0, 4e3, "right", supports=held)
 
 
 def test_when_level_two_is_required():

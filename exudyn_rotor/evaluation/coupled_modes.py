@@ -13,6 +13,7 @@ from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
+ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling is not changed
 _STILL = 1e-6  # of the speed: a rotor that nothing holds has the frequency 0
 
 
@@ -50,7 +51,7 @@ def first_forward(followed: list[Modes], speed: float) -> int:
     sense. In bearings that differ in their two directions modes may have none, until it is applied.
     """
     start, end = followed[0], followed[-1]
-    fed = start.lateral & (end.decrements < start.decrements)
+    fed = start.lateral & (end.decrements < start.decrements - ROUNDING)
     fed &= (start.frequencies > _STILL * speed) & np.isfinite(start.decrements)
     if not np.any(fed):
         raise ValueError(f"supports: no mode at {speed:g} rad/s is fed by the cross-coupling")

@@ -7,6 +7,7 @@ API 617 asks for the same.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,7 +17,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.evaluation.coupled_modes import Coupled, first_forward
+from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes, first_forward
+from exudyn_rotor.linear.models.eccentricity import user_level
 from exudyn_rotor.linear.models.supports import Support, check_interfaces, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
@@ -277,6 +279,11 @@ def stability_level_one(
         If an argument is of another kind or out of range, an interface is unknown, or it makes
         no mode less stable.
 
+    Warns
+    -----
+    UserWarning
+        If another lateral mode is unstable where the first forward mode is stable.
+
     Examples
     --------
     A Jeffcott rotor is unstable from Q = c ω on:
@@ -312,6 +319,7 @@ def stability_level_one(
     for multiple in _MULTIPLES[1:]:
         followed.append(followed[-1].continued(coupled.modes(multiple)))
     mode = first_forward(followed, speed)
+    _warn_of_others(followed, mode, float(amounts.sum()))
     decrement = np.array([modes.decrements[mode] for modes in followed])
     frequencies = np.array([modes.frequencies[mode] for modes in followed])
     total, threshold = float(amounts.sum()), None
@@ -328,3 +336,22 @@ def stability_level_one(
         total * _MULTIPLES, decrement, frequencies, total, speed, machine, threshold,
         critical_speed_ratio, gas_density,
     )  # fmt: skip
+
+
+def _warn_of_others(followed: list[Modes], mode: int, total: float) -> None:
+    """Warn of lateral modes that are unstable where the one followed is stable."""
+    lateral = followed[0].lateral
+    for multiple, modes in zip(_MULTIPLES, followed, strict=True):
+        if modes.decrements[mode] <= 0.0:
+            return
+        lowest = int(np.argmin(np.where(lateral, modes.decrements, np.inf)))
+        if modes.decrements[lowest] < -ROUNDING:
+            hertz = modes.frequencies[lowest] / (2.0 * np.pi)
+            warnings.warn(
+                f"another mode, at {hertz:.4g} Hz, is unstable from Q = {multiple * total:.4g} N/m "
+                "at the latest, where the first forward mode is stable; stability finds the limit "
+                "of all modes",
+                UserWarning,
+                stacklevel=user_level(),
+            )
+            return

@@ -49,11 +49,16 @@ EVALUATION = [
             "linear_sum_assignment(unlike + away)",
             "linear_sum_assignment(unlike)",
         ),
-        ("mode that is made more stable", "end.decrements < start", "end.decrements > start"),
+        (
+            "mode that is made more stable",
+            "end.decrements < start.decrements - ROUNDING",
+            "end.decrements > start.decrements",
+        ),
     ),
     *mutations(
         "evaluation/level_one.py",
         "test_evaluation.py",
+        ("other modes not looked at", "if modes.decrements[lowest] < -ROUNDING:", "if False:"),
         ("axial stages as impellers", '"axial": 1.5', '"axial": 3.0'),
         (
             "slope of the limit between the regions",
