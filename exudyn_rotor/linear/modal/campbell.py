@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of
+from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of, oscillates
 from exudyn_rotor.linear.models.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -65,8 +65,8 @@ def campbell(
         The rotor in a scene.
     modes : int, optional
         How many modes to keep: those with the lowest inertial frequencies at the first speed,
-        followed from there. All by default. A large SolidRotor is solved for as many modes, 10 by
-        default, as are lowest in the rotor frame at each speed.
+        followed from there, overdamped ones last. All by default. A large SolidRotor is solved
+        for as many modes, 10 by default, as are lowest in the rotor frame at each speed.
     stiffening : {'tilt', 'none', 'full'}
         Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`).
@@ -170,19 +170,31 @@ Solved = tuple[FloquetModes, np.ndarray, np.ndarray, np.ndarray]
 
 
 def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count: int) -> Solved:
-    """Return the modes with inertial frequency, whirl and nodal diameter, each (k,)."""
+    """Return the modes with inertial frequency, whirl and nodal diameter, each (k,).
+
+    Overdamped ones, which have the inertial frequency 0, stand behind the others.
+    """
     vectors, *classified = content.named(modes, speed)
-    lowest = FloquetModes(
-        modes.values[:count], vectors[:, :, :count], modes.orders, modes.resolution
-    )
-    return lowest, *(array[:count] for array in classified)
+    lowest = replace(modes, vectors=vectors).columns(np.arange(count))
+    inertial, codes, diameters = (array[:count] for array in classified)
+    growth, resolution = lowest.values.real, lowest.resolution
+    moves = oscillates(growth, inertial, resolution)
+    inertial = np.where(moves, inertial, 0.0)
+    order = np.argsort(~moves & (growth < -resolution), kind="stable")
+    return lowest.columns(order), inertial[order], codes[order], diameters[order]
 
 
 def _lowest(solved: list[Solved], tracks: Tracks, count: int) -> tuple[list[Solved], Tracks]:
-    """Keep the modes that have the lowest inertial frequencies at the first speed."""
+    """Keep the modes that have the lowest inertial frequencies at the first speed.
+
+    Of overdamped ones only where there are no others left.
+    """
     if count >= tracks.columns.shape[1]:
         return solved, tracks
-    chosen = np.sort(np.argsort(solved[0][1][tracks.columns[0]], kind="stable")[:count])
+    first = tracks.columns[0]
+    modes, inertial = solved[0][0].columns(first), solved[0][1][first]
+    overdamped = (inertial == 0.0) & (modes.values.real < -modes.resolution)
+    chosen = np.sort(np.lexsort((inertial, overdamped))[:count])
     used = tracks.columns[:, chosen]
     kept = np.sort(used, axis=1)
     places = [np.searchsorted(*rows) for rows in zip(kept, used, strict=True)]

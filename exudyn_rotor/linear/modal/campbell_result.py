@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
-from exudyn_rotor.linear.modal.whirl import WHIRLS
+from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.results import Result, numbers, storable
@@ -28,6 +28,7 @@ _UNSTABLE = 1e-4
 class Campbell(Result):
     """Eigenfrequencies over spin speed, at every speed ascending in the rotor frame.
 
+    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others.
     In the order of :meth:`tracked`, column j is the same mode at all speeds.
 
     Attributes
@@ -99,6 +100,20 @@ class Campbell(Result):
         super().__post_init__()
         if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
             raise ValueError("order: needs every column once at each speed")
+
+    @property
+    def whirl_frequencies(self) -> np.ndarray:
+        """Inertial frequencies with the sign of the whirl, shape (s, k) [rad/s].
+
+        Negative for backward whirl, positive for all other motions.
+        """
+        sign = np.where(self.whirl_codes == BACKWARD, -1.0, 1.0)
+        return sign * self.frequencies_inertial
+
+    @property
+    def oscillates(self) -> np.ndarray:
+        """False for overdamped and free motions, shape (s, k); they are not drawn."""
+        return oscillates(self.growth, self.frequencies_inertial)
 
     @property
     def whirl(self) -> np.ndarray:
@@ -206,7 +221,7 @@ class Campbell(Result):
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
         codes, continued = tracked.whirl_codes, tracked.continued
-        drawn = shown.frequencies(values)
+        drawn = np.where(tracked.oscillates, shown.frequencies(values), np.nan)
         handles = draw_campbell(ax, speeds, drawn, codes, continued, unstable)
         if limits is not None:
             handles += excitation.shade_range(ax, limits, shares, shown)
@@ -218,7 +233,7 @@ class Campbell(Result):
             handles += ax.plot(speeds, line, color="0.6", lw=0.8, label="spin speed")
         ax.set_xlabel(f"spin speed [{shown.speed}]")
         ax.set_ylabel(f"frequency in the {frame} frame [{shown.frequency}]")
-        top = max(drawn.max(initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
+        top = max(np.nanmax(drawn, initial=0.0), shown.frequencies(np.abs(self.speeds).max()))
         ax.set_ylim(0.0, 1.05 * top or None)
         ax.grid(alpha=0.3)
         plotting.legend_above(ax, 3, handles)

@@ -41,6 +41,9 @@ class CriticalSpeeds(Result):
     whirl : tuple of str
         Words of :attr:`Campbell.whirl`; unbalance alone excites no purely backward mode.
     nodal_diameters : ndarray of int, shape (c,)
+    splits : ndarray, shape (c,), or None
+        A pair that an uneven mesh or shaft splits by less than 1 % is listed once, by the lower
+        speed; the upper one is ``speeds · (1 + splits)``. 0 for single ones.
     vectors : ndarray, shape (k, c)
         Mode shapes in the coordinates of the rotor frame, unit length; the strongest harmonic.
     basis_errors : ndarray, shape (c,), or None
@@ -64,6 +67,7 @@ class CriticalSpeeds(Result):
     whirl: tuple[str, ...] = words("speeds")
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
+    splits: np.ndarray | None = numbers("speeds", optional=True)
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
 
     def __post_init__(self) -> None:
@@ -80,6 +84,7 @@ class CriticalSpeeds(Result):
             f"frequency in the rotor frame [{shown.frequency}]": rotor,
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(self.whirl),
+            "split": np.zeros(len(self.whirl)) if self.splits is None else self.splits,
             "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
         }
 
@@ -103,6 +108,8 @@ class CriticalSpeeds(Result):
         for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
             count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
             word = f"{self.whirl[i]:<9}  {errors[i]:.1e}" if reduced else self.whirl[i]
+            split = 0.0 if self.splits is None else self.splits[i]
+            word += f"  pair, the other {split:.1e} above" if split > 0.0 else ""
             lines.append(f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
@@ -267,4 +274,5 @@ def _collected(
         whirl=tuple(WHIRLS[code] for code in codes),
         nodal_diameters=diameters,
         vectors=np.array(shapes, dtype=complex).reshape(-1, size).T,
+        splits=np.array([entry.split for entry in critical]),
     )

@@ -39,6 +39,8 @@ _SAME = 1e-7
 _NO_INERTIA = 1e-6
 # deviation from K − Ω²B, relative to K, that differences in a scene may leave
 _QUADRATIC = 1e-6
+# two critical speeds this close are looked at as a pair; share of a mean wave number that turns
+_PAIR, _CIRCULAR = 1e-2, 0.8
 _BRACKETS = 200
 _MOST_ROUNDS = 20
 Entry = TypeVar("Entry")
@@ -47,11 +49,15 @@ _MODES = 10  # that the subspace of a full rotor begins with
 
 @dataclass(frozen=True, eq=False)
 class Resonance:
-    """One critical speed: harmonics (h, c) of its motion at the frequencies `multiples`·Ω."""
+    """One critical speed: harmonics (h, c) of its motion at the frequencies `multiples`·Ω.
+
+    `split` is the distance of the other one of a pair, relative to `speed`.
+    """
 
     speed: float
     multiples: np.ndarray
     vectors: np.ndarray
+    split: float = 0.0
 
 
 @one_thread()
@@ -82,7 +88,7 @@ def resonances(
         if space.basis is not None:
             critical = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in critical]
         if space.holds([(entry.speed, _as_modes(entry)) for entry in critical]):
-            return critical
+            return _joined(critical, content)
     raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
 
 
@@ -330,6 +336,40 @@ def _turning(
         Resonance(ascending[column].speed, multiples, vectors[:, :, column])
         for column in np.flatnonzero((turning >= _SHARE * total) & ~conjugate)
     ]
+
+
+def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]:
+    """Return resonances, of each pair that an uneven rotor splits the lower one.
+
+    Motions at rest in the rotor frame; those of a pair are one circular motion each way when
+    combined, which independent motions are not.
+    """
+    joined: list[Resonance] = []
+    taken: set[int] = set()
+    for index, entry in enumerate(critical):
+        if index in taken:
+            continue
+        for other in range(index + 1, len(critical)):
+            upper = critical[other]
+            if upper.speed > (1.0 + _PAIR) * entry.speed:
+                break
+            if other not in taken and _is_pair(entry, upper, content):
+                taken.add(other)
+                entry = replace(entry, split=upper.speed / entry.speed - 1.0)
+                break
+        joined.append(entry)
+    return joined
+
+
+def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
+    if not np.array_equal(entry.multiples, [0.0]) or not np.array_equal(other.multiples, [0.0]):
+        return False
+    vectors = np.stack([entry.vectors, other.vectors], axis=2)
+    combined = content.polarised(vectors, entry.multiples)
+    energy = content.energies(combined)[0]
+    mean = content.orders @ energy / np.maximum(content.whole_energy(combined), 1e-300)
+    size = np.abs(content.orders) @ energy / np.maximum(content.whole_energy(combined), 1e-300)
+    return bool(mean.min() < -_CIRCULAR * size.min() and mean.max() > _CIRCULAR * size.min() > 0.0)
 
 
 def _same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:

@@ -223,6 +223,13 @@ def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     return np.array(FAMILIES)[kinds]
 
 
+def oscillates(
+    growth: np.ndarray, frequency: np.ndarray, resolution: float | np.ndarray = 0.0
+) -> np.ndarray:
+    """Return where motions oscillate in the inertial frame: neither overdamped nor free."""
+    return frequency > np.maximum(_NO_OSCILLATION * np.abs(growth), resolution)
+
+
 def damping_of(growth: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return damping ratio and logarithmic decrement at inertial frequencies [rad/s].
 
@@ -230,7 +237,7 @@ def damping_of(growth: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, n
     oscillating: at critical damping the root of the rounding is the least frequency that is one.
     """
     size = np.hypot(growth, frequency)
-    still = frequency <= _NO_OSCILLATION * np.abs(growth)
+    still = ~oscillates(growth, frequency)
     ratio = np.where(still, -np.sign(growth), -growth / np.where(size > 0.0, size, 1.0))
     decrement = -2.0 * np.pi * growth / np.where(still, np.nan, frequency)
     return ratio + 0.0, np.where(growth == 0.0, 0.0, decrement) + 0.0

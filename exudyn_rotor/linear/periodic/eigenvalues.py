@@ -18,6 +18,8 @@ _SPLIT = 4.0 * np.sqrt(np.finfo(float).eps)
 _OFF_ROOT = 1e-9
 # 1 − MAC of the state vectors of two copies of a defective eigenvalue
 _PARALLEL = 1e-4
+# share of the largest stiffness per mass that is none
+_NULL = 1e-12
 # asymmetry of a mass matrix, relative to its largest entry, that rounding may leave
 _ASYMMETRY = 1e-6
 
@@ -144,7 +146,25 @@ def quadratic_modes(
     values = merged(values, states, resolution)
     chosen = _one_of_each_pair(values, size)
     vectors = inverse_iterated(values[chosen], states[:size, chosen], M, D, K)
+    free = values[chosen] == 0.0
+    vectors[:, free] = _null_space(M, K, vectors[:, free])
     return values[chosen], vectors, resolution
+
+
+def _null_space(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+    """Return unit vectors of free motions, ``Kx = 0``; as many as, and else, those given.
+
+    Copies of one free motion (a Jordan block at zero) would hide another.
+    """
+    count = otherwise.shape[1]
+    if count < 2:
+        return otherwise
+    lower = la.cholesky(M, lower=True)
+    _, lengths, rows = la.svd(_within(lower, K))
+    if lengths[-count] > _NULL * lengths[0]:
+        return otherwise
+    vectors = la.solve_triangular(lower.T, rows[-count:].conj().T, lower=False)
+    return vectors / np.linalg.norm(vectors, axis=0)
 
 
 def inverse_iterated(

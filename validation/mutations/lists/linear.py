@@ -314,6 +314,33 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/modal/resonance.py",
+        "test_campbell_kinds.py",
+        (
+            "any two close critical speeds are a pair",
+            "return bool(mean.min() < -_CIRCULAR * size.min() and",
+            "return bool(mean.min() < _CIRCULAR + size.min() and",
+        ),
+    ),
+    *mutations(
+        "linear/modal/campbell.py",
+        "test_campbell_kinds.py",
+        (
+            "overdamped motions in front of the others",
+            "order = np.argsort(~moves &",
+            "order = np.argsort(moves |",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/eigenvalues.py",
+        "test_campbell_kinds.py",
+        (
+            "free motions as their copies come",
+            "if count < 2:\n        return otherwise",
+            "if count >= 0:\n        return otherwise",
+        ),
+    ),
+    *mutations(
         "linear/stability/growth.py",
         "test_stability.py test_stability_names.py",
         (

@@ -1,0 +1,74 @@
+"""Overdamped, free and split modes, and signed frequencies of whirl."""
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+from test_campbell_frames import SHAFT, point_mass, rings
+
+from exudyn_rotor import SolidRotor, Support, campbell, critical_speeds
+
+
+def test_overdamped_motions_stand_behind_the_others():
+    """Two masses, one of them overdamped across the axis: λ = −5 ± √24 times 100."""
+    rotor = SolidRotor.from_matrices(
+        np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
+        interfaces={"damped": [0], "free": [1]}, allow_parts=True,
+    )  # fmt: skip
+    supports = [
+        Support("damped", 1e4 * np.eye(3), 1e3 * np.eye(3)),
+        Support("free", 4e4 * np.eye(3)),
+    ]
+    result = campbell(rotor, [0.0, 50.0], supports=supports)
+    np.testing.assert_allclose(result.frequencies_inertial[:, :3], 200.0, rtol=1e-9)
+    np.testing.assert_array_equal(result.frequencies_inertial[:, 3:], 0.0)
+    slow, fast = (100.0 * (sign * np.sqrt(24.0) - 5.0) for sign in (1, -1))
+    np.testing.assert_allclose(result.growth[0, 3:], slow, rtol=1e-6)
+    # across a rotor that turns, both real roots are seen with ±iΩ
+    np.testing.assert_allclose(np.sort(result.growth[1, 3:]), [fast, slow, slow], rtol=1e-6)
+    assert result.oscillates.tolist() == [[True] * 3 + [False] * 3] * 2
+    assert np.all(result.continued)
+    few = campbell(rotor, [0.0, 50.0], supports=supports, modes=3)
+    np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
+
+
+def test_free_motions_keep_their_names():
+    """Lateral springs alone leave the spin and the axial motion free, at rest and at speed."""
+    rotor = rings(SHAFT).reduce(2)
+    support = Support("all", 1e6, 10.0, 1e4)
+    result = campbell(rotor, [0.0, 30.0, 90.0], supports=[support])
+    for row, words in enumerate(result.whirl):
+        free = words[result.frequencies_inertial[row] == 0.0]
+        assert sorted(free) == ["axial", "torsional"]
+
+
+def test_whirl_frequencies_have_the_sign_of_the_whirl():
+    support = Support("at", np.diag([1e4, 1e4, 4e4]))
+    result = campbell(point_mass(), [30.0], supports=[support])
+    assert sorted(result.whirl_frequencies[0].round(6)) == [-100.0, 100.0, 200.0]
+
+
+def test_a_pair_that_is_split_is_one_critical_speed():
+    """Springs in the rotor that differ by 0.4 %: √(k/m) along each, once with the distance."""
+    support = Support("at", np.diag([1e4, 1.004e4, 1e4]), frame="rotor")
+    result = critical_speeds(point_mass(), supports=[support], nodal_diameters=[1])
+    forward = np.equal(result.whirl, "forward")
+    np.testing.assert_allclose(result.speeds[forward], [100.0], rtol=1e-9)
+    np.testing.assert_allclose(result.splits[forward], [np.sqrt(1.004) - 1.0], rtol=1e-6)
+    assert "pair, the other 2.0e-03 above" in result.table()
+
+
+@pytest.mark.parametrize("axis", ["a flat shaft", "independent motions"])
+def test_other_critical_speeds_are_not_joined(axis):
+    """A flat shaft's two, 10 % apart, and equal ones of two masses that move on their own."""
+    if axis == "a flat shaft":
+        supports = [Support(name, np.diag([3e5] * 3)) for name in ("left", "right")]
+        found = critical_speeds(asymmetric_shaft(), supports=supports, nodal_diameters=[1])
+    else:
+        rotor = SolidRotor.from_matrices(
+            np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
+            interfaces={"a": [0], "b": [1]}, allow_parts=True,
+        )  # fmt: skip
+        supports = [Support(name, 1e4) for name in "ab"]
+        found = critical_speeds(rotor, supports=supports, nodal_diameters=[1])
+        assert sorted(found.whirl) == ["backward", "backward", "forward", "forward"]
+    np.testing.assert_array_equal(found.splits, 0.0)
