@@ -385,6 +385,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("StabilityMap", "x"): _FIELD,
     ("StabilityMap", "y"): _FIELD,
     ("Stability", "tolerance"): v.POSITIVE.but("zero"),
+    ("CriticalSpeeds", "splits"): v.ANY_VALUES,
     ("Stability.growth_of", "family"): v.WORD,
     ("Stability", "bounds"): _FIELD,
     ("StabilityThresholds", "values"): _FIELD,
