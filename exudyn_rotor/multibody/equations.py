@@ -138,13 +138,14 @@ def _varying_mass(
     one = table[rows.size : rows.size + above.size, 2]
     mirrored = table[rows.size + above.size :, 2]
     skipped = above.size - mirrored.size  # the only diagonal entry is the first
-    container = exudyn.MatrixContainer
+    matrix = exudyn.MatrixContainer()
+    # one container, its method found once: Exudyn takes a copy, and a new one costs a microsecond
+    fill = matrix.SetWithSparseMatrixCSR
 
     def mass_matrix(mbs, t, item, q, q_t):
         values = kernel.mass_entries(t, q)
         one[:], mirrored[:] = values, values[skipped:]
-        matrix = container()
-        matrix.SetWithSparseMatrixCSR(size, size, table, useDenseMatrix=False)
+        fill(size, size, table, False)
         return matrix
 
     return mass_matrix(None, 0.0, None, [0.0] * size, None), mass_matrix

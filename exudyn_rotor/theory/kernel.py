@@ -107,11 +107,11 @@ class Kernel:
         self._varies = form.has_spin and not form.has_frozen_spin  # the spin's own inertia
         self.has_modal_forces = not form.is_constant_speed
         self.has_forces = self.has_modal_forces or motion.is_coupled or motion.has_body_force
+        self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
+        self._modal_force = self._force[self._first :]
         self._stack(motion)
         self._turning = _Turning(motion)
         self._place_mass(modes)
-        self._force, self._jacobian = np.zeros(size), np.zeros((size, size))
-        self._modal_force = self._force[self._first :]
         self._factors = np.zeros(3)
         self._last: list | None = None
         self._time = math.nan
@@ -130,20 +130,27 @@ class Kernel:
             euler.append(np.hstack([S1, u]))
             coriolis.append(2.0 * S1)
         self._by_position = np.vstack([*centrifugal, *euler])
-        self._by_rate = np.vstack(coriolis)
-        width = len(self._by_rate)
-        self._products = np.zeros((3, width))
-        self._of_position = self._products[:2].reshape(-1)
-        self._of_rate = self._products[2]
-        self._loads = np.zeros(width)
+        frozen = motion.formulation.has_frozen_spin
+        self._B = terms.B if np.any(terms.B) and not frozen else None
+        self._by_rate = np.vstack([*coriolis, *([] if self._B is None else [self._B])])
+        width = sum(map(len, coriolis))
+        # the three rows, and behind them Bζ̇
+        places = np.zeros(2 * width + len(self._by_rate))
+        self._products = places[: 3 * width].reshape(3, width)
+        self._of_position, self._of_rate = places[: 2 * width], places[2 * width :]
+        self._euler_torque = places[3 * width :]
+        # inertia forces on the modes, (87), and behind them those on coupled translations; where
+        # there are none of these, they are written where they belong
+        self._loads, self._loading = np.zeros(width), self._products
+        self._in_place = self.has_modal_forces and not motion.is_coupled
+        if self._in_place:
+            self._loads, self._loading = self._modal_force, self._products[:, :count]
         self._state = np.ones(count + 1)
         self._zeta, self._rate = self._state[:count], np.zeros(count)
         self._spin_inertia_row = self._products[0, : count + 1]
         self._centrifugal, self._spin_coupling = self._products[:2, :count]
         self._unbalance = self._products[1, count + 1 :]
-        frozen = motion.formulation.has_frozen_spin
         self._K4, self._displaced = terms.K4, np.zeros(count)
-        self._B = terms.B if np.any(terms.B) and not frozen else None
         self._share = 1.0 if frozen else 2.0  # of ω(h + Ĉζ)ᵀζ̇ in the torque (86)
         self._by_state = np.stack([terms.C_hat, terms.W, 2.0 * terms.G]).reshape(3, -1)
         # −ẽS*, S* and 2S*
@@ -188,13 +195,13 @@ class Kernel:
         (66), (86), (87) and the prescribed accelerations of (108); valid until the next call.
         """
         omega, loads = self._update_with_rates(t, q, q_t), self._loads
-        if self.has_modal_forces:
+        if self.has_modal_forces and not self._in_place:
             self._modal_force[:] = loads[: self._count]
         turning, torque = self._turning, 0.0
         if self._spin is not None:
             torque = -self._share * omega * float(self._centrifugal.dot(self._rate))
             if self._B is not None:
-                torque -= self._rate.dot(self._B.dot(self._rate))
+                torque -= self._rate.dot(self._euler_torque)
             if self._K4 is not None:
                 torque += omega**3 * float(self._displaced.dot(self._rate))
         if turning.has_body_force:
@@ -241,7 +248,7 @@ class Kernel:
         row = (share * omega * factor_q) * terms.C_hat.dot(rate)
         row += (share * omega * factor_v) * centrifugal
         if self._B is not None:
-            row += (2.0 * factor_v) * self._B.dot(rate)
+            row += (2.0 * factor_v) * self._euler_torque
         corner = share * factor_v * centrifugal.dot(rate)
         if self._K4 is not None:
             displaced, by_rate = self._displaced, self._K4.dot(rate)
@@ -294,7 +301,7 @@ class Kernel:
             omega = spin.rate(t)
             factors[1] = -spin.acceleration(t)
         factors[0], factors[2] = omega * omega, -omega
-        np.dot(factors, self._products, out=self._loads)
+        np.dot(factors, self._loading, out=self._loads)
         if self._K4 is not None:
             np.dot(self._K4, self._zeta, out=self._displaced)
             self._loads[: self._count] -= factors[0] ** 2 * self._displaced

@@ -141,6 +141,11 @@ THEORY = [
             "coriolis.append(S1)",
         ),
         (
+            "torque of the Euler field's second order reversed",
+            "torque -= self._rate.dot(self._euler_torque)",
+            "torque += self._rate.dot(self._euler_torque)",
+        ),
+        (
             "coupling of translation and modes reversed",
             "parts[-1][:] = self._turning",
             "parts[-1][:] = -self._turning",
