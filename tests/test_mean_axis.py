@@ -7,11 +7,23 @@ import numpy as np
 import pytest
 import scipy.linalg
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection
-from exudyn.itemInterface import Force, MarkerNodeRigid, SensorNode, Torque
+from exudyn.itemInterface import (
+    Force,
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+    MarkerNodeRigid,
+    SensorNode,
+    Torque,
+)
 from models import disc_fem
 from point_rotors import free_stiffness, ring_rotor
 
-from exudyn_rotor import ObjectFixedAxisFFRFreducedOrderInterface, SolidRotor, use_mean_axis_modes
+from exudyn_rotor import (
+    ConnectionWarning,
+    ObjectFixedAxisFFRFreducedOrderInterface,
+    SolidRotor,
+    use_mean_axis_modes,
+)
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.mean_axis import false_softening, frame_shares
 
@@ -100,6 +112,22 @@ def test_force_and_sensor_at_the_node_are_on_exudyns_frame(held):
         mbs.SolveDynamic(settings)
         found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
     assert abs(found[1] - found[0]).max() < 1e-3 * abs(found[0]).max()
+
+
+@pytest.mark.filterwarnings("ignore:the modes of the FEMinterface hold")
+def test_angle_of_exudyns_frame_at_a_boundary_is_told(held):
+    for fem, expected in ((held, 1), (disc_fem(), 0)):
+        mbs = exu.SystemContainer().AddSystem()
+        made = getattr(mbs, TWIN)(name="rotor", femInterface=fem, axis="z")
+        parts = made["FFRFReducedOrderObjectDict"]
+        angle = MarkerNodeCoordinate(nodeNumber=parts["nRigidBody"], coordinate=5)
+        mbs.AddLoad(LoadCoordinate(markerNumber=mbs.AddMarker(angle), load=1.0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ConnectionWarning)
+            mbs.Assemble()
+        found = parts["rotorBody"].check_connections(warn=False)
+        assert len(found) == expected
+        assert all("that of the first boundary" in sentence for sentence in found)
 
 
 def test_free_modes_stay_and_rigid_ones_are_left_out(solid):

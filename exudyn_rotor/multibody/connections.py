@@ -14,7 +14,7 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.node_markers import rigid_nodes
+from exudyn_rotor.multibody.node_markers import place_of
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _ALONG = 1e-6  # sine of the angle up to which a direction counts as that of the spin axis
@@ -71,7 +71,7 @@ class _Walk:
             if marker["markerType"] == "SuperElementRigid" and int(marker["bodyNumber"]) == flexible
         }
         self.offset = {number for number, marker in rigid.items() if np.any(marker["offset"])}
-        at_node = rigid_nodes(body)
+        at_node = place_of(body).rigid_nodes
         self.at_node = {
             n for n, marker in rigid.items() if list(marker["meshNodeNumbers"]) in at_node
         }
@@ -133,7 +133,11 @@ class _Walk:
         if marker["markerType"] == "NodeRotationCoordinate":
             axis = np.eye(3)[int(marker["rotationCoordinate"])]
             across = np.linalg.norm(np.cross(axis, self.n)) > _ALONG
-            return _tilts("a connector") if across else None
+            return (
+                _tilts("a connector")
+                if across
+                else self._coordinate(self.body.locks.spin, "a connector")
+            )
         used = np.atleast_2d(item.get(f"scalingMarker{place}", np.zeros((0, 0))))
         columns = np.flatnonzero(np.any(used != 0.0, axis=0)) if used.size else ()
         reasons = (self._coordinate(int(column), "a connector") for column in columns)
@@ -146,6 +150,12 @@ class _Walk:
             return (
                 f"the frame's node does not move so: {what} on its coordinate {index} has no "
                 f"effect{_INSTEAD}"
+            )
+        if index == self.body.locks.spin and place_of(self.body).held:
+            return (
+                "the angle of the frame's node is the rotor's mean rotation, on Exudyn's body with "
+                f"these Craig–Bampton modes that of the first boundary: {what} on it acts there; "
+                "use a MarkerNodeRigid"
             )
         if index < 3 and self.apart:
             return (

@@ -56,6 +56,8 @@ class NodePlace:
         Mesh axes → axes of the flexible body.
     arm : float
         Distance of the virtual nodes of a rigid marker from the point [m].
+    held : bool
+        Whether elastic modes move the frame of Exudyn's body, which they hold at a boundary.
     """
 
     physics: int
@@ -66,7 +68,13 @@ class NodePlace:
     motion: np.ndarray
     axes: np.ndarray
     arm: float
+    held: bool
     virtual: dict[tuple, list[int]] = field(default_factory=dict)
+
+    @property
+    def rigid_nodes(self) -> list[list[int]]:
+        """The nodes of all rigid markers that have been put there."""
+        return [nodes for key, nodes in self.virtual.items() if key[0]]
 
     def nodes(self, mbs: exudyn.MainSystem, rigid: bool, shift: np.ndarray) -> list[int]:
         """Return one or three virtual nodes at the point, shifted by (3,); add them once."""
@@ -105,13 +113,13 @@ def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
         motion=np.vstack([frame.B @ shift, frame.B @ turn]) @ columns,
         axes=frame.B,
         arm=float(np.sqrt(np.trace(inv.J) / inv.mass)),
+        held=held is not None,
     )
 
 
-def rigid_nodes(body: RotorItems) -> list[list[int]]:
-    """Return the nodes of all rigid markers that have been put on the node of a rotor's frame."""
-    place = body.mbs.sys.get(_PLACES, {}).get(body.mark)
-    return [] if place is None else [nodes for key, nodes in place.virtual.items() if key[0]]
+def place_of(body: RotorItems) -> NodePlace:
+    """Return what moves as the node of a rotor with a flexible body."""
+    return body.mbs.sys[_PLACES][body.mark]
 
 
 def _place_of(mbs: exudyn.MainSystem, entries: dict) -> NodePlace | None:
