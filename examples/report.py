@@ -37,7 +37,7 @@ with warnings.catch_warnings(record=True) as raised:
     level_one = er.stability_level_one(rotor, RANGE[1], 3.0 * stage, "midspan", **given)
 
 picture = diagram.plot(units="rpm", orders=[1, 2], operating_range=RANGE, margins=(0.16, 0.26))
-contents = [{"Rotor": [solid, rotor], "Bearings": [bearings, "Centrifugal stiffening: full"]}]
+contents = [{"Rotor": [solid, rotor], "Bearings": er.linear_model(rotor, **given)}]
 contents += [{"Campbell diagram": [picture, diagram]}, critical, response, margins]
 er.report("report.html", [*contents, growth, level_one], title="Compressor rotor", raised=raised)
 volume = np.pi * (0.05**2 * 1.2 + 3 * (0.16**2 - 0.05**2) * 0.06)

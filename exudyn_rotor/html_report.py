@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from exudyn_rotor import checks
 from exudyn_rotor.export import csv_text
-from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.supports import COEFFICIENTS, Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -27,7 +27,7 @@ from exudyn_rotor.storage import write_text
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
-_KNOWN = (str, Axes, Figure, Support, ReducedRotor, SolidRotor, SupportedRotor)
+_KNOWN = (str, Axes, Figure, Support, ReducedRotor, SolidRotor, LinearRotor)
 _HOW = "a rotor, supports, a linear model, a result with table(), axes or a figure, or text"
 
 _PAGE = """<!DOCTYPE html>
@@ -80,9 +80,9 @@ def report(
     contents : sequence of objects, mapping of heading to object or objects, or sequence of both
         In the order of the report. An object is a SolidRotor (its summary), a ReducedRotor (mass,
         inertia, modes, interfaces), a Support or a sequence of them, a linear model of a reduced
-        rotor (supports and free motions), a result or anything else with ``table()``, matplotlib
-        Axes or a Figure, or text, a paragraph. A mapping gives headings; a result beside Axes
-        under one heading is shown with these in place of its own picture.
+        rotor (supports, stiffening, free motions), a result or anything else with ``table()``,
+        matplotlib Axes or a Figure, or text, a paragraph. A mapping gives headings; a result beside
+        Axes under one heading is shown with these in place of its own picture.
     title : str, optional
     units : {'rpm', 'Hz', 'SI'}, optional
         Of speeds in tables and pictures; see :meth:`exudyn_rotor.units.Units.of`.
@@ -169,7 +169,7 @@ def _heading(content: Any) -> str:
         return "Supports"
     if isinstance(first, SolidRotor | ReducedRotor):
         return "Rotor"
-    if isinstance(first, SupportedRotor):
+    if isinstance(first, LinearRotor):
         return "Linear model"
     if isinstance(first, str):
         return "Remarks"
@@ -211,8 +211,8 @@ def _html(items: list[Any], heading: str, units: str) -> str:
             parts.append(_pre(item.summary()))
         elif isinstance(item, ReducedRotor):
             parts.append(_pre(_reduced(item)))
-        elif isinstance(item, SupportedRotor):
-            parts.append(_pre(_supports(item.supports) + _free(item)))
+        elif isinstance(item, LinearRotor):
+            parts.append(_pre(_model(item)))
         else:
             parts.append(_result(item, heading, units, not pictured))
     return "\n".join(parts)
@@ -316,9 +316,11 @@ def _coefficient(value: Any) -> str:
     return "[" + "; ".join(", ".join(f"{entry:.6g}" for entry in row) for row in value) + "]"
 
 
-def _free(model: SupportedRotor) -> str:
-    free = ", ".join(model.free_motions)
-    return f"\nfree motions: {free}" if free else ""
+def _model(model: LinearRotor) -> str:
+    """Return supports, level of stiffening and free motions of a linear model."""
+    free = ", ".join(model.free_motions) or "none"
+    level = f"centrifugal stiffening: {model.stiffening}"
+    return "\n".join([_supports(model.supports), level, f"free motions: {free}"])
 
 
 def _vector(values: np.ndarray) -> str:

@@ -106,7 +106,7 @@ def test_rotor_supports_and_model_are_described(written, ring):
     assert "200 N s/m" in text
     assert "by a table of 2 speeds, 0 to 954.93 rpm" in text
     assert "by a function of the speed" in text
-    assert "free motions: translation along axis" in text
+    assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
     assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", "Linear model"]
 
 
