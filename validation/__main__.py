@@ -35,6 +35,7 @@ SCRIPTS = {
     "blade": Script("stiffening.blade", "rotating beams"),
     "disc": Script("stiffening.disc", "rotating discs"),
     "overhung": Script("stiffening.overhung", "overhung disc"),
+    "basis": Script("basis", ""),
     "extremes": Script("extremes.table", "the extremes"),
     "savers": Script("savers", "no file lost"),
     "kernels": Script("kernels", ""),

@@ -27,6 +27,9 @@ from exudyn_rotor.solid.rotor import FiniteElementRotor
 
 # speed of the rim beyond which no solid holds [m/s]
 _RIM = 1000.0
+_ABOVE = (
+    10.0  # times the highest frequency of the basis, a speed that no rotor of few modes reaches
+)
 # strain energy of a response, over that of a mode, below which it is left out: by this share it
 # could change the square of a frequency at that speed; a tenth of it at 300 m/s
 _SMALL = 1e-3
@@ -107,6 +110,7 @@ def _strongest(rotor: FiniteElementRotor, loads: np.ndarray, stiffness: np.ndarr
 
 
 def _fastest(rotor: FiniteElementRotor, stiffness: np.ndarray) -> float:
-    """Return the largest speed that counts [rad/s]: of a solid's rim, or of the modes."""
+    """Return the largest speed that counts [rad/s]: of a solid's rim, or far above the modes."""
     radius = np.linalg.norm(rotor.axis.radial(rotor.nodes), axis=1).max()
-    return float(min(np.sqrt(stiffness.max(initial=0.0)), _RIM / max(radius, 1e-300)))
+    highest = np.sqrt(stiffness.max(initial=0.0))
+    return float(min(_ABOVE * highest, _RIM / max(radius, 1e-300)))

@@ -242,7 +242,7 @@ def _warn_of_basis(basis: BasisError, result: Campbell, modes: int | None) -> No
         return
     if modes is None:
         errors = np.where(judged(result.frequencies_inertial, result.speeds), errors, 0.0)
-    at, mode = np.unravel_index(np.argmax(errors), errors.shape)
+    at, mode = np.unravel_index(np.argmax(np.nan_to_num(errors)), errors.shape)
     speed, frequency = (
         value / (2.0 * np.pi)
         for value in (result.speeds[at], result.frequencies_inertial[at, mode])

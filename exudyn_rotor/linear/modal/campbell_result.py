@@ -94,7 +94,9 @@ class Campbell(Result):
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
-    basis_shifts: np.ndarray | None = numbers("speeds", "modes", dtype=complex, optional=True)
+    basis_shifts: np.ndarray | None = numbers(
+        "speeds", "modes", dtype=complex, finite=False, optional=True
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()

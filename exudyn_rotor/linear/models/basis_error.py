@@ -93,7 +93,7 @@ class BasisError:
 
     def warn(self, errors: np.ndarray, what: str) -> None:
         """Warn where an estimate exceeds the accuracy; `what` names the worst."""
-        worst = np.max(errors, initial=0.0)
+        worst = np.max(np.nan_to_num(errors), initial=0.0)
         if self.left_out is None or worst <= self.accuracy:
             return
         rotor = self.model.rotor
@@ -135,7 +135,7 @@ def relative_errors(
     sizes = np.maximum(np.abs(growth), _DAMPED * least)
     with np.errstate(divide="ignore", invalid="ignore"):
         parts = np.abs(shifts.imag) / least, np.abs(shifts.real) / sizes
-    return np.maximum(*(np.where(np.isnan(part), 0.0, part) for part in parts))
+    return np.where(shifts == 0.0, 0.0, np.maximum(*parts))
 
 
 def judged(frequencies: np.ndarray, speeds: np.ndarray) -> np.ndarray:

@@ -263,11 +263,18 @@ def _shift(M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.nd
 def _root(
     constant: np.ndarray, linear: np.ndarray, square: np.ndarray, M: np.ndarray, x: np.ndarray
 ) -> complex:
-    """Return δ of ``(constant + δ linear + δ² square) z = 0``, by one inverse iteration from x."""
-    factor = la.lu_factor(constant, check_finite=False)
+    """Return δ of ``(constant + δ linear + δ² square) z = 0``, by one inverse iteration from x.
+
+    NaN where the first matrix is singular.
+    """
+    # LAPACK itself: with so many small matrices scipy's checks would take longer
+    factorise, solve = la.get_lapack_funcs(("getrf", "getrs"), (constant,))
+    lu, pivots, singular = factorise(constant)
+    if singular:
+        return np.nan
     force = linear @ x
-    z = la.lu_solve(factor, force, check_finite=False)
-    w = la.lu_solve(factor, M @ x, trans=2, check_finite=False)
+    z, _ = solve(lu, pivots, force)
+    w, _ = solve(lu, pivots, M @ x, trans=2)
     a, b, c = np.vdot(w, square @ z), np.vdot(w, linear @ z), np.vdot(w, force)
     root = np.sqrt(b**2 - 4.0 * a * c + 0j)
     return -2.0 * c / max(b + root, b - root, key=abs) if c != 0.0 else 0.0

@@ -13,8 +13,8 @@ LINEAR = [
         ),
         (
             "left vector of the transposed equations",
-            "M @ x, trans=2",
-            "M @ x, trans=1",
+            "M @ x, trans=2)",
+            "M @ x, trans=1)",
         ),
         (
             "slope of the dynamic stiffness halved",
