@@ -181,7 +181,8 @@ class RotorBody(RotorItems):
         Parameters
         ----------
         state : StartState
-            Of this system: ``steady_state(body).state()``.
+            Of this system: ``steady_state(body).state()``, or ``response.state(speed, body)`` of a
+            linear response.
 
         Raises
         ------

@@ -30,7 +30,8 @@ class StartState:
 
     Examples
     --------
-    :func:`exudyn_rotor.steady_state` makes one; :meth:`RotorBody.start_from` takes it.
+    :func:`exudyn_rotor.steady_state` makes one, and so do the responses of linear analyses
+    (:meth:`UnbalanceResponse.state`); :meth:`RotorBody.start_from` takes it.
 
     >>> from exudyn_rotor import StartState
     >>> StartState([0.0, 1e-3], [0.0, 0.1], angle=0.0, speed=100.0).q_t
