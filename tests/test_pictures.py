@@ -90,6 +90,7 @@ def test_orbits_of_whirl_are_circles_of_their_sense(speed):
             continue
         _, orbit = max(shapes.orbits(index, 13), key=lambda pair: np.abs(pair[1]).max())
         radii = np.hypot(*orbit[:, :2].T)
+        assert radii[0] > 0.1  # of the largest displacement, which is one
         np.testing.assert_allclose(radii, radii[0], rtol=0.05)
         turn = np.cross(orbit[0], orbit[1])[2] * np.sign(speed)
         assert (turn > 0.0) == (word == "forward")

@@ -25,7 +25,7 @@ from validation.mutations.lists import ALL
 from validation.mutations.mutation import PACKAGE, ROOT, Mutation
 
 _COPIED = (PACKAGE, "tests", "validation", "examples", "pyproject.toml", "README.md")
-_NO_CACHE = shutil.ignore_patterns("__pycache__", "pictures")
+_NO_CACHE = shutil.ignore_patterns("__pycache__", "*.png")
 _LONGEST = 600.0  # seconds; a mutation that makes a test run on counts as killed
 _QUICK = 10
 # a wrong program may end so; a run that somebody ends from outside tells nothing

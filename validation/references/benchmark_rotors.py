@@ -83,7 +83,7 @@ class Jeffcott:
             ]
             parts[0].faces.Min(occ.Z).name, parts[-1].faces.Max(occ.Z).name = "left", "right"
             shape = occ.Glue(parts)
-        rotor = meshed(shape, 0.012, STEEL, 1.0)
+        rotor = meshed(shape, 0.012, STEEL, 2.0)
         middle = 0.5 * self.length
         return rotor.add_disc(middle, self.mass, self.inertia, self.width, name="disc")
 

@@ -68,7 +68,8 @@ def jeffcott(kind: Jeffcott = ROUND, material_damping: float = 0.0) -> ReducedRo
 
 def lateral(rotor: ReducedRotor, supports: list[Support], speed: float) -> np.ndarray:
     """Return λ of the lateral modes, by inertial frequency: growth + i frequency."""
-    result = campbell(rotor, [speed], supports=supports, stiffening=LEVEL)
+    # what a basis leaves out belongs to the deviation here
+    result = campbell(rotor, [speed], supports=supports, stiffening=LEVEL, accuracy=None)
     chosen = np.isin(result.whirl[0], LATERAL)
     values = result.growth[0, chosen] + 1j * result.frequencies_inertial[0, chosen]
     return values[np.argsort(values.imag)]
@@ -102,7 +103,9 @@ def internal_damping() -> Iterator[Row]:
         yield Row(f"threshold, c_e/c_i = {outer / inner:g}", exact, edges[0, 0], MASSLESS)
 
 
-MASSLESS = "mass of the shaft by one shape; beam ends"
+# meshes of 2 700, 7 400 and 12 300 nodes give the first frequency 0.5 % above √(k/m), then 0.24 %
+# and 0.33 % below: the shaft bends as if it were longer by 0.04 diameters at each edge of the disc
+MASSLESS = "strain beside the disc (0.04 diameters); mass of the shaft by one shape"
 
 
 def cross_coupled_seal() -> Iterator[Row]:
