@@ -396,7 +396,8 @@ class SolidRotor(FiniteElementRotor):
             A column of which less than this share is new is dropped, and named in the result.
         prestress : Prestress or bool, optional
             Static stress for ``stiffening='full'``; True for :meth:`prestress` with its defaults,
-            None for that which the rotor carries, if any.
+            False for none. By default that which the rotor carries or, where it has elements and
+            no loose parts, :meth:`prestress` with its defaults.
 
         Raises
         ------

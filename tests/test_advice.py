@@ -327,7 +327,8 @@ def test_change_by_the_full_level_is_that_of_the_frequencies(reduced, high):
     assert proposal.stiffening == "full"
 
 
-def test_missing_prestress_is_warned_of(plain):
+def test_missing_prestress_is_warned_of(solid):
+    plain = solid.reduce(6, prestress=False)
     with pytest.warns(AssumptionWarning, match="prestress=True"):
         proposal = propose(plain, speeds=1000.0, supports=SUPPORTS)
     assert proposal.stiffening == "tilt"

@@ -19,7 +19,7 @@ def solid():
 
 @pytest.fixture(scope="module")
 def reduced(solid):
-    return solid.reduce(2)
+    return solid.reduce(2, prestress=False)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,6 @@ from test_scene_linear import rings as scene_rotor
 from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
-from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.results import load_result
 
@@ -183,7 +182,7 @@ def test_campbell_diagram_meets_the_excitation_there(disc, order):
 
 def test_reduced_comes_close_to_the_full_model(disc):
     full = critical_speeds(
-        FullRotor.of(disc, SUPPORTS), max_speed=3000.0, nodal_diameters=[1], residual=1e-5
+        disc, supports=SUPPORTS, max_speed=3000.0, nodal_diameters=[1], residual=1e-5
     )
     few, many = (
         critical_speeds(

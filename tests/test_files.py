@@ -17,8 +17,10 @@ from exudyn_rotor.storage import read_arrays, write_arrays
 # what a response has at nodes, at rest, without damping, beyond the last critical speed or peak
 MAY_BE_LONGER = ("triangles", "dropped", "field.free_motions", "field.vectors")
 MAY_BE_EMPTY = ("triangles", "field.vectors")
-MAY_BE_MISSING = (".K2", ".B", ".H", "shapes.stress", ".threshold", ".critical_speed_ratio",
-                  ".gas_density")  # fmt: skip
+MAY_BE_MISSING = (
+    ".K2", ".B", ".K4", ".K2_estimated", ".H", "shapes.stress", ".threshold", ".stiffening",
+    ".critical_speed_ratio", ".gas_density",
+)  # fmt: skip
 MAY_BE_NAN = {
     f"field.{name}"
     for name in ("motion", "multipliers", "log_decrement", "half_power", "amplification")

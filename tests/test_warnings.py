@@ -18,6 +18,7 @@ from exudyn_rotor import (
     ConnectionWarning,
     Formulation,
     SolidRotor,
+    SpinAxis,
     StressField,
     Support,
     Unbalance,
@@ -74,9 +75,22 @@ def native_stress_of_a_prestressed_rotor(beam):
 
 
 def stress_at_speed_without_prestress(beam):
-    reduced = beam.reduce(1, stress=True)
+    reduced = beam.reduce(1, stress=True, prestress=False)
     field = StressField.of(reduced, select_modes(reduced, Formulation("none", 10.0)))
     stress_history(field, [0.0], np.zeros((1, field.modes.shape[2])), 10.0)
+
+
+def blade_of_matrices(beam):
+    axis = SpinAxis([1.0, 0.0, 0.0], beam.center_of_mass)
+    across = SolidRotor.from_matrices(beam.mass, beam.stiffness, beam.nodes, axis)
+    campbell(across.reduce(2), [0.0, 2000.0])
+
+
+def rotor_of_a_changed_mesh(_):
+    mesh = block_beam(0.1)
+    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z")
+    mesh.ngmesh.Scale(2.0)
+    rotor.reduce(1)
 
 
 def lossy():
@@ -151,6 +165,12 @@ PLACES = {
     ),
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress",
+    ),
+    "theory/stiffening.py:warn_of_left_out": (
+        blade_of_matrices, UserWarning, "beyond 'tilt' is left out",
+    ),
+    "prestress/carrying.py:_with_own_prestress": (
+        rotor_of_a_changed_mesh, UserWarning, "mesh was changed",
     ),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",

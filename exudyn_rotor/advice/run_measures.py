@@ -176,7 +176,8 @@ class Measures:
         """Return the share of the stiffening that is left out, as a relative change of frequency.
 
         Half of its energy over that of the motion. Without a prestress the stiffening of flexible
-        modes is taken as ω² per unit of modal mass.
+        modes is that of a truss (:mod:`exudyn_rotor.prestress.estimate`) or, where there is none,
+        ω² per unit of modal mass.
         """
         inv, level = self.invariants, self.body.stiffening
         if level == "full":
@@ -186,7 +187,11 @@ class Measures:
             complete = np.asarray(inv.K2)
         else:
             complete = np.array(stiffening(inv, "tilt").K2)
-            complete[self.flexible, self.flexible] += 1.0
+            if inv.K2_estimated is None:
+                complete[self.flexible, self.flexible] += 1.0
+            else:
+                places = np.ix_(self.flexible, self.flexible)
+                complete[places] = inv.K2_estimated[places]
         zeta = self.zeta - self._stretch
         work = np.einsum("si,ij,sj->s", zeta, complete - included, zeta) * self.record.speed**2
         energy = self._energies[1]

@@ -43,7 +43,8 @@ def choose_level(given: Candidate, request: Request, kept: np.ndarray) -> Level:
     With known supports the frequencies are those of the rotor on them, and a level δK changes
     them by ``δν = xᴴδK x / xᴴ(2νM − G)x``, to first order. Without supports it is the modes' own
     ``½ Ω² δK_kk / ω_k²``. A mode that is seen near zero in the rotor frame is judged by the spin
-    speed. Without a prestress the missing stiffness is estimated by Ω² for every mode of unit
+    speed. Without a prestress the missing stiffness is that of a truss in place of the solid
+    (:mod:`exudyn_rotor.prestress.estimate`) or, where there is none, Ω² for every mode of unit
     mass: the order of a blade or a disc that flaps. Bending of a slender shaft misses far less.
     """
     inv = given.invariants
@@ -55,7 +56,9 @@ def choose_level(given: Candidate, request: Request, kept: np.ndarray) -> Level:
     else:
         beyond = np.zeros_like(tilt)
         places = np.ix_(flexible, flexible)
-        beyond[places] = SOUTHWELL * np.eye(flexible.size) - tilt[places]
+        estimate = inv.K2_estimated
+        estimate = SOUTHWELL * np.eye(len(tilt)) if estimate is None else estimate
+        beyond[places] = estimate[places] - tilt[places]
     by_full = 0.0
     for speed in request.speeds[request.speeds > 0.0]:
         by_full = max(by_full, _shift(given, request, speed, beyond, flexible))

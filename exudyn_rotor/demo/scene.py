@@ -115,6 +115,7 @@ def add_fixed_axis_rotor(translation: str) -> AddRotor:
             gravity=GRAVITY,
             axis="x",
             translation=translation,
+            stiffening="tilt",  # as much as Exudyn's body has
         )
 
     return add

@@ -22,7 +22,7 @@ from exudyn_rotor.linear.models.eccentricity import user_level
 from exudyn_rotor.linear.models.supports import Support, check_interfaces, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import CHOICES
 from exudyn_rotor.units import Units
 
 MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross-coupling
@@ -243,7 +243,7 @@ def stability_level_one(
     machine: str = "centrifugal",
     critical_speed_ratio: float | None = None,
     gas_density: float | None = None,
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
 ) -> StabilityLevelOne:
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
@@ -309,7 +309,7 @@ def stability_level_one(
     supports = checked_supports(supports)
     check_interfaces(supports, target.interfaces)
     checks.choice(machine, "machine", MACHINES)
-    checks.choice(stiffening, "stiffening", LEVELS)
+    checks.choice(stiffening, "stiffening", CHOICES)
     if critical_speed_ratio is not None:
         checks.number(critical_speed_ratio, "critical_speed_ratio", above=0.0)
     if gas_density is not None:

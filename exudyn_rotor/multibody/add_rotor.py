@@ -48,7 +48,7 @@ from exudyn_rotor.theory.formulation import (
     PrescribedMotion,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import chosen_level, warn_of_left_out
 
 TURNED_AXES = (
     "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
@@ -69,7 +69,7 @@ def add_rotor(
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     drive: str = "rigid",
     spin_coupling: str = "full",
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     position: ArrayLike = (0.0, 0.0, 0.0),
     rotation: ArrayLike | None = None,
     initial_velocity: ArrayLike = (0.0, 0.0, 0.0),
@@ -108,9 +108,9 @@ def add_rotor(
         about the axis, with the forces that belong to it, so that energy stays conserved: the mass
         matrix is constant for a frame in the centre of mass, and a step needs half the Python
         calls. Spin speeds err by half that change, which :func:`exudyn_rotor.check_run` reports.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening; ``'none'`` gives the paper's own equations, ``'full'`` needs a
-        rotor reduced with a prestress.
+        rotor reduced with a prestress. ``'auto'`` is ``'full'`` with one, else ``'tilt'``.
     position : array_like, shape (3,)
         Place of the mesh origin, inertial axes [m].
     rotation : array_like, shape (3, 3), optional
@@ -243,7 +243,7 @@ def add_rotor(
     setup = inputs.Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
-        stiffening=checks.choice(stiffening, "stiffening", LEVELS),
+        stiffening=chosen_level(stiffening, reduced.invariants.K2 is not None),
         placement=inputs.placement(
             formulation,
             reduced.axis.direction,
@@ -268,6 +268,8 @@ def add_rotor(
     )
     plan = make_plan(reduced, setup)
     inputs.check_free_names(mbs, setup)
+    if stiffening == "auto" and reduced.invariants.K2 is None:
+        warn_of_left_out(reduced.invariants, setup.placement.speed, 3)
     if reduced.invariants.H is not None:
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
     if not marker_body:

@@ -50,7 +50,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
     translation: str | PrescribedMotion = "auto",
     spin: str | float | ConstantSpeed | PrescribedMotion = "free",
     spin_coupling: str = "full",
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     locking: str = "auto",
     markers: str = "rigid",
     condense_markers: bool = True,
@@ -92,7 +92,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         spin_coupling: 'full', or 'frozen' for a free spin whose inertia is that of the undeformed
             rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
         stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
-            prestress
+            prestress; 'auto' is 'full' with prestress, else 'tilt'
         locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.multibody.locking
         markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
             at a fraction of the cost

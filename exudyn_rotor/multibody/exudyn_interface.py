@@ -67,8 +67,9 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         ``'none'`` for a rotor that its own stiffness matrix holds.
     spin_coupling : {'full', 'frozen'}
         For a free spin; see :func:`exudyn_rotor.add_rotor`.
-    stiffening : {'tilt', 'none', 'full'}
-        Centrifugal stiffening; ``'full'`` needs `prestress`.
+    stiffening : {'auto', 'none', 'tilt', 'full'}
+        Centrifugal stiffening; ``'full'`` needs `prestress`. ``'auto'`` is ``'full'`` with one,
+        else ``'tilt'``: a FEMinterface has no elements to compute it on.
     locking : {'auto', 'mass', 'constraints'}
         See :func:`exudyn_rotor.add_rotor`.
     markers : {'rigid', 'position'}, optional
@@ -137,7 +138,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
         translation: str | PrescribedMotion = "auto",
         spin: str | float | ConstantSpeed | PrescribedMotion = "free",
         spin_coupling: str = "full",
-        stiffening: str = "tilt",
+        stiffening: str = "auto",
         locking: str = "auto",
         markers: str | None = None,
         condense_markers: bool = True,

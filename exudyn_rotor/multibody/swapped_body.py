@@ -27,7 +27,7 @@ from exudyn_rotor.theory.formulation import (
     start_values,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import chosen_level
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Additions:
         prestress: Prestress | None,
     ) -> Additions:
         """Return the arguments, or refuse them."""
-        _check_prestress(checks.choice(stiffening, "stiffening", LEVELS), prestress)
+        _check_prestress(chosen_level(stiffening, prestress is not None), prestress)
         if markers is not None:
             checks.choice(markers, "markers", inputs.MARKER_KINDS)
         suited = suited_translation(translation, grounded=False)

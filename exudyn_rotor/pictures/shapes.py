@@ -31,7 +31,7 @@ def mode_shapes(
     *,
     supports: Sequence[Support] = (),
     modes: int = 6,
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     tolerance: float = 1e-8,
     residual: float = 1e-5,
 ) -> MotionShapes:
@@ -100,7 +100,7 @@ def response_shapes(
     *,
     own: bool = True,
     supports: Sequence[Support] = (),
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     tolerance: float = 1e-9,
     residual: float = 1e-9,
 ) -> MotionShapes:

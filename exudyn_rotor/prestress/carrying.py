@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from exudyn_rotor.prestress.static_state import check_static_state
 from exudyn_rotor.solid import matrices
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rotor import Rotor, check_unstressed
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+from exudyn_rotor.solvers.inertia_relief import free_rigid_motions, inertia_relief
 
 
 def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
@@ -31,11 +32,31 @@ def with_prestress(rotor: Rotor, prestress: Prestress) -> Rotor:
 
 
 def with_chosen_prestress(rotor: Rotor, prestress: Prestress | bool | None) -> Rotor:
-    """Return the rotor with what ``reduce(prestress=…)`` asks for."""
+    """Return the rotor with what ``reduce(prestress=…)`` asks for; None is the best there is."""
     if prestress is None:
-        return rotor
+        return rotor if rotor.carried_prestress is not None else _with_own_prestress(rotor)
     if isinstance(prestress, bool | np.bool_):
         if not prestress:
             return replace(rotor, carried_prestress=None)
-        prestress = static_prestress(rotor)
+        return replace(rotor, carried_prestress=static_prestress(rotor))
     return with_prestress(rotor, prestress)
+
+
+def _with_own_prestress(rotor: Rotor) -> Rotor:
+    """Return the rotor with the prestress of its elements; as it is where that cannot be had."""
+    if rotor.elements is None:
+        return rotor
+    try:
+        inertia_relief(rotor)
+    except ValueError:  # parts that nothing connects have no static state
+        return rotor
+    try:
+        return replace(rotor, carried_prestress=static_prestress(rotor))
+    except ValueError as error:
+        warnings.warn(
+            "the static centrifugal stress is not known, and stiffening='auto' means 'tilt': "
+            f"{error}",
+            UserWarning,
+            stacklevel=5,
+        )
+        return rotor

@@ -7,10 +7,12 @@ from functools import partial
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 
 from exudyn_rotor import checks
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
+from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.attachment import attachment_modes
@@ -47,8 +49,10 @@ def reduce_rotor(
     checks.flag(keep_shapes, "keep_shapes")
     checks.tolerance(rank_tolerance, "rank_tolerance")
     rotor = with_chosen_prestress(rotor, prestress)
+    unknown = prestress is None and rotor.carried_prestress is None
+    network = estimated_stiffness(rotor) if unknown else None
     component = _with_turned_displacement(rotor, _component_modes(rotor, modes))
-    return _reduced(rotor, component, stress, keep_shapes, rank_tolerance)
+    return _reduced(rotor, component, stress, keep_shapes, rank_tolerance, network=network)
 
 
 def _reduced(
@@ -58,6 +62,7 @@ def _reduced(
     keep_shapes: bool,
     rank_tolerance: float,
     attach: bool = True,
+    network: sp.csr_array | None = None,
 ) -> ReducedRotor:
     center = rotor.center_of_mass
     rigid, kinds = _rigid_motions(rotor, center)
@@ -81,6 +86,9 @@ def _reduced(
     if rotor.structural_damping is not None:
         structural = basis.matrix.T @ (rotor.structural_damping @ basis.matrix)
         invariants = replace(invariants, H=0.5 * (structural + structural.T))
+    if network is not None:
+        estimate = basis.matrix.T @ (network @ basis.matrix)
+        invariants = replace(invariants, K2_estimated=0.5 * (estimate + estimate.T))
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,

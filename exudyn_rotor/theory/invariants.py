@@ -20,6 +20,7 @@ from exudyn_rotor.theory.nodal import block_diagonal, skew
 
 Matrix = np.ndarray | sp.csr_array
 
+_OPTIONAL = ("K2", "B", "K4", "K2_estimated", "H")
 _UNIT = 1e-9  # a direction may differ from unit length by this much
 _EPSILON = np.array([skew(unit) for unit in np.eye(3)])  # ε_aik of (a × b)_i = ε_aik a_a b_k
 
@@ -56,6 +57,9 @@ class Invariants:
         :class:`exudyn_rotor.theory.stiffening.Stiffening`; None where none was computed.
     K4 : shape (k, k), optional
         Stiffness per ω⁴ of a static displacement, as there.
+    K2_estimated : shape (k, k), optional
+        Rough K2 where none was computed, see :mod:`exudyn_rotor.prestress.estimate`. It is in no
+        equation.
     H : shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` in the rotor frame has the stiffness
         ``K + i sign(ν) H``. Only analyses in the frequency domain can use it.
@@ -64,8 +68,9 @@ class Invariants:
     ------
     TypeError, ValueError
         If shapes do not fit, an entry is not finite, the mass is not positive or M not positive
-        definite, the direction is no unit vector, M, K, C, J, K2, B, K4 or H is not symmetric, or G
-        not skew-symmetric. Sparse matrices are taken as they come from a solid rotor, which has
+        definite, the direction is no unit vector, M, K, C, J or a matrix that is given of K2, B,
+        K4, K2_estimated and H is not symmetric, or G not skew-symmetric. Sparse matrices are taken
+        as they come from a solid rotor, which has
         checked them: of them only shape and entries are looked at.
 
     Examples
@@ -96,6 +101,7 @@ class Invariants:
     K2: Matrix | None = None
     B: Matrix | None = None
     K4: Matrix | None = None
+    K2_estimated: Matrix | None = None
     H: Matrix | None = None
 
     def __post_init__(self) -> None:
@@ -114,7 +120,7 @@ class Invariants:
             "D": checks.matrix(self.D, "D", shape=(size, size)),
             "G": checks.symmetric(self.G, "G", size=size, sign=-1),
         }
-        for name in ("M", "K", "C", "K2", "B", "K4", "H"):
+        for name in ("M", "K", "C", *_OPTIONAL):
             matrix = getattr(self, name)
             if matrix is not None or name in "MKC":
                 checked[name] = checks.symmetric(matrix, name, size=size)
@@ -233,7 +239,7 @@ class Invariants:
         """Return the invariants for the basis ``Ψ T``, T of shape (k, l)."""
         T = checks.matrix(T, "T", shape=(self.size, None))
         projected = {"D": T.T @ (self.D @ T), "G": _mean(T.T @ (self.G @ T), -1)}
-        for name in ("M", "K", "C", "K2", "B", "K4", "H"):
+        for name in ("M", "K", "C", *_OPTIONAL):
             if getattr(self, name) is not None:
                 projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)

@@ -17,6 +17,8 @@ Levels
     Needs a rotor reduced with a prestress (:mod:`exudyn_rotor.prestress.static_solution`). With
     its initial displacement there is a stiffness per ω⁴ as well.
 
+``'auto'`` is ``'full'`` where the static stress is known and ``'tilt'`` elsewhere.
+
 Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into translation, rotation
 φ about the centre of mass and a flexible rest ψ; composing them gives
 ``u₂ = ½ φ × (φ × y) + φ × ψ`` with y from the centre of mass. The work of a nodal force field
@@ -25,6 +27,7 @@ Derivation of ``'tilt'``: a displacement is split by mass-orthogonality into tra
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +38,9 @@ from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
 
 LEVELS = ("none", "tilt", "full")
+CHOICES = ("auto", *LEVELS)
+_WORTH_A_WARNING = 0.01  # relative change of a frequency
+_FREE = 1e-9  # of the largest stiffness: what rounding leaves of a free motion
 NO_PRESTRESS = (
     "stiffening='full' needs the static centrifugal stress: reduce the rotor with prestress=True "
     "(NGSolve model) or with Prestress.from_matrix (imported model), carry it in a full model with "
@@ -90,6 +96,56 @@ class Stiffening:
             if getattr(self, name) is not None:
                 matrix = checks.symmetric(getattr(self, name), name, size=K2.shape[0])
                 object.__setattr__(self, name, matrix)
+
+
+def chosen_level(choice: str, stress_is_known: bool) -> str:
+    """Return the level of a choice, which may be ``'auto'``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For an unknown choice.
+    """
+    if checks.choice(choice, "stiffening", CHOICES) != "auto":
+        return choice
+    return "full" if stress_is_known else "tilt"
+
+
+def warn_of_left_out(invariants: Invariants, speed: float, level: int) -> None:
+    """Warn where ``'tilt'`` errs much at a spin speed [rad/s] by an estimate of the rest.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Of flexible modes at rest, beside rigid motions.
+    speed : float
+    level : int
+        Of the stack, whose caller is warned.
+    """
+    error = estimated_error(invariants, speed)
+    if error > _WORTH_A_WARNING:
+        warnings.warn(
+            "stiffening: the static centrifugal stress is not known; what it changes beyond 'tilt' "
+            f"is left out, an estimated {error:.0%} of a mode's frequency at {abs(speed):.6g} "
+            "rad/s. Make the rotor with SolidRotor.from_ngsolve, or give the stress with "
+            "Prestress.from_matrix; stiffening='tilt' accepts the error",
+            UserWarning,
+            stacklevel=level,
+        )
+
+
+def estimated_error(invariants: Invariants, speed: float) -> float:
+    """Return the largest relative change of a mode's frequency by what ``'tilt'`` leaves out.
+
+    ``½ω² |K2 − K2_tilt|_kk / K_kk`` of the flexible modes with the estimate of K2; 0 without one.
+    """
+    if invariants.K2_estimated is None:
+        return 0.0
+    stiffness = np.diag(invariants.K)
+    flexible = stiffness > _FREE * stiffness.max(initial=0.0)
+    left_out = np.diag(invariants.K2_estimated - stiffening(invariants, "tilt").K2)
+    shares = np.abs(left_out[flexible]) / stiffness[flexible]
+    return float(0.5 * speed**2 * shares.max(initial=0.0))
 
 
 def stiffening(invariants: Invariants, level: str) -> Stiffening:

@@ -33,7 +33,8 @@ _FIELD = v.ARRAY
 BY_NAME: dict[str, Kind] = {
     "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "H": _FIELD, "J": _FIELD, "K": _FIELD,
     "harmonics": _FIELD,
-    "K2": _FIELD, "K4": _FIELD, "M": _FIELD, "P": _FIELD, "S": _FIELD, "T": _FIELD,
+    "K2": _FIELD, "K4": _FIELD, "K2_estimated": _FIELD, "M": _FIELD, "P": _FIELD, "S": _FIELD,
+    "T": _FIELD,
     "about": v.WORD.but(another_word="rest"),
     "accuracy": v.SHARE,
     "allow_negative": v.FLAG,

@@ -141,10 +141,9 @@ def thick_frequencies(
     lag : bool
         In the plane of rotation, else across.
     displaced : bool, optional
-        Also what is linear in the static strain ``ε = η² T I/(AL²)`` of St. Venant–Kirchhoff
-        elasticity without lateral contraction: ``(1 + 2ε)`` at bending and stretching, and the
-        shear strain ``w' − (1 + ε)φ``, of whose square ``ε²φ²`` is left out. That is as if the
-        shear stiffness GA of the whole section were negative: κ belongs to the warping alone.
+        Also the static strain ``ε = η² T I/(AL²)`` of St. Venant–Kirchhoff elasticity without
+        lateral contraction: ``(1 + ε)²`` at bending and stretching, and the shear strain
+        ``w' − (1 + ε)φ``.
 
     Returns
     -------
@@ -152,8 +151,8 @@ def thick_frequencies(
     """
     x, weights = _rule(count)
     value, slope = (shapes(1, count, x, order) for order in range(2))
-    r2, rigid = section.gyration, 1.0 / (section.gyration * section.modulus)
-    stiff = section.kappa * rigid
+    r2 = section.gyration
+    stiff = section.kappa / (section.gyration * section.modulus)
     pull = eta**2 * tension(x, hub)
     strain = r2 * pull if displaced else 0.0 * x
 
@@ -161,8 +160,8 @@ def thick_frequencies(
         return (left * weights * weight) @ right.T
 
     mass = form(value, 1.0, value)
-    turn = form(slope, 1.0 + 2.0 * strain + r2 * pull, slope)
-    turn = turn + form(value, stiff * (1.0 + strain) ** 2 - rigid * strain**2, value)
+    turn = form(slope, (1.0 + strain) ** 2 + r2 * pull, slope)
+    turn = turn + form(value, stiff * (1.0 + strain) ** 2, value)
     turn = turn - (0.0 if lag else eta**2 * r2) * mass
     bend = form(slope, stiff + pull, slope) - (eta**2 if lag else 0.0) * mass
     mixed = -stiff * form(slope, 1.0 + strain, value)
@@ -170,7 +169,7 @@ def thick_frequencies(
     M = la.block_diag(mass, r2 * mass)
     if not lag:  # stretching is a motion of its own
         return lowest_frequencies(K, M, modes)
-    stretch = form(slope, (1.0 + 2.0 * strain) / r2 + pull, slope) - eta**2 * mass
+    stretch = form(slope, (1.0 + strain) ** 2 / r2 + pull, slope) - eta**2 * mass
     K, M = la.block_diag(K, stretch), la.block_diag(M, mass)
     G = np.zeros_like(M)
     G[:count, 2 * count :], G[2 * count :, :count] = 2 * eta * mass, -2 * eta * mass

@@ -45,6 +45,7 @@ def run(rotor: ReducedRotor, torque: float, coupling: str, end: float) -> tuple[
         rotor,
         initial_speed=SPEED,
         spin_coupling=coupling,
+        stiffening="tilt",  # as much as Exudyn's body has
         gravity=[0.0, -9.81, 0.0],
         markers="position" if not torque else None,
     )

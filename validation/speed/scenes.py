@@ -63,6 +63,7 @@ def fixed_axis(**options) -> AddRotor:
     def add(mbs: exudyn.MainSystem, fem: FEMinterface) -> dict:
         speed = [START_SPEED, 0, 0]
         common = {"axis": "x", "gravity": GRAVITY, "initialAngularVelocity": speed}
+        common["stiffening"] = "tilt"  # as much as Exudyn's body has
         return mbs.CreateFixedAxisFFRFReducedOrderObject(
             name="rotor", femInterface=fem, **(common | options)
         )

@@ -143,13 +143,14 @@ class Rotor:
         return self._known[basis, count]
 
     def _flexible(self, modes: ModeSource) -> np.ndarray:
-        reduced = self.solid.reduce(modes)
+        reduced = self.solid.reduce(modes, prestress=False)
         return np.array(reduced.shapes.matrix[:, len(reduced.rigid) :])
 
     def reduced(self, body: Body) -> ReducedRotor:
         """Return the rotor reduced for a body."""
         columns = self.columns(body.basis, body.modes)
-        return self.solid.reduce(columns, prestress=True if body.stiffening == "full" else None)
+        # 'tilt' is as much as Exudyn's body has
+        return self.solid.reduce(columns, prestress=body.stiffening == "full")
 
     @cached_property
     def disc(self) -> tuple[np.ndarray, np.ndarray]:

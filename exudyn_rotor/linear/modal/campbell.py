@@ -19,6 +19,7 @@ from exudyn_rotor.linear.models.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
+    warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
@@ -37,7 +38,7 @@ def campbell(
     supports: Sequence[Support] = (),
     body: RotorBody | None = None,
     modes: int | None = None,
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     allow_negative: bool = False,
     tolerance: float = 1e-8,
     residual: float = 1e-5,
@@ -67,7 +68,7 @@ def campbell(
         How many modes to keep: those with the lowest inertial frequencies at the first speed,
         followed from there, overdamped ones last. All by default. A large SolidRotor is solved
         for as many modes, 10 by default, as are lowest in the rotor frame at each speed.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`).
     allow_negative : bool, optional
@@ -135,6 +136,7 @@ def campbell(
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_structural_damping(model, "campbell finds modes")
+    warn_of_left_out_stiffening(model, np.abs(values).max())
     basis = BasisError.of(model, accuracy)
     count = _checked_count(modes, model)
     space = model.space(count, np.abs(values).max(), residual=residual)
@@ -147,7 +149,7 @@ def campbell(
     tracks = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count)
     shifts = basis.shifts(values, [entry[0] for entry in solved])
-    result = _collected(values, solved, tracks, model.free_motions, shifts)
+    result = _collected(values, solved, tracks, model, shifts)
     _warn_of_basis(basis, result, modes)
     return result
 
@@ -209,7 +211,7 @@ def _collected(
     speeds: np.ndarray,
     solved: list[Solved],
     tracks: Tracks,
-    free: tuple[str, ...],
+    model: LinearModel,
     shifts: np.ndarray | None,
 ) -> Campbell:
     modes, inertial, whirl, diameters = zip(*solved, strict=True)
@@ -230,7 +232,8 @@ def _collected(
         vectors=np.array([entry.central for entry in modes]),
         order=tracks.columns,
         continued=tracks.continued,
-        free_motions=free,
+        free_motions=model.free_motions,
+        stiffening=model.stiffening,
         basis_shifts=shifts,
     )
 

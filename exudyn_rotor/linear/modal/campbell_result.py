@@ -16,6 +16,7 @@ from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
@@ -62,6 +63,8 @@ class Campbell(Result):
         Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
         reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
         [rad/s]. Zero for a full model; None where it is not known, as of a scene.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
 
     Examples
     --------
@@ -80,6 +83,7 @@ class Campbell(Result):
                0     1                 0              0              0  0  axial
            7.958     1                 0              0              0  0  axial
     free motions: translation along axis
+    stiffening: tilt
     """
 
     speeds: np.ndarray = numbers("speeds")
@@ -94,12 +98,15 @@ class Campbell(Result):
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
+    stiffening: str | None = None
     basis_shifts: np.ndarray | None = numbers(
         "speeds", "modes", dtype=complex, finite=False, optional=True
     )
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
         if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
             raise ValueError("order: needs every column once at each speed")
 
@@ -293,6 +300,8 @@ class Campbell(Result):
                 )
         if self.free_motions:
             lines.append("free motions: " + ", ".join(self.free_motions))
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
         lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
         if lost.size:
             listed = ", ".join(f"{f:.4g}" for f in lost)

@@ -28,7 +28,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import sweep
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import CHOICES, LEVELS
 from exudyn_rotor.units import Units
 
 
@@ -46,6 +46,8 @@ class CriticalSpeedMap(Result):
     whirl_codes : ndarray of int, shape (s, c)
         Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
     order : float
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     basis_errors : ndarray, shape (s, c), or None
         Estimated relative errors by the basis of a reduced rotor, NaN as in
         :class:`CriticalSpeeds`; None where they are not known.
@@ -67,7 +69,13 @@ class CriticalSpeedMap(Result):
         "stiffnesses", "speeds", dtype=int, least=-1, most=len(WHIRLS) - 1
     )
     order: float
+    stiffening: str | None = None
     basis_errors: np.ndarray | None = numbers("stiffnesses", "speeds", finite=False, optional=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
@@ -104,6 +112,8 @@ class CriticalSpeedMap(Result):
             lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
             if reduced:
                 lines[-1] += f" (basis error up to {np.nanmax(errors[i], initial=0.0):.1e})"
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(
@@ -152,7 +162,7 @@ def critical_speed_map(
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (1,),
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
@@ -204,7 +214,7 @@ def critical_speed_map(
         raise ValueError("interfaces: needs at least one name, got none")
     supports = checked_supports(supports)
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
-    checks.choice(stiffening, "stiffening", LEVELS)
+    checks.choice(stiffening, "stiffening", CHOICES)
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, stiffening=stiffening)
     basis = BasisError.of(model, accuracy)
@@ -221,7 +231,14 @@ def critical_speed_map(
         codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
         if errors is not None:
             errors[row, :count] = entry.basis_errors
-    result = CriticalSpeedMap(values, speeds, codes.astype(np.int64), order, basis_errors=errors)
+    result = CriticalSpeedMap(
+        values,
+        speeds,
+        codes.astype(np.int64),
+        order,
+        stiffening=solved[0].stiffening,
+        basis_errors=errors,
+    )
     if errors is not None:
         warn_of_critical(basis, speeds, errors)
     return result

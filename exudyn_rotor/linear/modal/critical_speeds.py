@@ -15,11 +15,16 @@ from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.linear_model import (
+    Target,
+    linear_model,
+    warn_of_left_out_stiffening,
+)
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 JUDGED = 6  # critical speeds that count where no largest speed is given
@@ -49,6 +54,8 @@ class CriticalSpeeds(Result):
     basis_errors : ndarray, shape (c,), or None
         Estimated relative errors by the basis of a reduced rotor; NaN above the lowest six where
         no largest speed was given, None where they are not known.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
 
     Examples
     --------
@@ -67,11 +74,14 @@ class CriticalSpeeds(Result):
     whirl: tuple[str, ...] = words("speeds")
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
+    stiffening: str | None = None
     splits: np.ndarray | None = numbers("speeds", optional=True)
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.labels(self.whirl, "whirl", WHIRLS)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
@@ -111,6 +121,8 @@ class CriticalSpeeds(Result):
             split = 0.0 if self.splits is None else self.splits[i]
             word += f"  pair, the other {split:.1e} above" if split > 0.0 else ""
             lines.append(f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}")
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
 
@@ -122,7 +134,7 @@ def critical_speeds(
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (0, 1),
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     tolerance: float = 1e-9,
     residual: float = 1e-5,
     accuracy: float | None = 1e-2,
@@ -148,7 +160,7 @@ def critical_speeds(
         may be missed.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
     tolerance : float, optional
         Largest relative change of a critical speed by further harmonics.
     residual : float, optional
@@ -183,6 +195,7 @@ def critical_speeds(
       100          15.9155     1  backward
       100          15.9155     1  forward
       100          15.9155     1  forward
+    stiffening: tilt
     """
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     tolerance = options.accuracy(tolerance, "tolerance")
@@ -219,13 +232,17 @@ def critical_speeds_of(
     The `content` is that of the rotor, whatever its supports are.
     """
     critical = resonances(model, content, order, waves, max_speed, tolerance, residual)
+    if critical:
+        fastest = critical[0].speed if max_speed is None else max_speed
+        warn_of_left_out_stiffening(model, fastest)
     errors = None
     if basis is not None and basis.is_known:
         errors = np.full(len(critical), np.nan)
         count = len(critical) if max_speed is not None else JUDGED
         given = [(entry.speed, entry.multiples, entry.vectors) for entry in critical[:count]]
         errors[:count] = basis.critical_errors(given)
-    return replace(_collected(critical, content, order, model.size), basis_errors=errors)
+    found = _collected(critical, content, order, model.size)
+    return replace(found, basis_errors=errors, stiffening=model.stiffening)
 
 
 def checked(

@@ -10,7 +10,6 @@ from typing import TypeVar
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor import checks
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
@@ -23,9 +22,9 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import (
-    LEVELS,
     NO_PRESTRESS,
     Stiffening,
+    chosen_level,
     relief_factors,
     tilt_factors,
 )
@@ -49,9 +48,8 @@ def _second_order(
     Raises
     ------
     ValueError
-        For an unknown level, or 'full' with a rotor that carries no prestress.
+        For 'full' with a rotor that carries no prestress.
     """
-    checks.choice(level, "stiffening", LEVELS)
     if level == "full":
         if rotor.carried_prestress is None:
             raise ValueError(NO_PRESTRESS)
@@ -79,6 +77,8 @@ class FullEquations(SupportedRotor):
     tilt : tuple of ndarray, (6, 3n) and (6, 6)
         V and W of the centrifugal stiffening ``K2 + VᵀWV`` per Ω².
     rotor : SolidRotor
+    stiffening : {'none', 'tilt', 'full'}
+        Of centrifugal stiffening.
     spin : Spin, optional
         The spin as a coordinate; see :meth:`with_spin`.
     """
@@ -90,6 +90,7 @@ class FullEquations(SupportedRotor):
     invariants: Invariants
     tilt: tuple[np.ndarray, np.ndarray]
     rotor: SolidRotor
+    stiffening: str
     spin: Spin | None = None
 
     @classmethod
@@ -97,7 +98,7 @@ class FullEquations(SupportedRotor):
         cls: type[Kind],
         rotor: SolidRotor,
         supports: Sequence[Support] = (),
-        stiffening: str = "tilt",
+        stiffening: str = "auto",
     ) -> Kind:
         """Put a solid rotor on supports.
 
@@ -108,13 +109,15 @@ class FullEquations(SupportedRotor):
         """
         check_interfaces(supports, rotor.interfaces)
         origin = rotor.axis.project(rotor.center_of_mass)
-        invariants, tilt = _second_order(rotor, _invariants(rotor, origin), stiffening)
+        level = chosen_level(stiffening, rotor.carried_prestress is not None)
+        invariants, tilt = _second_order(rotor, _invariants(rotor, origin), level)
         turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
         motions = tuple(
             sp.csr_array(turn @ rotor.interfaces[s.interface].mean_motion(rotor.node_count))
             for s in supports
         )
-        return cls(rotor.axis, rotor.nodes, tuple(supports), motions, invariants, tilt, rotor)
+        supports = tuple(supports)
+        return cls(rotor.axis, rotor.nodes, supports, motions, invariants, tilt, rotor, level)
 
     def with_spin(self: Kind) -> Kind:
         """Return the same with the spin as a coordinate, as all analyses need it."""

@@ -15,10 +15,11 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 
 # full models up to this size are solved with dense matrices
 DENSE_SIZE = 600
@@ -32,7 +33,7 @@ def linear_model(
     *,
     supports: Sequence[Support] | Support = (),
     body: RotorBody | None = None,
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     about: str = "steady",
     dense: bool | None = None,
 ) -> LinearModel:
@@ -49,9 +50,10 @@ def linear_model(
         Of a rotor; a scene has its own connectors.
     body : RotorBody, optional
         The rotor in a scene, from :func:`exudyn_rotor.add_rotor`.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
-        prestress (:meth:`SolidRotor.prestress`).
+        prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
+        a SolidRotor with elements, and 'tilt' without.
     about : {'steady', 'given'}
         Motion about which a scene is linearised: the periodic motion under its loads and the
         rotor's own unbalance at each speed, or its current state with the rotor undeformed.
@@ -86,7 +88,7 @@ def linear_model(
     [True, True]
     """
     supports = checked_supports(supports)
-    checks.choice(stiffening, "stiffening", LEVELS)
+    checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(about, "about", ABOUT)
     if dense is not None:
         checks.flag(dense, "dense")
@@ -109,6 +111,8 @@ def linear_model(
     how = "needs a ReducedRotor, a SolidRotor, a linear model, or an exudyn.MainSystem with body=…"
     if not isinstance(target, SolidRotor):
         raise TypeError(f"target: {how}, got {checks.shown(target)}")
+    if stiffening == "auto":
+        target = with_chosen_prestress(target, None)
     if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
         return LinearRotor.of_solid(target, supports, stiffening)
     return FullRotor.of(target, supports, stiffening).with_spin()
@@ -118,3 +122,9 @@ def warn_of_structural_damping(model: LinearModel, what: str) -> None:
     """Warn that an analysis, named by `what`, leaves structural damping out."""
     if model.has_structural_damping:
         warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())
+
+
+def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
+    """Warn where the level 'tilt', which nobody asked for, errs much at a speed [rad/s]."""
+    if isinstance(model, LinearRotor):
+        warn_of_left_out(model.invariants, speed, user_level() + 1)

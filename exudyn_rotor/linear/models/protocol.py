@@ -132,6 +132,8 @@ class LinearModel(Protocol):
         True where analyses give all modes, False where only the lowest ones.
     is_full : bool
         True where no basis leaves anything out.
+    stiffening : {'none', 'tilt', 'full'}
+        Level of centrifugal stiffening.
     stiffness_varies : bool or None
         Whether the stiffness depends on the speed other than by Ω²; None where that is not known.
 
@@ -173,6 +175,8 @@ class LinearModel(Protocol):
     def gives_all(self) -> bool: ...
     @property
     def is_full(self) -> bool: ...
+    @property
+    def stiffening(self) -> str: ...
     @property
     def stiffness_varies(self) -> bool | None: ...
 

@@ -29,6 +29,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import chosen_level
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 _SINGULAR = 1e-12  # of a stiffness that leaves motions free
@@ -72,7 +73,7 @@ class LinearRotor(SupportedRotor):
         cls,
         rotor: ReducedRotor,
         supports: Sequence[Support] = (),
-        stiffening: str = "tilt",
+        stiffening: str = "auto",
         spin: tuple[np.ndarray, np.ndarray] | None = None,
     ) -> LinearRotor:
         """Put a rotor on supports; `spin` is its s and Ms where it is no column of the basis.
@@ -85,9 +86,11 @@ class LinearRotor(SupportedRotor):
         check_interfaces(supports, rotor.interfaces)
         origin = rotor.axis.project(rotor.center_of_mass)
         invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
-        terms = SpinTerms.of(invariants, second_order(invariants, stiffening))
-        invariants = replace(invariants, K4=terms.K4)
-        linear = cls(rotor, tuple(supports), invariants, terms, stiffening=stiffening)
+        level = chosen_level(stiffening, invariants.K2 is not None)
+        terms = SpinTerms.of(invariants, second_order(invariants, level))
+        estimate = invariants.K2_estimated if stiffening == "auto" else None
+        invariants = replace(invariants, K4=terms.K4, K2_estimated=estimate)
+        linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
         if ModeKind.SPIN in rotor.kinds:
             spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
         if spin is not None:
@@ -97,7 +100,7 @@ class LinearRotor(SupportedRotor):
 
     @classmethod
     def of_solid(
-        cls, rotor: SolidRotor, supports: Sequence[Support] = (), stiffening: str = "tilt"
+        cls, rotor: SolidRotor, supports: Sequence[Support] = (), stiffening: str = "auto"
     ) -> LinearRotor:
         """Put a small solid rotor on supports, in all its nodal displacements.
 

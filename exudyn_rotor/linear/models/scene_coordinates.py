@@ -49,6 +49,11 @@ class SceneCoordinates:
         return self.N.shape[1]
 
     @property
+    def stiffening(self) -> str:
+        """Level of centrifugal stiffening."""
+        return self.body.stiffening
+
+    @property
     def mass(self) -> float:
         """Mass of the rotor [kg]."""
         return self.body.motion.invariants.mass

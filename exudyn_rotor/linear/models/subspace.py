@@ -299,7 +299,9 @@ class Subspace:
         K2 = tilt.T @ W @ tilt + blocks.get("K2", 0.0)
         levels = Stiffening(0.5 * (K2 + K2.T), 0.0 * K2, blocks.get("K4"))
         terms = SpinTerms.of(invariants, levels)
-        return LinearRotor(reduced, full.supports, invariants, terms, spin)
+        return LinearRotor(
+            reduced, full.supports, invariants, terms, spin, stiffening=full.stiffening
+        )
 
     def solve(self, forces: np.ndarray) -> np.ndarray:
         """Return ``(K + αM)⁻¹ f`` for forces (3n, k), real or complex."""

@@ -29,7 +29,7 @@ class SupportedRotor:
     supports : tuple of Support
     invariants : Invariants
         In these coordinates, about the foot of the centre of mass on the axis; K4 only where the
-        level of stiffening has it.
+        level of stiffening has it, K2_estimated only where that was not chosen.
     spin : Spin, optional
         The spin as a coordinate.
     """

@@ -16,7 +16,11 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.basis_error import BasisError
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.linear_model import (
+    Target,
+    linear_model,
+    warn_of_left_out_stiffening,
+)
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_inertial_frame
@@ -55,7 +59,7 @@ def unbalance_response(
     body: RotorBody | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     tolerance: float = 1e-9,
     residual: float = 1e-9,
     refine: bool = False,
@@ -88,7 +92,7 @@ def unbalance_response(
         Interfaces and mesh nodes to look at; all interfaces by default.
     frame : {'inertial', 'rotor'}
         Axes of the resulting motion.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening; 'full' needs a rotor with prestress.
     tolerance : float, optional
         Largest relative change of the motion by further harmonics; smaller harmonics are left out.
@@ -136,6 +140,7 @@ def unbalance_response(
     options.check_sweep(executor, progress)
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
+    warn_of_left_out_stiffening(model, values[-1])
     observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
     basis = BasisError.of(model, accuracy)
@@ -176,7 +181,7 @@ def harmonic_response(
     body: RotorBody | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     tolerance: float = 1e-9,
     residual: float = 1e-9,
     refine: bool = False,
@@ -229,6 +234,7 @@ def harmonic_response(
     options.check_sweep(executor, progress)
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
+    warn_of_left_out_stiffening(model, speed)
     observed = places(model, at)
     load = total(loads, model)
     fastest = max(values[-1], abs(speed))

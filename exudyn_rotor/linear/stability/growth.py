@@ -10,7 +10,10 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.linear_model import warn_of_structural_damping
+from exudyn_rotor.linear.models.linear_model import (
+    warn_of_left_out_stiffening,
+    warn_of_structural_damping,
+)
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.exponents import METHODS, descending, without_neutral
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
@@ -110,6 +113,7 @@ def held_space(model: LinearModel, fastest: float, modes: int | None, residual: 
         For a number of modes where all are found, or of more than a quarter of the coordinates.
     """
     warn_of_structural_damping(model, "stability finds exponents")
+    warn_of_left_out_stiffening(model, fastest)
     if model.gives_all and modes is not None:
         raise ValueError("modes: is only for a large SolidRotor; this target gives all exponents")
     count = _MODES if modes is None else modes

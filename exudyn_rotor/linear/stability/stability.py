@@ -31,7 +31,7 @@ def stability(
     *,
     supports: Sequence[Support] = (),
     body: RotorBody | None = None,
-    stiffening: str = "tilt",
+    stiffening: str = "auto",
     method: str = "auto",
     tolerance: float = 1e-9,
     modes: int | None = None,
@@ -54,7 +54,7 @@ def stability(
         notes of :func:`campbell`.
     body : RotorBody, optional
         The rotor in a ``MainSystem``.
-    stiffening : {'tilt', 'none', 'full'}
+    stiffening : {'auto', 'none', 'tilt', 'full'}
         For a rotor; 'full' needs one with prestress.
     method : {'auto', 'floquet', 'hill', 'eigen'}
         ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
@@ -124,6 +124,7 @@ def stability(
         **{name: np.array([s.names[i] for s in solved]) for i, name in enumerate(names)},
         tolerance=tolerance,
         basis_shifts=basis.shifts_of(values, [entry.critical for entry in solved]),
+        stiffening=model.stiffening,
     )
     _warn_of_basis(basis, result)
     return result

@@ -11,6 +11,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 
@@ -48,6 +49,8 @@ class Stability(Result):
     basis_shifts : ndarray, shape (s,), or None
         Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
         :attr:`Campbell.basis_shifts`; NaN by Floquet's method.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
 
     Examples
     --------
@@ -75,9 +78,12 @@ class Stability(Result):
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
     tolerance: float
     basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
+    stiffening: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.number(self.tolerance, "tolerance", least=0.0)
 
     def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
@@ -198,4 +204,6 @@ class Stability(Result):
             )
             if reduced:
                 lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{errors[row]:11.1e}"
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
