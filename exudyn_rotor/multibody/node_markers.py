@@ -13,7 +13,7 @@ sensors of place, velocity and rotation, therefore go to virtual nodes of the fl
 have this motion: ``mbs.AddMarker`` and ``mbs.AddSensor`` see to it. Where a script puts nothing on
 the node, nothing is added.
 
-Tilts about the node's place in the basis, ``S ≠ 0``, would move the node itself so, without its tilt;
+Tilts about the node's place in the basis, ``S ≠ 0``, would move the node itself, but not tilt it;
 they couple translations and tilts by ``A S``, so that no matrix is constant, and a step takes five
 times as long with a free spin and twelve times at constant speed.
 """
