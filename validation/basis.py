@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> None:
             full = campbell(rotor, SPEEDS, modes=MODES, **given)
             for label, modes in bases:
                 reduced = reduce(rotor, modes)
-                result = campbell(reduced, SPEEDS, **given)
+                result = campbell(reduced, SPEEDS, modes=reduced.size, **given)
                 print(f"{name + ', ' + label:44}{row(full, result)}", flush=True)
 
 

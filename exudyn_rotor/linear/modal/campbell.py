@@ -148,9 +148,11 @@ def campbell(
     solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
     tracks = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count)
-    shifts = basis.shifts(values, [entry[0] for entry in solved])
+    inertial = np.array([entry[1] for entry in solved])
+    chosen = judged(inertial, values) if modes is None else np.full(inertial.shape, True)
+    shifts = basis.shifts(values, [entry[0] for entry in solved], chosen)
     result = _collected(values, solved, tracks, model, shifts)
-    _warn_of_basis(basis, result, modes)
+    _warn_of_basis(basis, result)
     return result
 
 
@@ -238,13 +240,11 @@ def _collected(
     )
 
 
-def _warn_of_basis(basis: BasisError, result: Campbell, modes: int | None) -> None:
+def _warn_of_basis(basis: BasisError, result: Campbell) -> None:
     """Warn where the basis leaves out too much for the modes that count."""
     errors = result.basis_errors
     if errors is None:
         return
-    if modes is None:
-        errors = np.where(judged(result.frequencies_inertial, result.speeds), errors, 0.0)
     at, mode = np.unravel_index(np.argmax(np.nan_to_num(errors)), errors.shape)
     speed, frequency = (
         value / (2.0 * np.pi)

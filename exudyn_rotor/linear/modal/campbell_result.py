@@ -62,7 +62,8 @@ class Campbell(Result):
     basis_shifts : ndarray, shape (s, k), or None
         Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
         reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
-        [rad/s]. Zero for a full model; None where it is not known, as of a scene.
+        [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
+        twice the highest speed and the lowest six; None where it is not known, as of a scene.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
 
@@ -279,7 +280,7 @@ class Campbell(Result):
         known = Units.of(units)
         speed, frequency = f"[{known.speed}]", f"[{known.frequency}]"
         errors = self.basis_errors
-        reduced = errors is not None and np.any(errors)
+        reduced = errors is not None and np.any(errors > 0.0)
         label = "  basis error" if reduced else ""
         lines = [
             f"{'speed ' + speed:>12}  mode{'rotor frame ' + frequency:>18}"

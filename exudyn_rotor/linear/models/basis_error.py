@@ -58,14 +58,21 @@ class BasisError:
         """True where an estimate can be given."""
         return self.accuracy is not None and (self.model.is_full or self.left_out is not None)
 
-    def shifts(self, speeds: np.ndarray, modes: Sequence[FloquetModes]) -> np.ndarray | None:
-        """Return ``λ_full − λ`` of modes at speeds, shape (s, k); None where that is not known."""
+    def shifts(
+        self, speeds: np.ndarray, modes: Sequence[FloquetModes], chosen: np.ndarray
+    ) -> np.ndarray | None:
+        """Return ``λ_full − λ`` of modes at speeds, shape (s, k); None where that is not known.
+
+        NaN of those that are not `chosen` (s, k).
+        """
         if not self.is_known:
             return None
         if self.left_out is None:
             return np.array([0j * entry.values for entry in modes])
-        pairs = zip(speeds, modes, strict=True)
-        return np.array([self.left_out.shifts(speed, entry) for speed, entry in pairs])
+        shifts = np.full(chosen.shape, np.nan, dtype=complex)
+        for row, used, speed, entry in zip(shifts, chosen, speeds, modes, strict=True):
+            row[used] = self.left_out.shifts(speed, entry.columns(np.flatnonzero(used)))
+        return shifts
 
     def shifts_of(
         self, speeds: np.ndarray, modes: Sequence[FloquetModes | None]
