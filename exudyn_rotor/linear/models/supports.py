@@ -17,6 +17,7 @@ from exudyn_rotor.theory.nodal import skew
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
+_TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))  # ẽ of displacement and rotation
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
@@ -109,7 +110,7 @@ class Support:
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
             return {0: damping}, {0: stiffness}
-        carried = stiffness + speed * damping @ np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))
+        carried = stiffness + speed * damping @ _TURN
         return turned_harmonics(damping), turned_harmonics(carried)
 
     def undamped(self) -> Support:

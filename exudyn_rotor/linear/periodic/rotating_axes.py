@@ -53,6 +53,8 @@ def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
     R turns both triples of a (6, 6) matrix X about e by θ; the result holds the harmonics
     −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
     """
+    if not np.any(matrix):
+        return {}
     R = _turns()
     products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  # R is real: Rᵀ has the terms R_nᵀ
     spectrum = {n: np.zeros((6, 6), dtype=complex) for n in range(-2, 3)}

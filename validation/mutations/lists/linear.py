@@ -342,7 +342,7 @@ LINEAR = [
     ),
     *mutations(
         "linear/stability/growth.py",
-        "test_stability.py test_stability_names.py",
+        "test_stability.py test_stability_names.py test_linear_properties.py",
         (
             "least growth for the largest",
             "return float(np.max(excess[moving] if np.any(moving) else excess))",
@@ -352,6 +352,11 @@ LINEAR = [
             "growth of a tenth of the speed taken for round-off",
             "return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
             "return 0.1 * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
+        ),
+        (
+            "growth by rounding is not looked into",
+            "if system.is_constant or speed == 0.0 or len(modes.orders) > 1:",
+            "if speed < 0.0:",
         ),
         (
             "names of folded exponents",
