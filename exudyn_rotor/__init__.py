@@ -31,11 +31,8 @@ from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbala
 from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.linear.stability.stability_result import Stability
-from exudyn_rotor.linear.stability.thresholds import (
-    StabilityThresholds,
-    stability_threshold,
-    unstable_ranges,
-)
+from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
+from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject

@@ -354,18 +354,22 @@ LINEAR = [
             "return 0.1 * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
         ),
         (
-            "growth by rounding is not looked into",
-            "if system.is_constant or speed == 0.0 or len(modes.orders) > 1:",
-            "if speed < 0.0:",
-        ),
-        (
             "names of folded exponents",
             "content.named(replace(modes, values=values), speed)",
             "content.named(replace(modes, values=fold(values, abs(system.base))), speed)",
         ),
     ),
     *mutations(
-        "linear/stability/thresholds.py",
+        "linear/stability/growth.py",
+        "test_growth_by_rounding.py",
+        (
+            "growth by rounding is not looked into",
+            "if system.is_constant or speed == 0.0 or len(modes.orders) > 1:",
+            "if speed < 0.0:",
+        ),
+    ),
+    *mutations(
+        "linear/stability/threshold_search.py",
         "test_stability.py test_stability_names.py",
         (
             "modes that meet are not followed",
@@ -373,10 +377,14 @@ LINEAR = [
             "if gaps[0] * gaps[1] > 0.0 and near:",
         ),
         (
-            "another leader does not count",
-            "return bool(values[leader] < values.max()",
-            "return bool(values[leader] > values.max()",
+            "no gap between two unstable samples",
+            "self._search(low, high, lambda growth, _: growth.excess)",
+            "self._search(low, high, lambda growth, _: -growth.excess)",
         ),
+    ),
+    *mutations(
+        "linear/stability/thresholds.py",
+        "test_stability.py test_stability_names.py",
         (
             "mode of a threshold from its stable side",
             "(1 if on else -1)) for value, on in found",

@@ -1,0 +1,102 @@
+"""Limits of stability over one parameter: what a search for them returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from exudyn_rotor import plotting
+from exudyn_rotor.linear.modal.whirl import WHIRLS, families
+from exudyn_rotor.results import Result, numbers, storable
+from exudyn_rotor.units import Units
+
+
+@storable
+@dataclass(frozen=True, eq=False)
+class StabilityThresholds(Result):
+    """Where a rotor turns unstable, or stable again, over one parameter.
+
+    Attributes
+    ----------
+    values : ndarray, shape (t,)
+        The parameter at each change, ascending.
+    onset : ndarray of bool, shape (t,)
+        True where the rotor is unstable above.
+    frequencies_inertial : ndarray, shape (t,)
+        Of the mode that grows there, seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (t,)
+        Of that mode, as those of :class:`Campbell`.
+    low, high : float
+        Range of the parameter.
+    unstable_at_low : bool
+    label : str
+        Name of the parameter with its unit.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import StabilityThresholds
+    >>> result = StabilityThresholds([300.0], [True], [100.0], [0], [1], 0.0, 400.0, False)
+    >>> print(result.table())
+    speed [rad/s]   above      frequency [rad/s]  n  whirl    kind
+              300   unstable                 100  1  forward  lateral
+    """
+
+    values: np.ndarray = numbers("thresholds")
+    onset: np.ndarray = numbers("thresholds", dtype=bool)
+    frequencies_inertial: np.ndarray = numbers("thresholds")
+    whirl_codes: np.ndarray = numbers("thresholds", dtype=int, least=0, most=len(WHIRLS) - 1)
+    nodal_diameters: np.ndarray = numbers("thresholds", dtype=int, least=-1)
+    low: float
+    high: float
+    unstable_at_low: bool
+    label: str = "speed [rad/s]"
+
+    @property
+    def ranges(self) -> np.ndarray:
+        """Unstable ranges of the parameter, shape (r, 2); open ones end where the search did."""
+        edges = [self.low] if self.unstable_at_low else []
+        edges += self.values.tolist()
+        edges += [self.high] if len(edges) % 2 else []
+        return np.array(edges).reshape(-1, 2)
+
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+        """Return the table as columns; `units` are those of the frequencies."""
+        shown = Units.of(units)
+        frequencies = shown.frequencies(self.frequencies_inertial)
+        return {
+            self.label: self.values,
+            "onset": self.onset,
+            f"inertial [{shown.frequency}]": frequencies,
+            "nodal diameters": self.nodal_diameters,
+            "whirl": np.array(WHIRLS)[self.whirl_codes],
+            "kind": families(self.whirl_codes, self.nodal_diameters),
+        }
+
+    def table(self) -> str:
+        """Return the thresholds with the modes that grow there as lines of text."""
+        lines = [f"{self.label:>13}   above      frequency [rad/s]  n  whirl    kind"]
+        kinds = families(self.whirl_codes, self.nodal_diameters)
+        for row, (value, onset) in enumerate(zip(self.values, self.onset, strict=True)):
+            n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
+            lines.append(
+                f"{value:13.7g}   {'unstable' if onset else 'stable':8}"
+                f"{self.frequencies_inertial[row]:20.5g}  {n if n >= 0 else '-'}  {word:8} "
+                f"{kinds[row]}"
+            )
+        if not self.values.size:
+            lines.append(f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range")
+        return "\n".join(lines)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded."""
+        ax = plotting.axes_or_new(ax)
+        for low, high in self.ranges:
+            ax.axvspan(low, high, color=plotting.COLORS[1], alpha=0.2, lw=0.0)
+        ax.plot(self.values, self.frequencies_inertial, "o", color=plotting.COLORS[0])
+        ax.set_xlim(self.low, self.high)
+        ax.set_xlabel(self.label)
+        ax.set_ylabel("inertial frequency of the mode [rad/s]")
+        ax.grid(alpha=0.3)
+        return ax

@@ -1,0 +1,192 @@
+"""Where the verdict on stability changes over one parameter, also between samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import combinations, pairwise
+from typing import Protocol
+
+import numpy as np
+from scipy.optimize import brentq, linear_sum_assignment, minimize_scalar
+
+from exudyn_rotor.linear.periodic.periodic_system import fold
+from exudyn_rotor.linear.stability.growth import Growth
+
+ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
+# motions that decay faster than this share of |λ| or Ω are not led into instability by another
+_DAMPED = 0.05
+_CROSSING_STEPS, _PEAK_STEPS = 5, 8
+# of the range: by which rates of change are told; changes below a share of |λ| are not
+_STEP, _NOISE = 1e-5, 1e-5
+
+
+class Made(Protocol):
+    """Growth over a parameter."""
+
+    def growth(self, value: float) -> Growth:
+        """Return the growth at a value of the parameter."""
+
+
+@dataclass(eq=False)
+class Search:
+    """Growth at known values of the parameter, and where its sign changes.
+
+    Where motions pass each other between two samples, only their rates of change over the parameter
+    tell which is which.
+    """
+
+    made: Made
+    span: float
+    known: dict[float, Growth] = field(default_factory=dict)
+    rates: dict[float, np.ndarray] = field(default_factory=dict)
+
+    def at(self, value: float) -> Growth:
+        if value not in self.known:
+            self.known[value] = self.made.growth(value)
+        return self.known[value]
+
+    def unstable(self, value: float) -> bool:
+        return self.at(value).excess > 0.0
+
+    def changes(self, accuracy: float) -> list[tuple[float, bool]]:
+        """Return where the verdict changes, and whether to unstable."""
+        found = []
+        for low, high in pairwise(sorted(self.known)):
+            if self.unstable(low) != self.unstable(high):
+                root = brentq(lambda value: self.at(value).excess, low, high, xtol=accuracy)
+                found.append((float(root), self.unstable(high)))
+        return found
+
+    def rate(self, value: float, step: float) -> np.ndarray:
+        """Return the change of all exponents per unit of the parameter."""
+        if value not in self.rates:
+            here, beside = self.at(value), self.made.growth(value + step)
+            near = _nearest(beside.values, here.values, here.base)
+            self.rates[value] = fold(near - here.values, here.base) / step
+        return self.rates[value]
+
+    def refine(self) -> None:
+        """Look between the samples for ranges of the other verdict."""
+        for low, high in pairwise(sorted(self.known)):
+            if self.unstable(low) != self.unstable(high):
+                continue
+            if self.unstable(low):
+                self._search(low, high, lambda growth, _: growth.excess)
+                continue
+            piece = _Piece.between(self, low, high)
+            for start, pair in piece.crossings():
+                self._meet(start, pair, low, high)
+            for branch in piece.peaks():
+                self._search(low, high, piece.real_part(branch))
+
+    @property
+    def _step(self) -> float:
+        return _STEP * self.span
+
+    def _meet(self, value: float, pair: np.ndarray, low: float, high: float) -> None:
+        """Follow two motions to where their frequencies meet, until something is unstable.
+
+        By Newton's method on the difference, which does not ask which of the two is which.
+        """
+        for _ in range(_CROSSING_STEPS):
+            growth = self.at(float(value))
+            if growth.excess > 0.0:
+                return
+            columns = _nearest_columns(growth.values, pair, growth.base)
+            rates, pair = self.rate(float(value), self._step)[columns], growth.values[columns]
+            change = (rates[0] - rates[1]).imag
+            move = -_apart(pair, growth.base) / change if change else np.inf
+            if abs(move) < ASIDE * self.span or not low < value + move < high:
+                return
+            pair, value = pair + move * rates, value + move
+
+    def _search(self, low: float, high: float, falling: Callable[[Growth, float], float]) -> None:
+        minimize_scalar(
+            lambda value: falling(self.at(float(value)), value),
+            bounds=(low, high),
+            method="bounded",
+            options={"maxiter": _PEAK_STEPS},
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """Motions between two samples, the same at both by their rates of change.
+
+    Attributes
+    ----------
+    low, high : float
+    ends, rates : ndarray, shape (2, n)
+        The same motions at both, and their rates of change.
+    base : float
+    """
+
+    low: float
+    high: float
+    ends: np.ndarray
+    rates: np.ndarray
+    base: float
+
+    @classmethod
+    def between(cls, search: Search, low: float, high: float) -> _Piece:
+        growths, step = [search.at(value) for value in (low, high)], _STEP * search.span
+        rates = [search.rate(value, s) for value, s in ((low, step), (high, -step))]
+        base, half = growths[1].base, 0.5 * (high - low)
+        halfway = [growths[0].values + half * rates[0], growths[1].values - half * rates[1]]
+        columns = _nearest_columns(halfway[1], halfway[0], base)
+        return cls(
+            low,
+            high,
+            np.array([growths[0].values, growths[1].values[columns]]),
+            np.array([rates[0], rates[1][columns]]),
+            base,
+        )
+
+    def crossings(self) -> Iterator[tuple[float, np.ndarray]]:
+        """Yield where frequencies of lightly damped motions meet, and both exponents there."""
+        size = np.abs(self.ends).max(initial=0.0)
+        limit = -_DAMPED * np.maximum(np.abs(self.ends[0]), 1e-3 * size)
+        light = np.flatnonzero((self.ends[0].real > limit) & (self.ends[1].real > limit))
+        for pair in combinations(light, 2):
+            columns = list(pair)
+            if self.ends[0, columns].imag.sum() < -1e-6 * size:  # the conjugates of another pair
+                continue
+            gaps = [_apart(values, self.base) for values in self.ends[:, columns]]
+            near = self.base == 0.0 or max(map(abs, gaps)) < 0.25 * self.base
+            if gaps[0] * gaps[1] < 0.0 and near:
+                share = gaps[0] / (gaps[0] - gaps[1])
+                change = fold(self.ends[1, columns] - self.ends[0, columns], self.base)
+                here = self.ends[0, columns] + share * change
+                yield self.low + share * (self.high - self.low), here
+
+    def peaks(self) -> np.ndarray:
+        """Return motions whose real part may have a peak between."""
+        rise, fall = self.rates.real * (self.high - self.low)
+        noise = _NOISE * np.maximum(np.abs(self.ends[0]), np.abs(self.ends[1]))
+        return np.flatnonzero((rise > noise) & (fall < -noise))
+
+    def real_part(self, branch: int) -> Callable[[Growth, float], float]:
+        """Return minus the real part of a motion between as a function, for a search."""
+        start, end = self.ends[:, branch]
+
+        def falling(growth: Growth, value: float) -> float:
+            share = (value - self.low) / (self.high - self.low)
+            guess = start + share * fold(np.array([end - start]), growth.base)
+            return -float(_nearest(growth.values, guess, growth.base)[0].real)
+
+        return falling
+
+
+def _apart(pair: np.ndarray, base: float) -> float:
+    return float(fold(np.array([pair[0] - pair[1]]), base)[0].imag)
+
+
+def _nearest_columns(values: np.ndarray, guesses: np.ndarray, base: float) -> np.ndarray:
+    """Return which values are next to guesses, each once."""
+    return linear_sum_assignment(np.abs(fold(values[None, :] - guesses[:, None], base)))[1]
+
+
+def _nearest(values: np.ndarray, guesses: np.ndarray, base: float) -> np.ndarray:
+    """Return the values next to guesses, each once."""
+    return values[_nearest_columns(values, guesses, base)]
