@@ -27,6 +27,8 @@ from exudyn_rotor import (
     check_run,
     propose,
     select_modes,
+    separation_margins,
+    stability_level_one,
     stress_history,
     unbalance_response,
 )
@@ -149,6 +151,33 @@ def peak_between_few_speeds(_):
     unbalance_response(rotor, [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
 
 
+def margins_of_few_speeds(_):
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
+    supports = [Support("all", 2e4, 1.0, tilt_stiffness=1e4)]
+    response = unbalance_response(
+        rotor, [50.0, 95.0, 150.0], [Unbalance("all", 1e-4)], supports=supports
+    )
+    separation_margins(response, (200.0, 300.0))
+
+
+def second_forward_mode_that_is_unstable_first(_):
+    rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
+    rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
+    held = [Support("left", 1e5, damping=40.0), Support("right", 4e5, damping=40.0)]
+    stability_level_one(rotor, 300.0, 4e3, "right", supports=held)
+
+
+def campbell_with_one_mode(beam):
+    supports = [Support("left", 1e9, tilt_stiffness=1e9)]
+    campbell(beam.reduce(2), [0.0], supports=supports, stiffening="tilt")
+
+
+def curved_elements(_):
+    mesh = block_beam(0.1)
+    mesh.Curve(2)
+    SolidRotor.from_ngsolve(mesh, STEEL, "z")
+
+
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
@@ -178,7 +207,19 @@ PLACES = {
     "linear/models/linear_model.py:warn_of_structural_damping": (
         campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it",
     ),
-    "linear/response/responses.py:peak": (
+    "evaluation/level_one.py:_warn_of_others": (
+        second_forward_mode_that_is_unstable_first, UserWarning, "another mode",
+    ),
+    "evaluation/separation.py:_peak": (
+        margins_of_few_speeds, UserWarning, "too far apart to give its amplification",
+    ),
+    "linear/models/basis_error.py:warn": (
+        campbell_with_one_mode, UserWarning, "errs by about",
+    ),
+    "solid/ngsolve_model.py:_prepare_mesh": (
+        curved_elements, UserWarning, "are replaced by mid nodes",
+    ),
+    "linear/response/response.py:peak": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
@@ -202,6 +243,9 @@ PLACES = {
 }  # fmt: skip
 
 
+_CALLS = ("warn", "warn_explicit", "warnings.warn", "warnings.warn_explicit")
+
+
 def calls_of_warn(source: str, file: str) -> list[str]:
     """Return file:function of every call of ``warn`` in a module."""
     found = []
@@ -209,10 +253,8 @@ def calls_of_warn(source: str, file: str) -> list[str]:
     def visit(node: ast.AST, function: str) -> None:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             function = node.name
-        if isinstance(node, ast.Call):
-            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-            if name in ("warn", "warn_explicit"):
-                found.append(f"{file}:{function}")
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in _CALLS:
+            found.append(f"{file}:{function}")
         for child in ast.iter_child_nodes(node):
             visit(child, function)
 

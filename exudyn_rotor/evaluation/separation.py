@@ -17,6 +17,7 @@ from scipy.signal import find_peaks
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
+from exudyn_rotor.linear.models.eccentricity import user_level
 from exudyn_rotor.linear.response.refinement import peak_between
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
@@ -268,7 +269,7 @@ def _peak(
             f"{name}: the speeds around the peak at {speeds[row]:g} rad/s are too far apart to "
             "give its amplification; compute the response with refine=True",
             UserWarning,
-            stacklevel=3,
+            stacklevel=user_level(),
         )
     place, size = peak_between(speeds[near], curve[near])
     lower = _half_power(speeds[: row + 2][::-1], curve[: row + 2][::-1], size)
