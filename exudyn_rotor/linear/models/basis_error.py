@@ -17,6 +17,7 @@ from exudyn_rotor.linear.models.left_out import LeftOut
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.threads import one_thread
 
 NOT_KNOWN = "error of the basis: not known"
 # share of the frequency that growth counts as at least: its error is then that of the damping ratio
@@ -58,6 +59,7 @@ class BasisError:
         """True where an estimate can be given."""
         return self.accuracy is not None and (self.model.is_full or self.left_out is not None)
 
+    @one_thread()
     def shifts(
         self, speeds: np.ndarray, modes: Sequence[FloquetModes], chosen: np.ndarray
     ) -> np.ndarray | None:
