@@ -150,10 +150,10 @@ def relative_errors(
 def judged(frequencies: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     """Return which modes (s, k) an analysis of all modes is judged by.
 
-    Those up to twice the fastest speed in the inertial frame, and the lowest six that move; the
-    highest modes of a basis are always wrong.
+    Those up to twice the fastest speed in the inertial frame, and the lowest six that move, or all
+    if these are fewer; the highest modes of a larger basis are always wrong.
     """
     moving = np.where(frequencies > 0.0, frequencies, np.inf)
     lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
-    lowest = np.where(np.isfinite(lowest), lowest, 0.0)
+    lowest = np.where(np.isfinite(lowest), lowest, frequencies.max(axis=1, keepdims=True))
     return frequencies <= np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
