@@ -13,7 +13,7 @@ from typing import Any
 from warnings import WarningMessage
 
 import numpy as np
-from matplotlib import pyplot
+from matplotlib import pyplot, rc_context, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -117,7 +117,8 @@ def report(
     sections = _sections(contents)
     if not sections:
         raise ValueError(f"contents: there are none; give {_HOW}")
-    written = [(heading, _html(items, heading, units)) for heading, items in sections]
+    with rc_context({"font.size": rcParamsDefault["font.size"]}):  # plots of Exudyn change it
+        written = [(heading, _html(items, heading, units)) for heading, items in sections]
     if messages:
         boxes = (f'<p class="warning">{escape(text)}</p>' for text in dict.fromkeys(messages))
         written.append(("Warnings", "\n".join(boxes)))

@@ -9,7 +9,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
+from matplotlib import pyplot, rc_context
 from point_rotors import ring_rotor
 from small_results import STORED
 
@@ -54,6 +54,13 @@ def written(tmp_path):
 @pytest.fixture(scope="module")
 def ring():
     return ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10))
+
+
+def test_pictures_do_not_have_the_font_that_other_plots_set(written):
+    """Exudyn's plots leave a large one behind."""
+    plain = written(RESULTS[:1], title="All")
+    with rc_context({"font.size": 30.0}):
+        assert written(RESULTS[:1], title="All") == plain
 
 
 def test_every_result_is_shown_by_table_picture_and_columns(written):
