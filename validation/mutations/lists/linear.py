@@ -103,6 +103,15 @@ LINEAR = [
     ),
     *mutations(
         "linear/models/full_equations.py",
+        "test_full_stiffening.py::test_full_equations_hold_the_change_of_shape",
+        (
+            "stiffness per fourth power of the speed subtracted in the full model",
+            "force + speed**4 * (K4 @ Y)",
+            "force - speed**4 * (K4 @ Y)",
+        ),
+    ),
+    *mutations(
+        "linear/models/full_equations.py",
         "test_full_response.py::test_unbalance_response_is_that_of_all_modes",
         (
             "Coriolis forces halved in the full model",
