@@ -183,9 +183,11 @@ def test_stress_set_later_is_that_given_before(fem):
             if before
             else {}
         )
-        mbs = exu.SystemContainer().AddSystem()
+        container = exu.SystemContainer()
         cms = ObjectFixedAxisFFRFreducedOrderInterface(model, axis="z")
-        rotor = cms.AddObjectFFRFreducedOrder(mbs)["oFFRFreducedOrder"]
+        rotor = int(cms.AddObjectFFRFreducedOrder(container.AddSystem())["oFFRFreducedOrder"])
+        del cms  # nothing but the container holds the system meanwhile
+        mbs = container.GetSystem(0)
         if not before:
             mbs.SetObjectParameter(rotor, "outputVariableModeBasis", stress)
         found.append(mbs.GetObjectParameter(rotor, "outputVariableModeBasis"))

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import exudyn
 import numpy as np
@@ -75,8 +74,8 @@ class StressConversion:
 
 _DEPENDENT = 1e-10  # singular values below this share of the largest: dependent modes
 
-# for every system: physics object's mark → its marker body, virtual nodes and conversion
-_accepting: WeakKeyDictionary[exudyn.MainSystem, dict] = WeakKeyDictionary()
+# key in mbs.sys: physics object's mark → numbers of physics and marker body, conversion, selection
+_CONVERSIONS = "exudyn_rotor: conversion of stress modes that are set later"
 
 
 def accept_stress_modes(body: RotorBody, conversion: StressConversion) -> None:
@@ -84,7 +83,7 @@ def accept_stress_modes(body: RotorBody, conversion: StressConversion) -> None:
     marker_body, T = int(body.objects["marker_body"]), body.selection.T
     physics = body.objects["physics"]
     entry = (physics, marker_body, conversion, T)
-    _accepting.setdefault(body.mbs, {})[body.mark] = entry
+    body.mbs.sys.setdefault(_CONVERSIONS, {})[body.mark] = entry
     if conversion.has_strain:
         strain = exudyn.OutputVariableType.StrainLocal
         body.mbs.SetObjectParameter(marker_body, _PARAMETER, conversion.recovered["matrix"])
@@ -93,7 +92,7 @@ def accept_stress_modes(body: RotorBody, conversion: StressConversion) -> None:
 
 def _converted(mbs: exudyn.MainSystem, number: object, value: object) -> object:
     """Return stress modes for a marker body; anything else as it was given."""
-    for mark, (physics, marker_body, conversion, T) in _accepting.get(mbs, {}).items():
+    for mark, (physics, marker_body, conversion, T) in mbs.sys[_CONVERSIONS].items():
         if int(number) != marker_body or mark_of(mbs, physics) != mark:
             continue
         there = np.shape(mbs.GetObjectParameter(marker_body, "modeBasis"))
@@ -113,6 +112,6 @@ def _set_object_parameter(
     value: object,
 ) -> None:
     """Set a parameter as Exudyn does; stress modes for a fixed-axis rotor are converted."""
-    if parameterName == _PARAMETER and mbs in _accepting:
+    if parameterName == _PARAMETER and _CONVERSIONS in mbs.sys:
         value = _converted(mbs, objectNumber, value)
     set_parameter(mbs, objectNumber, parameterName, value)
