@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 from scipy.signal import find_peaks
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
-from exudyn_rotor.linear.models.eccentricity import user_level
 from exudyn_rotor.linear.response.refinement import peak_between
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words

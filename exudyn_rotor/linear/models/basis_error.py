@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.models.eccentricity import user_level
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.left_out import LeftOut
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor

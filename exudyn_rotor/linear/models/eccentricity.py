@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 
 import numpy as np
 
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.spin import Spin
 from exudyn_rotor.theory.invariants import Invariants
 
@@ -37,14 +37,6 @@ def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
         UserWarning,
         stacklevel=user_level(),
     )
-
-
-def user_level() -> int:
-    """Return the stack level of the first caller outside the package."""
-    frame, level = sys._getframe(1), 1
-    while frame.f_back and frame.f_globals.get("__name__", "").startswith("exudyn_rotor."):
-        frame, level = frame.f_back, level + 1
-    return level
 
 
 def without_drive(invariants: Invariants) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import exudyn
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.models.eccentricity import user_level
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
