@@ -76,9 +76,16 @@ BAD = {
     "speed": (np.nan, "x", None, [1.0], True),
     "low": (np.nan, -1.0, "x", None),
     "high": (np.nan, 0.0, "x", None),
+    "samples": (0, 1, 2.5, "x", None, True),
+    "label": ("", 3, ["a"], b"a"),
+    "accuracy": (np.nan, -1.0, 0.0, 2.0, "x", [0.1], True),
     "body": (3, ROTOR),
     "target": (3, None, "rotor", np.eye(3), UNBALANCE, Support),
 }  # fmt: skip
+
+# a function of the parameter may stand for these, and no speed where it is the parameter itself
+BAD_FOR_THRESHOLD = {"target": BAD["target"][:-1], "supports": BAD["supports"][:-1]}
+BAD_FOR_THRESHOLD["speed"] = tuple(value for value in BAD["speed"] if value is not None)
 
 
 def _refused(call, given: dict, name: str, values: tuple) -> list[str]:
@@ -112,7 +119,8 @@ def test_argument_is_refused_by_its_name(call, name, monkeypatch):
     if name not in ("at", "body"):  # those are looked up in the rotor's equations
         monkeypatch.setattr(source.LinearRotor, "of", None)
     given = dict(zip(inspect.signature(call).parameters, (ROTOR, *CALLS[call]), strict=False))
-    assert _refused(call, given | {"supports": SUPPORTS}, name, BAD[name]) == []
+    values = BAD_FOR_THRESHOLD.get(name) if call is stability_threshold else None
+    assert _refused(call, given | {"supports": SUPPORTS}, name, values or BAD[name]) == []
 
 
 MAKERS = [

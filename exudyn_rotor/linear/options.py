@@ -20,6 +20,12 @@ def accuracy(value: float, name: str) -> float:
     return checks.number(value, name, least=_LEAST, most=_MOST)
 
 
+def check_basis_accuracy(value: float | None) -> None:
+    """Check the largest error by the basis of a reduced rotor, or None: `accuracy`."""
+    if value is not None:
+        checks.number(value, "accuracy", above=0.0, most=1.0)
+
+
 def check_sweep(executor: Executor | None, progress: bool) -> None:
     """Check how values are computed: `executor` and `progress`."""
     checks.executor(executor)

@@ -66,7 +66,7 @@ class RigidDisc:
     >>> corners = [[1, 1, 0.1], [-1, -1, 0.1], [-1, 1, -0.1], [1, -1, -0.1]]
     >>> disc = RigidDisc([0, 0, 0], 2.0, np.diag([3, 3, 4]), [4, 5, 6, 7], corners, 1e9)
     >>> matrix = disc.mass_matrix(8)[::3, ::3]
-    >>> round(matrix.sum(), 9)
+    >>> round(float(matrix.sum()), 9)
     2.0
     """
 

@@ -133,6 +133,7 @@ def campbell(
         checks.count(modes, "modes", least=1)
     tolerance = options.accuracy(tolerance, "tolerance")
     residual = options.accuracy(residual, "residual")
+    options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_structural_damping(model, "campbell finds modes")

@@ -215,6 +215,7 @@ def critical_speed_map(
     supports = checked_supports(supports)
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
+    options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, stiffening=stiffening)
     basis = BasisError.of(model, accuracy)

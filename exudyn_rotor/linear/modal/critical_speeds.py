@@ -200,6 +200,7 @@ def critical_speeds(
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     tolerance = options.accuracy(tolerance, "tolerance")
     residual = options.accuracy(residual, "residual")
+    options.check_basis_accuracy(accuracy)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
     basis = BasisError.of(model, accuracy)
     result = critical_speeds_of(

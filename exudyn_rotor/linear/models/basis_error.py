@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor import checks
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.left_out import LeftOut
 from exudyn_rotor.linear.models.protocol import LinearModel
@@ -49,8 +48,6 @@ class BasisError:
     @classmethod
     def of(cls, model: LinearModel, accuracy: float | None, held: bool = False) -> BasisError:
         """Prepare the check of a model; `held` where a free spin is no coordinate."""
-        if accuracy is not None:
-            checks.number(accuracy, "accuracy", above=0.0, most=1.0)
         known = isinstance(model, LinearRotor) and not model.is_full and accuracy is not None
         return cls(model, accuracy, LeftOut.of(model, held) if known else None)
 

@@ -135,7 +135,7 @@ def unbalance_response(
     values = ascending_from_zero(speeds, "speeds")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
-    _check(frame, tolerance, residual)
+    _check(frame, tolerance, residual, accuracy)
     checks.flag(refine, "refine")
     options.check_sweep(executor, progress)
     at = checked_places(at)
@@ -229,7 +229,7 @@ def harmonic_response(
     )
     speed = checks.number(speed, "speed", "rad/s")
     loads = checks.instances(loads, "loads", (HarmonicForce, BaseAcceleration))
-    _check(frame, tolerance, residual)
+    _check(frame, tolerance, residual, accuracy)
     checks.flag(refine, "refine")
     options.check_sweep(executor, progress)
     at = checked_places(at)
@@ -392,7 +392,8 @@ def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray
     return {"coordinates": kept, "basis": kept_basis(model)}
 
 
-def _check(frame: str, tolerance: float, residual: float) -> None:
+def _check(frame: str, tolerance: float, residual: float, accuracy: float | None) -> None:
     checks.choice(frame, "frame", FRAMES)
     options.accuracy(tolerance, "tolerance")
     options.accuracy(residual, "residual")
+    options.check_basis_accuracy(accuracy)

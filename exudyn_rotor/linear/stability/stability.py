@@ -98,6 +98,7 @@ def stability(
     """
     values = ascending_from_zero(speeds, "speeds")
     check_options(method, tolerance, modes, residual)
+    options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     space = held_space(model, values[-1], modes, residual)

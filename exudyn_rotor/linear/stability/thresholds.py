@@ -87,19 +87,19 @@ def stability_threshold(
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
     is_speed = not callable(target) and not callable(supports)
+    if label is None:
+        label = "speed [rad/s]" if is_speed else "parameter"
+    checks.label(label, "label")
     if is_speed:
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        label = "speed [rad/s]" if label is None else label
         made: _Made = _OverSpeed.of(target, high, given | {"supports": supports})
     else:
         if speed is None:
             raise ValueError("speed: needs the spin speed [rad/s], since it is not the parameter")
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
-        label = "parameter" if label is None else label
         made = _OverParameter(target, supports, speed, _Options.of(given))
-    checks.label(label, "label")
     search = Search(made, high - low)
     for point in np.linspace(low, high, samples + 1):
         search.at(float(point))
