@@ -17,7 +17,15 @@ from test_stability import (
     inertial_multipliers,
 )
 
-from exudyn_rotor import SolidRotor, Support, campbell, stability, stability_threshold
+from exudyn_rotor import (
+    SolidRotor,
+    Stability,
+    Support,
+    campbell,
+    stability,
+    stability_threshold,
+)
+from exudyn_rotor.linear.modal.whirl import WHIRLS
 
 TORSION, AXIAL = 3e3, 4e5
 POLAR = MASS * 0.1**2
@@ -134,3 +142,52 @@ def test_gaps_between_unstable_samples_are_found():
         assert np.abs(inertial_multipliers(0.5 * (end + start))).max() < 1.0
     assert "unstable" in found.table()
     assert found.plot().get_xlim() == (150.0, 180.0)
+
+
+def families_of(growth: dict[str, list[float]], speeds: list[float]) -> Stability:
+    """Return a result with one motion for each word of whirl."""
+    exponents = np.array(list(growth.values())).T + 100j
+    codes = np.tile([WHIRLS.index(word) for word in growth], (len(speeds), 1))
+    names = {"frequencies_inertial": np.full(codes.shape, 100.0), "whirl_codes": codes}
+    names |= {"nodal_diameters": np.where(codes < 2, 1, 0), "bounds": np.zeros(codes.shape)}
+    return Stability(
+        speeds, exponents, exponents, exponents.real.max(axis=1), np.full(len(speeds), True),
+        np.zeros(len(speeds)), **names, tolerance=1e-9, basis_shifts=[1e-3j] * len(speeds),
+    )  # fmt: skip
+
+
+def test_columns_of_the_table_end_where_their_heads_do():
+    growth = {"forward": [-1.2345e-5, -12345.6], "torsional": [-0.00058684, -1.2345e-105]}
+    lines = families_of(growth, [0.0, 2e5]).table().splitlines()
+    for head, column in (("lateral [1/s]", 0), ("torsional", 1), ("basis error", -1)):
+        end = lines[0].index(head) + len(head)
+        for row, line in enumerate(lines[1:3]):
+            shown = line[:end].split()[-1]
+            assert line[end : end + 1] in (" ", "")
+            if column >= 0:
+                assert shown == f"{list(growth.values())[column][row]:.4g}"
+    start = lines[0].index("verdict")
+    assert [line[start:].split()[0] for line in lines[1:3]] == ["stable", "stable"]
+
+
+def test_picture_has_a_line_for_each_family():
+    """A torsional motion almost without damping leaves the lateral one to be seen."""
+    growth = {"forward": [-6.0, -12.0], "torsional": [-5e-4, -1e-3], "axial": [-170.0, -169.0]}
+    ax = families_of(growth, [0.0, 100.0]).plot(units="SI")
+    drawn = {line.get_label(): line.get_ydata() for line in ax.lines}
+    np.testing.assert_array_equal(drawn["lateral"], growth["forward"])
+    np.testing.assert_array_equal(drawn["torsional"], growth["torsional"])
+    np.testing.assert_array_equal(drawn["least stable"], growth["torsional"])
+    assert np.all(np.isnan(drawn["axial: -169 at most"]))
+    assert -15.0 < ax.get_ylim()[0] < -12.0
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels == ["least stable", "lateral", "torsional", "axial: -169 at most"]
+
+
+def test_picture_marks_the_least_stable_motion_through_its_threshold():
+    """It is neutral there, which a motion that is neutral at all speeds does not replace."""
+    growth = {"forward": [-2.0, 0.0, 1.0], "backward": [-3.0, -4.0, -5.0], "axial": [0.0] * 3}
+    ax = families_of(growth, [0.0, 50.0, 100.0]).plot()
+    drawn = {line.get_label(): line.get_ydata() for line in ax.lines}
+    np.testing.assert_array_equal(drawn["least stable"], [-2.0, 0.0, 1.0])
+    np.testing.assert_array_equal(drawn["axial"], 0.0)

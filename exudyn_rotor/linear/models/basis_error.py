@@ -122,6 +122,11 @@ class BasisError:
         return "reduce the rotor with more, up to twice as many"
 
 
+def in_table(error: float, digits: int = 1) -> str:
+    """Return an error as tables show it: '-' where it was not estimated."""
+    return "-" if np.isnan(error) else f"{error:.{digits}e}"
+
+
 def relative_errors(
     shifts: np.ndarray, growth: np.ndarray, frequencies: np.ndarray, speeds: np.ndarray
 ) -> np.ndarray:

@@ -9,10 +9,12 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
+
+_SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
 
 
 @storable
@@ -61,8 +63,8 @@ class Stability(Result):
     >>> names |= {"nodal_diameters": [[1, 1]], "bounds": [[1e-7, 1e-7]]}
     >>> result = Stability([50.0], values, values, [-1.0], [True], [0.0], **names, tolerance=1e-9)
     >>> print(result.table())
-    speed [rad/s]   lateral [1/s]  torsional    axial   frequency [rad/s]  n  whirl     verdict
-          50.0000              -1          -        -                 150  1  forward   stable
+    speed [rad/s]  lateral [1/s]    torsional        axial  frequency [rad/s]  n  whirl      verdict
+          50.0000             -1            -            -                150  1  forward    stable
     error of the basis: not known
     """
 
@@ -87,14 +89,26 @@ class Stability(Result):
         checks.number(self.tolerance, "tolerance", least=0.0)
 
     def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
-        """Draw the growth over the spin speed; unstable speeds are shaded.
+        """Draw the growth over the spin speed, of each family and of the least stable motion.
 
-        `units` are 'Hz', 'rpm' or 'SI', rad/s.
+        Unstable speeds are shaded; families that decay far faster than lateral motions, which would
+        hide these, are in the legend only. `units` are 'Hz', 'rpm' or 'SI', rad/s.
         """
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
         speeds = shown.speeds(self.speeds)
-        ax.plot(speeds, self.growth, ".-", color=plotting.COLORS[0], lw=1.3)
+        found = {family: self.growth_of(family) for family in FAMILIES}
+        moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
+        if moving:  # others are free or rest at all speeds
+            ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
+        lowest = _SHOWN * np.nanmin(found["lateral"], initial=0.0)
+        for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
+            if np.all(np.isnan(growth)):
+                continue
+            hidden = np.nanmax(growth) < lowest < 0.0
+            drawn = np.full(len(speeds), np.nan) if hidden else growth
+            label = f"{family}: {np.nanmax(growth):.3g} at most" if hidden else family
+            ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
         low, high = ax.get_ylim()
         ax.fill_between(
             speeds, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
@@ -102,8 +116,9 @@ class Stability(Result):
         ax.set_ylim(low, high)
         ax.axhline(0.0, color="0.3", lw=0.8)
         ax.set_xlabel(f"spin speed [{shown.speed}]")
-        ax.set_ylabel("growth of the least stable motion [1/s]")
+        ax.set_ylabel("largest growth [1/s]")
         ax.grid(alpha=0.3)
+        plotting.legend_above(ax, 4)
         return ax
 
     @property
@@ -188,22 +203,23 @@ class Stability(Result):
         speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors > 0.0)
-        lines = [
-            f"{speed:>13}   lateral [1/s]  torsional    axial   {frequency:>17}  n  whirl     "
-            "verdict" + ("   basis error" if reduced else "")
-        ]
         growth = np.array([self.growth_of(name) for name in FAMILIES[:3]]).T
+        lines = [
+            f"{speed:>13}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
+            f"{frequency:>17}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
+        ]
         for row, column in enumerate(self.least_stable):
             parts = ["-" if np.isnan(value) else f"{value:.4g}" for value in growth[row]]
             n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
             heard = shown.frequencies(self.frequencies_inertial[row, column])
+            verdict = "stable" if self.stable[row] else "unstable"
             lines.append(
-                f"{at:13.4f}   {parts[0]:>13}  {parts[1]:>9}{parts[2]:>9}   {heard:17.5g}  "
-                f"{n if n >= 0 else '-'}  {self.whirl[row, column]:9} "
-                + ("stable" if self.stable[row] else "unstable")
+                f"{at:13.4f}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:17.5g}  "
+                f"{n if n >= 0 else '-'}  {self.whirl[row, column]:9}  {verdict:8}"
             )
             if reduced:
-                lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{errors[row]:11.1e}"
+                lines[-1] += f"{in_table(errors[row]):>13}"
+        lines = [line.rstrip() for line in lines]
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
