@@ -5,7 +5,8 @@ import pytest
 from asymmetric import asymmetric_shaft
 from test_campbell_frames import SHAFT, point_mass, rings
 
-from exudyn_rotor import SolidRotor, Support, campbell, critical_speeds
+from exudyn_rotor import SolidRotor, Support, campbell, critical_speed_map, critical_speeds
+from exudyn_rotor.linear.modal.whirl import FORWARD
 
 
 def test_overdamped_motions_stand_behind_the_others():
@@ -55,6 +56,16 @@ def test_a_pair_that_is_split_is_one_critical_speed():
     np.testing.assert_allclose(result.speeds[forward], [100.0], rtol=1e-9)
     np.testing.assert_allclose(result.splits[forward], [np.sqrt(1.004) - 1.0], rtol=1e-6)
     assert "pair, the other 2.0e-03 above" in result.table()
+
+
+def test_a_map_has_such_a_pair_once():
+    """The same springs beside those of the map: `critical_speeds` for each stiffness."""
+    uneven = Support("at", np.diag([0.0, 40.0, 0.0]), frame="rotor")
+    given = {"supports": [uneven], "nodal_diameters": [1]}
+    result = critical_speed_map(point_mass().reduce(0), "at", [1e4, 4e4], **given)
+    forward = np.where(result.whirl_codes == FORWARD, result.speeds, np.nan)
+    assert np.sum(result.whirl_codes == FORWARD, axis=1).tolist() == [1, 1]
+    np.testing.assert_allclose(np.nanmin(forward, axis=1), [100.0, 200.0], rtol=1e-9)
 
 
 @pytest.mark.parametrize("axis", ["a flat shaft", "independent motions"])

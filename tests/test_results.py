@@ -1,7 +1,7 @@
 """Results are small, readable, stored without pickle, and drawn without a display."""
 
 import inspect
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -257,7 +257,7 @@ def test_orbit_is_drawn_for_every_place(ellipses):
 
 def test_table_and_peak(ellipses):
     lines = ellipses.table("mid").splitlines()
-    assert len(lines) == 3 + len(ellipses.speeds)
+    assert len(lines) == 3 + len(ellipses.speeds) + 1  # heads, and the level of stiffening
     speed, size = ellipses.peak("mid")
     major = ellipses.semi_axes("mid")[0]
     highest = int(major.argmax())
@@ -327,3 +327,30 @@ def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
         plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
     with pytest.raises(ValueError, match="values: needs finite numbers"):
         plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("Campbell", {"basis_shifts": [[1e-3j, np.nan], [np.nan, np.nan], [1e-3j, 1e-3j]]}),
+        ("CriticalSpeeds", {"basis_errors": [1e-3, np.nan, np.nan]}),
+        ("CriticalSpeedMap", {"basis_errors": [[1e-3, np.nan], [np.nan, np.nan], [0.0, 1e-3]]}),
+        ("UnbalanceResponse", {"basis_errors": [[1e-3, 1e-3], [np.nan, np.nan], [0.0, 1e-3]]}),
+        ("Stability", {"basis_shifts": [1e-3j, np.nan, np.nan]}),
+    ],
+)
+def test_errors_that_are_not_estimated_are_no_numbers_in_tables(name, given):
+    """A dash in a column of their own; the map, which has the largest of a row, leaves it out."""
+    lines = replace(RESULTS[name], **given).table().splitlines()
+    assert not any("nan" in line for line in lines)
+    assert any("e-0" in line for line in lines)
+    if name == "CriticalSpeedMap":
+        assert ["basis error" in line for line in lines[2:5]] == [True, False, True]
+    else:
+        assert any(" - " in f"{line} " for line in lines)
+
+
+def test_responses_tell_the_level_of_stiffening(ellipses, shaken):
+    for response in (ellipses, shaken):
+        assert response.stiffening == "tilt"
+        assert response.table().splitlines()[-1] == "stiffening: tilt"

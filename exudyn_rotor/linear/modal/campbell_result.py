@@ -13,7 +13,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -273,7 +273,8 @@ class Campbell(Result):
     def table(self, count: int | None = None, *, units: str = "Hz") -> str:
         """Return the lowest `count` modes at every speed as lines of text.
 
-        `units` are those of :meth:`plot`.
+        `units` are those of :meth:`plot`. The error of the basis is '-' where it is not estimated,
+        see :attr:`basis_shifts`.
         """
         if count is not None:
             count = checks.count(count, "count", least=1)
@@ -293,7 +294,7 @@ class Campbell(Result):
         for i, at in enumerate(known.speeds(self.speeds)):
             for j in range(self.order.shape[1])[shown]:
                 n = self.nodal_diameters[i, j]
-                error = f"{errors[i, j]:13.1e}" if reduced else ""
+                error = f"{in_table(errors[i, j]):>13}" if reduced else ""
                 kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
                 lines.append(
                     f"{at:12.4g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"

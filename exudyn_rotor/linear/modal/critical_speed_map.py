@@ -21,7 +21,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     warn_of_critical,
 )
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -42,7 +42,8 @@ class CriticalSpeedMap(Result):
     stiffnesses : ndarray, shape (s,)
         [N/m]
     speeds : ndarray, shape (s, c)
-        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
+        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s]. A pair
+        that an uneven mesh splits is there once, as in :class:`CriticalSpeeds`.
     whirl_codes : ndarray of int, shape (s, c)
         Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
     order : float
@@ -110,8 +111,8 @@ class CriticalSpeedMap(Result):
                 if code >= 0
             )
             lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
-            if reduced:
-                lines[-1] += f" (basis error up to {np.nanmax(errors[i], initial=0.0):.1e})"
+            if reduced and not np.all(np.isnan(errors[i])):
+                lines[-1] += f" (basis error up to {in_table(np.nanmax(errors[i]))})"
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])

@@ -14,7 +14,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
@@ -101,6 +101,8 @@ class CriticalSpeeds(Result):
     def table(self, *, units: str = "SI") -> str:
         """Return the critical speeds as lines of text.
 
+        The error of the basis is '-' where it is not estimated, see :attr:`basis_errors`.
+
         Parameters
         ----------
         units : {'SI', 'rpm', 'Hz'}
@@ -117,10 +119,12 @@ class CriticalSpeeds(Result):
         ]
         for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
             count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
-            word = f"{self.whirl[i]:<9}  {errors[i]:.1e}" if reduced else self.whirl[i]
+            word = f"{self.whirl[i]:<9}  {in_table(errors[i]):<7}" if reduced else self.whirl[i]
             split = 0.0 if self.splits is None else self.splits[i]
             word += f"  pair, the other {split:.1e} above" if split > 0.0 else ""
-            lines.append(f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}")
+            lines.append(
+                f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}".rstrip()
+            )
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])

@@ -5,19 +5,20 @@ from __future__ import annotations
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
 from exudyn_rotor.linear.response.refinement import peak_between
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
+from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
@@ -46,8 +47,11 @@ class Response(RunStart, ABC):
     basis_errors : ndarray, shape (s, p), or None
         Estimated relative errors by the basis of a reduced rotor, of the displacement in the
         harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
-        at that speed or frequency. NaN where it was not looked at, on anisotropic supports at all
-        but a few; None where they are not known.
+        at that speed or frequency. NaN where it was not looked at: where supports or rotor are
+        anisotropic, so that the motion has harmonics, it is at the largest motion and at the first,
+        middle and last point only. None where they are not known.
+    stiffening : str or None
+        Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     """
 
     places: tuple[str, ...] = words("places")
@@ -55,10 +59,13 @@ class Response(RunStart, ABC):
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     frame: str
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
+    stiffening: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
+        if self.stiffening is not None:
+            checks.choice(self.stiffening, "stiffening", LEVELS)
 
     @property
     @abstractmethod
@@ -207,7 +214,7 @@ class Response(RunStart, ABC):
     def table(
         self, place: str | None = None, order: int | None = None, *, units: str = "SI"
     ) -> str:
-        """Return sizes and phases at one place as text.
+        """Return sizes and phases at one place as text; '-' for an error that is not estimated.
 
         Parameters
         ----------
@@ -233,11 +240,13 @@ class Response(RunStart, ABC):
         column = np.zeros(len(values)) if errors is None else errors[:, self.places.index(place)]
         for row in zip(values, a, b, forward, backward, column, strict=True):
             at, x, y, f, g, error = row
-            shown = f"  {error:5.0e}" if reduced else ""
+            shown = f"  {in_table(error, 0):>5}" if reduced else ""
             lines.append(
                 f"{at:16.6g}  {abs(x):11.4e} {_degrees(x):7.1f}  {abs(y):11.4e} {_degrees(y):7.1f}"
                 f"  {abs(f):11.4e} {abs(g):11.4e}{shown}"
             )
+        if self.stiffening:
+            lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(

@@ -381,15 +381,15 @@ def _collected(
 
 
 def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray | str]:
-    """Return what a response keeps for runs that begin in it."""
+    """Return what a response keeps beside its motion: the level, and what runs begin with."""
     if kept_basis(model) is None:
-        return {}
+        return {"stiffening": model.stiffening}
     top = max(abs(n) for one in solved for n in one.coordinates)
     kept = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
     for row, one in zip(kept, solved, strict=True):
         for n, x in one.coordinates.items():
             row[top + n] = x
-    return {"coordinates": kept, "basis": kept_basis(model)}
+    return {"stiffening": model.stiffening, "coordinates": kept, "basis": kept_basis(model)}
 
 
 def _check(frame: str, tolerance: float, residual: float, accuracy: float | None) -> None:
