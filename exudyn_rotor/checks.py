@@ -115,10 +115,10 @@ def whole_number(value: int, name: str) -> int:
 
 def _whole(value: object, name: str, needed: str, least: int, most: int) -> int:
     if isinstance(value, np.ndarray | np.generic):
-        whole = value.ndim == 0 and value.dtype.kind in "ui" and not np.ma.is_masked(value)
+        is_whole = value.ndim == 0 and value.dtype.kind in "ui" and not np.ma.is_masked(value)
     else:
-        whole = isinstance(value, int) and not isinstance(value, bool)
-    if not whole:
+        is_whole = isinstance(value, int) and not isinstance(value, bool)
+    if not is_whole:
         raise TypeError(_told(name, needed, value))
     if not least <= value <= most:
         raise ValueError(_told(name, needed, value))

@@ -225,10 +225,10 @@ def _fit(ax: Axes3D, points: np.ndarray, margin: float) -> tuple[float, float, f
     low, size = flat.min(axis=0), np.ptp(flat, axis=0)
     side = min(6.0 / size[0], 4.5 / size[1])  # of the axes, which are square
     body = np.maximum(side * size + 2.0 * margin, (4.5, 2.5))
-    whole = body + np.array([bar, 0.0])
-    ax.figure.set_size_inches(whole)
-    ax.set_position((*((0.5 * body - side * (low + 0.5 * size)) / whole), *(side / whole)))
-    return (body[0] + 0.15) / whole[0], 0.15, 0.2 / whole[0], 0.7
+    with_bar = body + np.array([bar, 0.0])
+    ax.figure.set_size_inches(with_bar)
+    ax.set_position((*((0.5 * body - side * (low + 0.5 * size)) / with_bar), *(side / with_bar)))
+    return (body[0] + 0.15) / with_bar[0], 0.15, 0.2 / with_bar[0], 0.7
 
 
 def legend_above(ax: Axes, columns: int = 2, handles: list | None = None) -> None:

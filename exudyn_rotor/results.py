@@ -200,10 +200,10 @@ class Result:
         ImportError
             Without xarray, which ``pip install "exudyn-rotor[xarray]"`` brings.
         """
-        found = {item: getattr(self, item.name) for item in fields(self)}
-        shapes = {i.name: i.metadata.get("shape", ()) for i, v in found.items() if np.ndim(v)}
+        values = {item: getattr(self, item.name) for item in fields(self)}
+        shapes = {i.name: i.metadata.get("shape", ()) for i, v in values.items() if np.ndim(v)}
         arrays, rest = {}, {}
-        for item, value in found.items():
+        for item, value in values.items():
             if len(shapes.get(item.name, ())) == np.ndim(value) > 0:
                 named = (_dimension(word, item.name, shapes) for word in shapes[item.name])
                 arrays[item.name] = (tuple(named), np.array(value))
@@ -236,8 +236,8 @@ def _dimension(word: int | str, name: str, shapes: Mapping[str, tuple]) -> str:
 @cache
 def _types(cls: type) -> dict[str, Any]:
     """Return the types of a result's fields; ``X | None`` counts as X."""
-    found = get_type_hints(cls)
-    return {item.name: _without_none(found[item.name]) for item in fields(cls)}
+    hints = get_type_hints(cls)
+    return {item.name: _without_none(hints[item.name]) for item in fields(cls)}
 
 
 def _without_none(hint: Any) -> Any:

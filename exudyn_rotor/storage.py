@@ -290,20 +290,20 @@ def _most_bytes(file_size: int) -> int:
 
 def _check_format(source: Path, data: dict[str, np.ndarray], kind: str) -> None:
     """Refuse files of other origin, kind or version, and damaged ones; drop the checksum."""
-    found = str(data.get("format", ""))
-    if not found.startswith(_PACKAGE):
+    written = str(data.get("format", ""))
+    if not written.startswith(_PACKAGE):
         raise ValueError(f"{source}: holds no {kind}, it was not written by {_PACKAGE}")
     checksum = data.pop(_CHECKSUM, None)
     damaged = checksum is not None and str(checksum) != _checksum(data)
-    if damaged or (checksum is None and found == _format(kind)):
+    if damaged or (checksum is None and written == _format(kind)):
         raise ValueError(f"{source}: damaged, its checksum is not that of its content")
-    if found == _format(kind):
+    if written == _format(kind):
         return
-    held = found.removeprefix(_PACKAGE).strip().rstrip("0123456789").strip()
+    held = written.removeprefix(_PACKAGE).strip().rstrip("0123456789").strip()
     if held != kind:
         raise ValueError(f"{source}: holds no {kind}, but a {held}")
     raise ValueError(
-        f"{source}: written by another version of {_PACKAGE} ({found!r}, needed is "
+        f"{source}: written by another version of {_PACKAGE} ({written!r}, needed is "
         f"{_format(kind)!r}); make it anew"
     )
 

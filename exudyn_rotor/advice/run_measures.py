@@ -112,8 +112,8 @@ class Measures:
         change = 2.0 * zeta @ terms.h + np.einsum("si,ij,sj->s", zeta, terms.C_hat, zeta)
         left = 0.5 * self.record.speed * change
         left += np.einsum("si,ij,sj->s", self.zeta_t, terms.W, zeta)
-        whole = self.invariants.Theta * self.fastest
-        return float(np.abs(left).max() / whole) if whole else 0.0
+        momentum_scale = self.invariants.Theta * self.fastest
+        return float(np.abs(left).max() / momentum_scale) if momentum_scale else 0.0
 
     def locked(self) -> float:
         """Return how far locked coordinates are off: angles [rad], lengths over the size."""

@@ -77,16 +77,16 @@ class Coupled:
         given = {"supports": (*self.supports, *coupled), "stiffening": self.stiffening}
         if multiple > 0.0:  # the basis is the same
             given["accuracy"] = None
-        found = campbell(self.target, self.speed, **given)
-        momenta = self._mass_matrix @ found.vectors[0]
-        size = np.sqrt(np.sum(found.vectors[0].conj() * momenta, axis=0).real)
+        diagram = campbell(self.target, self.speed, **given)
+        momenta = self._mass_matrix @ diagram.vectors[0]
+        size = np.sqrt(np.sum(diagram.vectors[0].conj() * momenta, axis=0).real)
         return Modes(
-            decrements=found.log_decrement[0],
-            frequencies=found.frequencies_inertial[0],
-            eigenvalues=found.growth[0] + 1j * found.frequencies_rotor[0],
-            shapes=found.vectors[0] / size,
+            decrements=diagram.log_decrement[0],
+            frequencies=diagram.frequencies_inertial[0],
+            eigenvalues=diagram.growth[0] + 1j * diagram.frequencies_rotor[0],
+            shapes=diagram.vectors[0] / size,
             momenta=momenta / size,
-            lateral=(found.nodal_diameters[0] == 1) & (found.damping_ratio[0] < 1.0),
+            lateral=(diagram.nodal_diameters[0] == 1) & (diagram.damping_ratio[0] < 1.0),
         )
 
     @cached_property

@@ -150,23 +150,23 @@ class StabilityLevelOne(Result):
     @property
     def reasons(self) -> tuple[str, ...]:
         """Why an analysis of level II is required (SP6.8.5.10); empty where it is not."""
-        found = []
+        reasons = []
         if self.anticipated_decrement < _LEAST_DECREMENT:
-            found.append(f"the log decrement at QA is below {_LEAST_DECREMENT:g}")
+            reasons.append(f"the log decrement at QA is below {_LEAST_DECREMENT:g}")
         if self.machine == "centrifugal" and self.threshold is not None:
             ratio = self.threshold / self.anticipated
             if ratio < _LEAST_RATIO:
-                found.append(f"Q0/QA is below {_LEAST_RATIO:g}")
+                reasons.append(f"Q0/QA is below {_LEAST_RATIO:g}")
             elif ratio < _LARGE_RATIO and self.critical_speed_ratio and self.gas_density:
                 if self.critical_speed_ratio > largest_speed_ratio(self.gas_density):
-                    found.append(
+                    reasons.append(
                         "Q0/QA is below 10 in region B of critical speed ratio and density"
                     )
             elif ratio < _LARGE_RATIO:
-                found.append(
+                reasons.append(
                     "Q0/QA is below 10, and critical speed ratio or gas density are not given"
                 )
-        return tuple(found)
+        return tuple(reasons)
 
     @property
     def needs_level_two(self) -> bool:

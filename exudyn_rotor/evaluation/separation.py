@@ -214,20 +214,20 @@ def separation_margins(
     if places is not None:
         given = (places,) if isinstance(places, str) else places
         names = checks.labels(given, "places", response.places)
-    speeds, found = response.speeds, []
+    speeds, entries = response.speeds, []
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
     for name, curve in zip(names, curves, strict=True):
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
-        found += [(name, *_peak(speeds, curve, int(row), name)) for row in rows]
-    found.sort(key=lambda entry: entry[1])
-    peaks = np.array([entry[1] for entry in found])
-    factors = np.array([_amplification(entry[1], entry[3]) for entry in found])
+        entries += [(name, *_peak(speeds, curve, int(row), name)) for row in rows]
+    entries.sort(key=lambda entry: entry[1])
+    peaks = np.array([entry[1] for entry in entries])
+    factors = np.array([_amplification(entry[1], entry[3]) for entry in entries])
     required, actual = _margins(peaks, factors, *limits)
     return SeparationMargins(
-        places=tuple(entry[0] for entry in found),
+        places=tuple(entry[0] for entry in entries),
         peaks=peaks,
-        sizes=np.array([entry[2] for entry in found]),
-        half_power=np.array([entry[3] for entry in found]).reshape(-1, 2),
+        sizes=np.array([entry[2] for entry in entries]),
+        half_power=np.array([entry[3] for entry in entries]).reshape(-1, 2),
         amplification=factors,
         required=required,
         actual=actual,

@@ -44,8 +44,8 @@ def lost_connections(body: RotorItems) -> tuple[str, ...]:
     if "marker_body" not in body.objects:
         return ()
     walk = _Walk(body)
-    found = (*walk.loads(), *walk.objects(), *walk.sensors())
-    return tuple(f"{item}: {reason}" for item, reason in found)
+    connections = (*walk.loads(), *walk.objects(), *walk.sensors())
+    return tuple(f"{item}: {reason}" for item, reason in connections)
 
 
 class _Walk:
@@ -96,10 +96,14 @@ class _Walk:
 
     def objects(self) -> Iterator[tuple[str, str]]:
         """Yield connectors and joints, and what of them is lost or wrong."""
-        own = {int(number) for number in self.body.constraints.values()}
+        constraints = {int(number) for number in self.body.constraints.values()}
         for number in range(self.mbs.systemData.NumberOfObjects()):
             item = self.mbs.GetObject(number)
-            if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
+            if (
+                number in constraints
+                or "markerNumbers" not in item
+                or not item.get("activeConnector", 1)
+            ):
                 continue
             for place, marker in enumerate(map(int, item["markerNumbers"])):
                 reason = None

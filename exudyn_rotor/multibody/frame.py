@@ -76,12 +76,12 @@ class BodyFrame:
         if node == MESH_ORIGIN:
             origin, place = origin - direction * (direction @ origin), np.zeros(3)
         B = np.eye(3)
-        found = _with_mesh_axes(direction, orientation)
-        if found is None:
+        orientation_of_node = _with_mesh_axes(direction, orientation)
+        if orientation_of_node is None:
             B = _turn_to_z(direction)
-            found = _tait_bryan(orientation @ B.T), THIRD, 1
+            orientation_of_node = _tait_bryan(orientation @ B.T), THIRD, 1
         position = mesh_position + orientation @ origin
-        return cls(origin, place, B, orientation, position, *found)
+        return cls(origin, place, B, orientation, position, *orientation_of_node)
 
     @property
     def has_mesh_axes(self) -> bool:

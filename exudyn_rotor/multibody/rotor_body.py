@@ -136,10 +136,10 @@ class RotorBody(RotorItems):
         """
         checks.flag(warn, "warn")
         self.check_assembled()
-        found = lost_connections(self)
-        for sentence in found if warn else ():
+        lost = lost_connections(self)
+        for sentence in lost if warn else ():
             warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
-        return found
+        return lost
 
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``.

@@ -202,8 +202,8 @@ def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
         gravity = body.plan.setup.gravity
         if body.gravity_load is not None:  # a script may change it
             gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
-        found = energy_of(body.motion, t, q, q_t, gravity)
-        return [found.kinetic, found.elastic, found.weight]
+        energy = energy_of(body.motion, t, q, q_t, gravity)
+        return [energy.kinetic, energy.elastic, energy.weight]
 
     return _add_function_sensor(body, energy, options)
 

@@ -103,7 +103,7 @@ def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) ->
         return 0.0
     undeformed = q.copy()
     undeformed[places[list(rotor.unknowns)]] = 0.0
-    kept = np.setdiff1d(np.arange(len(q)), np.setdiff1d(places, places[list(rotor.unknowns)]))
+    unknowns = np.setdiff1d(np.arange(len(q)), np.setdiff1d(places, places[list(rotor.unknowns)]))
     time = data.GetTime()
     with evaluating(mbs) as solver:
 
@@ -117,11 +117,13 @@ def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) ->
             if solver.GetAEsize():
                 solver.ComputeAlgebraicEquations(mbs, False)
             solver.ComputeODE2RHS(mbs)
-            return np.array(solver.GetSystemResidual())[: len(q)][kept]
+            return np.array(solver.GetSystemResidual())[: len(q)][unknowns]
 
         held = forces(q, 0.0)
         loads = max(np.abs(forces(undeformed, 0.0)).max(), _NO_LOAD)
-        changes = [_unheld(mbs, solver, forces(q, turn) - held, kept, len(q)) for turn in _TURNS]
+        changes = [
+            _unheld(mbs, solver, forces(q, turn) - held, unknowns, len(q)) for turn in _TURNS
+        ]
     return max(np.abs(change).max() for change in changes) / loads
 
 

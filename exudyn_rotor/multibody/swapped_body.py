@@ -191,8 +191,8 @@ def add_swapped_body(
     )
     for interface, offset in (offsets or {}).items() if rigid else ():
         # Exudyn's own, which turns with the mean rotation, not with that of the interface
-        own = body.frame.B @ offset
-        mbs.SetMarkerParameter(body.marker(interface), "offset", own)
+        turned = body.frame.B @ offset
+        mbs.SetMarkerParameter(body.marker(interface), "offset", turned)
     return body
 
 

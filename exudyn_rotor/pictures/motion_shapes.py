@@ -135,13 +135,13 @@ class MotionShapes(Result):
         """
         index = checks.count(index, "index", most=len(self.labels) - 1)
         angles = np.linspace(0.0, 2.0 * np.pi, checks.count(points, "points", least=2))
-        axes, found = axes_of(self.axis), []
+        axes, axial_places = axes_of(self.axis), []
         for center, forward, backward, along in self._whirls(index):
             turn = np.exp(1j * angles)
             lateral = forward * turn + backward * turn.conj()
             local = np.stack([lateral.real, lateral.imag, (along * turn).real], axis=1)
-            found.append((center, local @ axes.T))
-        return found
+            axial_places.append((center, local @ axes.T))
+        return axial_places
 
     def plot(self, index: int = 0, ax: Axes3D | None = None, *, share: float = 0.1) -> Axes3D:
         """Draw the rotor at the time zero and the orbits of its centre line.
@@ -289,8 +289,8 @@ class MotionShapes(Result):
             if nodes.size < 3:
                 continue
             center = axis.point + 0.5 * (low + high) * axis.direction
-            part = Interface("station", nodes, None, self.positions[nodes]).centered_on(center)
-            stations.append((center, part.mean_motion(len(self.positions))[:3]))
+            station = Interface("station", nodes, None, self.positions[nodes]).centered_on(center)
+            stations.append((center, station.mean_motion(len(self.positions))[:3]))
         return stations
 
     def _whirls(self, index: int) -> list[tuple[np.ndarray, complex, complex, complex]]:
@@ -298,7 +298,7 @@ class MotionShapes(Result):
         axes, speed, seen = axes_of(self.axis), self.speeds[index], self.frequencies[index]
         turns = self.rates[index] + self.orders * speed
         near = _SAME * max(abs(speed), seen, 1e-300)
-        found = []
+        stations = []
         for center, mean in self._stations:
             local = np.array([axes.T @ (mean @ row) for row in self.motion[index]])
             a = 0.5 * (local[:, 0] + 1j * local[:, 1])
@@ -308,8 +308,8 @@ class MotionShapes(Result):
             forward = both[np.abs(rates - seen) <= near].sum()
             backward = both[(np.abs(rates + seen) <= near) & (seen > 0.0)].sum()
             axial = local[np.abs(np.abs(turns) - seen) <= near, 2].sum()
-            found.append((center, forward, backward, axial))
-        return found
+            stations.append((center, forward, backward, axial))
+        return stations
 
     def _senses(self, index: int) -> list[str]:
         sign = np.sign(self.speeds[index]) or 1.0

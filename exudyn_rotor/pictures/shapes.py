@@ -75,8 +75,8 @@ def mode_shapes(
     warn_of_structural_damping(model, "mode_shapes finds modes")
     wanted = min(count, model.size)
     space = model.space(wanted, abs(speed), residual=residual)
-    found = space.modes(speed, tolerance)
-    vectors, seen, codes, _ = WhirlContent.of(model).named(found, speed)
+    motions = space.modes(speed, tolerance)
+    vectors, seen, codes, _ = WhirlContent.of(model).named(motions, speed)
     chosen = np.argsort(seen, kind="stable")[:wanted]
     shapes = vectors[:, :, chosen]
     motion = np.array(
@@ -86,9 +86,9 @@ def mode_shapes(
         **_surface(mesh),
         speeds=np.full(len(chosen), speed),
         labels=tuple(f"mode {i + 1}, {WHIRLS[codes[j]]}" for i, j in enumerate(chosen)),
-        rates=np.abs(found.values.imag[chosen]),
+        rates=np.abs(motions.values.imag[chosen]),
         frequencies=seen[chosen],
-        orders=found.orders,
+        orders=motions.orders,
         motion=motion,
     )
 

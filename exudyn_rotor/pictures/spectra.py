@@ -227,17 +227,17 @@ def spectra(
     weights = weights / weights.sum()
     rows = signal[starts[:, None] + np.arange(size)]
     rows = (rows - rows @ weights[:, None]) * weights
-    found = np.fft.fftshift(np.fft.fft(rows), axes=1)
+    lines = np.fft.fftshift(np.fft.fft(rows), axes=1)
     frequencies = 2.0 * np.pi * np.fft.fftshift(np.fft.fftfreq(size, step))
     if not plane:
-        kept = frequencies >= 0.0
-        found, frequencies = 2.0 * found[:, kept], frequencies[kept]
+        shown = frequencies >= 0.0
+        lines, frequencies = 2.0 * lines[:, shown], frequencies[shown]
     middles = starts + 0.5 * (size - 1)
     return Spectra(
         times=np.interp(middles, np.arange(len(time)), time),
         speeds=np.array([speeds[start : start + size].mean() for start in starts]),
         frequencies=frequencies,
-        amplitudes=np.abs(found),
+        amplitudes=np.abs(lines),
     )
 
 
@@ -286,8 +286,8 @@ def plot_orbit(motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None) -> A
     order = slice(None) if angle[-1] > angle[0] else slice(None, None, -1)
     turns = angle[order] / (2.0 * np.pi)
     rounding = 1e-9 * max(1.0, np.abs(turns).max())
-    whole = np.arange(np.ceil(turns[0] - rounding), np.floor(turns[-1] + rounding) + 1.0)
-    marks = np.column_stack([np.interp(whole, turns, part) for part in motion[order].T])
+    passages = np.arange(np.ceil(turns[0] - rounding), np.floor(turns[-1] + rounding) + 1.0)
+    marks = np.column_stack([np.interp(passages, turns, part) for part in motion[order].T])
     ax = plotting.axes_or_new(ax, (5.0, 5.0))
     plotting.plot_orbits(ax, {"orbit": motion})
     ax.plot(*(1e6 * marks.T), "o", color=plotting.COLORS[1], ms=6, label="keyphasor")

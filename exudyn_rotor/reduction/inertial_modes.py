@@ -66,8 +66,8 @@ def inertial_modes(
     responses = static_responses(rotor, rigid_interfaces(rotor, others), loads)
     energy = loads.T @ responses
     values, turn = np.linalg.eigh(0.5 * (energy + energy.T))
-    kept = values > _SMALL
-    columns = responses @ (turn[:, kept] / np.sqrt(values[kept]))
+    strong = values > _SMALL
+    columns = responses @ (turn[:, strong] / np.sqrt(values[strong]))
     labels = tuple(f"inertial mode {i + 1}" for i in range(columns.shape[1]))
     return ModeBasis(columns, labels, rotor.nodes)
 
@@ -84,8 +84,8 @@ def _loads(rotor: FiniteElementRotor, basis: np.ndarray, stiffness: np.ndarray) 
     elastic = stiffness > 0.0
     frequencies = np.sqrt(stiffness[elastic])
     columns = basis[:, elastic]
-    own = rotor.stiffness @ columns - mass @ (columns * stiffness[elastic])
-    loads.append(own / frequencies)
+    residual = rotor.stiffness @ columns - mass @ (columns * stiffness[elastic])
+    loads.append(residual / frequencies)
     carried = rotor.carried_prestress
     if carried is not None:
         loads.append(speed * (carried.per_square @ basis))

@@ -93,22 +93,22 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     modes = checks.array(fem.modeBasis["matrix"], "fem: its modes", shape=(nodes.size, None))
     rigid, shares = _rigid_share(nodes, mass, modes)
     flexible = modes - rigid @ shares
-    kept = [
+    elastic = [
         index
         for index in gram_schmidt(np.zeros((nodes.size, 0)), flexible, mass, rank_tolerance)[1]
         if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
     ]
-    if not kept:
+    if not elastic:
         raise ValueError("fem: its modes are rigid motions alone; no flexible mode would remain")
-    fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, kept]}
+    fem.modeBasis = {**fem.modeBasis, "matrix": flexible[:, elastic]}
     stress = fem.postProcessingModes.get("matrix")
     if stress is not None and np.shape(stress)[1] == 6 * modes.shape[1]:
-        columns = [6 * index + component for index in kept for component in range(6)]
+        columns = [6 * index + component for index in elastic for component in range(6)]
         fem.postProcessingModes = {
             **fem.postProcessingModes,
             "matrix": np.asarray(stress)[:, columns],
         }
-    return tuple(index for index in range(modes.shape[1]) if index not in kept)
+    return tuple(index for index in range(modes.shape[1]) if index not in elastic)
 
 
 def false_softening(rotor: FiniteElementRotor, modes: np.ndarray) -> float:

@@ -156,9 +156,9 @@ class RigidDisc:
         node_count = self._checked_count(node_count)
         every = np.arange(self.nodes.size)
         follow = self._rigid(every) @ np.linalg.pinv(self._rigid(self._some))
-        own = sp.eye_array(3 * self.nodes.size, format="csr")
+        identity = sp.eye_array(3 * self.nodes.size, format="csr")
         some = (3 * self._some[:, None] + np.arange(3)).ravel()
-        strain = sp.csr_array(own - sp.csr_array(follow) @ own[some])
+        strain = sp.csr_array(identity - sp.csr_array(follow) @ identity[some])
         rows = (3 * self.nodes[:, None] + np.arange(3)).ravel()
         strain = strain @ sp.eye_array(3 * node_count, format="csr")[rows]
         matrix = self.spring * (strain.T @ strain)
@@ -185,8 +185,8 @@ def disc_on(
             "inertia: needs two numbers, polar and transverse, or a tensor of the shape (3, 3) "
             f"[kg m²], got the shape {values.shape}"
         )
-    own = stiffness.diagonal().reshape(-1, 3)[section].max()
-    return RigidDisc(center, mass, values, section, nodes[section], _STIFF * own)
+    stiffest = stiffness.diagonal().reshape(-1, 3)[section].max()
+    return RigidDisc(center, mass, values, section, nodes[section], _STIFF * stiffest)
 
 
 def _checked_inertia(inertia: np.ndarray) -> np.ndarray:

@@ -326,8 +326,8 @@ class FiniteElementRotor:
                 f"names: needs one interface or more of {list(self.interfaces)}, got none"
             )
         held = np.unique(np.concatenate([self.interfaces[name].nodes for name in names]))
-        whole = len(chosen) == 3
-        if whole and rigid_basis(self.nodes[held]).shape[1] < 6:
+        holds_all = len(chosen) == 3
+        if holds_all and rigid_basis(self.nodes[held]).shape[1] < 6:
             raise ValueError(
                 f"clamped: the {held.size} nodes of {list(names)} lie on one line and cannot hold "
                 "rotations about it; clamp three nodes or more that do not"
@@ -340,7 +340,7 @@ class FiniteElementRotor:
         )
         elements = self.elements
         if elements is not None:
-            elements = elements.holding(held) if whole else elements.holding_directions(free)
+            elements = elements.holding(held) if holds_all else elements.holding_directions(free)
         return replace(
             self,
             stiffness=stiffness,

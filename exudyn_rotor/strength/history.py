@@ -241,8 +241,8 @@ def _envelope(
     width = max(1, _CHUNK // (6 * len(coordinates)))
     peak, when = np.zeros(total), np.zeros(total, dtype=np.int64)
     for start in tqdm(range(0, total, width), desc="stress", disable=total < 20 * width):
-        part = slice(start, start + width)
-        values = von_mises(field.history(coordinates, speed, part))
-        when[part] = np.argmax(values, axis=0)
-        peak[part] = values.max(axis=0)
+        rows = slice(start, start + width)
+        values = von_mises(field.history(coordinates, speed, rows))
+        when[rows] = np.argmax(values, axis=0)
+        peak[rows] = values.max(axis=0)
     return peak, when

@@ -201,11 +201,11 @@ def _lowest(solved: list[Solved], tracks: Tracks, count: int) -> tuple[list[Solv
     overdamped = (inertial == 0.0) & (modes.values.real < -modes.resolution)
     chosen = np.sort(np.lexsort((inertial, overdamped))[:count])
     used = tracks.columns[:, chosen]
-    kept = np.sort(used, axis=1)
-    places = [np.searchsorted(*rows) for rows in zip(kept, used, strict=True)]
+    ascending = np.sort(used, axis=1)
+    places = [np.searchsorted(*rows) for rows in zip(ascending, used, strict=True)]
     fewer = [
         (entry[0].columns(row), *(array[row] for array in entry[1:]))
-        for entry, row in zip(solved, kept, strict=True)
+        for entry, row in zip(solved, ascending, strict=True)
     ]
     return fewer, Tracks(np.array(places), tracks.continued[:, chosen])
 

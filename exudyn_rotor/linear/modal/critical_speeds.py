@@ -246,8 +246,8 @@ def critical_speeds_of(
         count = len(critical) if max_speed is not None else JUDGED
         given = [(entry.speed, entry.multiples, entry.vectors) for entry in critical[:count]]
         errors[:count] = basis.critical_errors(given)
-    found = _collected(critical, content, order, model.size)
-    return replace(found, basis_errors=errors, stiffening=model.stiffening)
+    collected = _collected(critical, content, order, model.size)
+    return replace(collected, basis_errors=errors, stiffening=model.stiffening)
 
 
 def checked(

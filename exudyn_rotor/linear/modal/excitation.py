@@ -85,9 +85,9 @@ def crossings(
     crossed = (before * after < 0.0) | ((after == 0.0) & (before != 0.0))
     rows, columns = np.nonzero(crossed & continued[1:])
     share = before[rows, columns] / (before - after)[rows, columns]
-    found = speeds[rows] + share * np.diff(speeds)[rows]
-    ascending = np.argsort(found, kind="stable")
-    return found[ascending], columns[ascending]
+    crossings = speeds[rows] + share * np.diff(speeds)[rows]
+    ascending = np.argsort(crossings, kind="stable")
+    return crossings[ascending], columns[ascending]
 
 
 def draw_orders(

@@ -121,9 +121,9 @@ class WhirlContent:
         mean = np.tensordot(weighted, moved, ((0, 1, 2), (0, 1, 2)))
         # 0.4 lies between the waves, so that axial motion parts from torsion
         mean = mean + _gram(self.axial, chosen, 0.4 + 0.0 * orders)
-        whole = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
-        floor = 1e-12 * max(np.trace(whole).real, 1e-300)
-        lower = np.linalg.cholesky(whole + floor * np.eye(shape[2]))
+        gram = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
+        floor = 1e-12 * max(np.trace(gram).real, 1e-300)
+        lower = np.linalg.cholesky(gram + floor * np.eye(shape[2]))
         turned = np.linalg.solve(lower, np.linalg.solve(lower, mean).conj().T)
         _, directions = np.linalg.eigh(0.5 * (turned + turned.conj().T))
         combined = span @ np.linalg.solve(lower.conj().T, directions)
@@ -184,12 +184,12 @@ class WhirlContent:
         wave = np.broadcast_to(n, energy.shape).reshape(flat.shape)[best, columns]
         code[(turns.reshape(flat.shape)[best, columns] == 0) & (wave != 0)] = STATIC
         code = np.where(wave == 0, self._without_waves(vectors), code)
-        whole = self.whole_energy(vectors)
-        unseen = whole <= 1e-12 * np.max(whole, initial=0.0)
+        total = self.whole_energy(vectors)
+        unseen = total <= 1e-12 * np.max(total, initial=0.0)
         code[unseen] = UNKNOWN
         strongest = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
         frequency = np.where(unseen, np.abs(nu + strongest * speed), frequency)
-        return frequency, code, self._diameters(energy, whole)
+        return frequency, code, self._diameters(energy, total)
 
     def whole_energy(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of the whole motion, all harmonics, shape (k,)."""
@@ -199,7 +199,9 @@ class WhirlContent:
         """Return axial, torsional or radial for modes with n = 0."""
         chosen = self._chosen(vectors)
         parts = (self.axial, self.tangential, self.radial)
-        strongest = np.argmax([np.sum(_energy(part, chosen), axis=0) for part in parts], axis=0)
+        strongest = np.argmax(
+            [np.sum(_energy(component, chosen), axis=0) for component in parts], axis=0
+        )
         return np.array([AXIAL, TORSIONAL, RADIAL])[strongest]
 
     def _diameters(self, energy: np.ndarray, whole: np.ndarray) -> np.ndarray:
@@ -327,5 +329,5 @@ def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:
     scale = np.linalg.norm(fields, 2)
     rest = fields - known @ (known.conj().T @ fields)
     _, lengths, turn = np.linalg.svd(rest, full_matrices=False)
-    kept = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
-    return np.linalg.qr(fields @ kept)[0]
+    directions = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
+    return np.linalg.qr(fields @ directions)[0]

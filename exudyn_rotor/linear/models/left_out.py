@@ -233,14 +233,14 @@ def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
 
 
 def _finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
-    attached, own = rotor.with_attachments, rotor.in_attached
-    if own is None:
+    attached, in_attached = rotor.with_attachments, rotor.in_attached
+    if in_attached is None:
         return None
-    outside = np.eye(attached.size) - own @ own.T
+    outside = np.eye(attached.size) - in_attached @ in_attached.T
     lengths, columns = np.linalg.eigh(outside)
     columns = columns[:, lengths > 0.5]
     _, turn = np.linalg.eigh(columns.T @ attached.invariants.K @ columns)
-    T = np.hstack([own, columns @ turn])
+    T = np.hstack([in_attached, columns @ turn])
     return replace(
         attached,
         invariants=attached.invariants.in_basis(T),

@@ -229,9 +229,9 @@ def _resolved(
     """Return equations, orders and harmonics of the steady motion, at as many angles as needed."""
     samples = _FIRST_SAMPLES
     while samples <= _MOST_SAMPLES:
-        found = _about_steady_motion(scene, probe, samples, tolerance)
-        if found is not None:
-            return found
+        resolved = _about_steady_motion(scene, probe, samples, tolerance)
+        if resolved is not None:
+            return resolved
         samples *= 2
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "

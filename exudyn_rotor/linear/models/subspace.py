@@ -133,8 +133,8 @@ class Subspace:
         def slowest(modes: FloquetModes) -> np.ndarray:
             return np.argsort(np.abs(modes.values), kind="stable")[: self.count]
 
-        found = self._converged(speed, slowest, tolerance)
-        return replace(found, values=found.values.astype(complex)), self.at(speed)
+        lowest = self._converged(speed, slowest, tolerance)
+        return replace(lowest, values=lowest.values.astype(complex)), self.at(speed)
 
     def _converged(
         self, speed: float, choose: Callable[[FloquetModes], np.ndarray], tolerance: float

@@ -64,10 +64,10 @@ class WholeSpace:
     ) -> tuple[FloquetModes, PeriodicSystem]:
         """Return all exponents with their motions, and the equations."""
         system = self.at(speed)
-        found = motions(system, method, tolerance, shapes)
+        modes = motions(system, method, tolerance, shapes)
         if shapes and self.others is not None:
-            found = replace(found, vectors=self.others @ found.vectors)
-        return found, system
+            modes = replace(modes, vectors=self.others @ modes.vectors)
+        return modes, system
 
     def steady_motion(
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float

@@ -41,8 +41,8 @@ def motion_error(given: Motion, finer: Motion) -> np.ndarray:
     Relative to the motion of the finer rotor at the place, or to a tenth of the largest at any.
     """
     across = {n: np.linalg.norm(each[:, :2]) for n, each in finer.items()}
-    whole = {n: _size(each).max() for n, each in finer.items()}
-    sizes = across if max(across.values()) > _AXIAL * max(whole.values()) else whole
+    largest = {n: _size(each).max() for n, each in finer.items()}
+    sizes = across if max(across.values()) > _AXIAL * max(largest.values()) else largest
     order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
     size = _size(finer[order])
     away = _size(finer[order] - given.get(order, 0.0))

@@ -192,20 +192,20 @@ class Response(RunStart, ABC):
     ) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
         count = len(values)
-        found = {
+        columns = {
             f"{self._what} [{unit}]": values,
             "place": np.full(count, place),
             "order": np.full(count, order),
         }
         for name in ("n1", "n2", "e"):
             phasor = self.phasor(place, name, order)
-            found |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": _degrees(phasor)}
+            columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": _degrees(phasor)}
         forward, backward = np.abs(self.whirl(place, order))
         errors = np.full(count, np.nan)
         if self.basis_errors is not None:
             errors = self.basis_errors[:, self.places.index(place)]
         ends = {"forward [m]": forward, "backward [m]": backward, "basis error": errors}
-        return found | ends
+        return columns | ends
 
     def _shown(self, units: str) -> tuple[np.ndarray, str]:
         """Return what the response was computed over in its unit, and that unit."""

@@ -167,8 +167,8 @@ def unbalance_response(
     constant = space.at(values[-1]).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
-    kept = _kept(model, solved)
-    return UnbalanceResponse(labels, *collected, frame, values, basis_errors=errors, **kept)
+    extra = _kept(model, solved)
+    return UnbalanceResponse(labels, *collected, frame, values, basis_errors=errors, **extra)
 
 
 def harmonic_response(
@@ -257,8 +257,10 @@ def harmonic_response(
     constant = space.at(speed).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
-    kept = _kept(model, solved)
-    return HarmonicResponse(labels, *collected, frame, values, speed, basis_errors=errors, **kept)
+    extra = _kept(model, solved)
+    return HarmonicResponse(
+        labels, *collected, frame, values, speed, basis_errors=errors, **extra
+    )
 
 
 def _basis_errors(
@@ -314,11 +316,11 @@ class _Observation:
         self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
     ) -> _Solved:
         """Return the steady motion."""
-        found = space.steady_motion(speed, loads, rate, self.tolerance)
-        seen = {n: self.rows @ x for n, x in found.items()}
+        harmonics = space.steady_motion(speed, loads, rate, self.tolerance)
+        seen = {n: self.rows @ x for n, x in harmonics.items()}
         if self.frame == "inertial" and speed != 0.0:  # at θ = 0 the axes are the same
             seen = into_inertial_frame(seen)
-        return _Solved(seen, found if self.keeps else {})
+        return _Solved(seen, harmonics if self.keeps else {})
 
 
 @dataclass(frozen=True, eq=False)
@@ -385,11 +387,15 @@ def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray
     if kept_basis(model) is None:
         return {"stiffening": model.stiffening}
     top = max(abs(n) for one in solved for n in one.coordinates)
-    kept = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
-    for row, one in zip(kept, solved, strict=True):
+    coordinates = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
+    for row, one in zip(coordinates, solved, strict=True):
         for n, x in one.coordinates.items():
             row[top + n] = x
-    return {"stiffening": model.stiffening, "coordinates": kept, "basis": kept_basis(model)}
+    return {
+        "stiffening": model.stiffening,
+        "coordinates": coordinates,
+        "basis": kept_basis(model),
+    }
 
 
 def _check(frame: str, tolerance: float, residual: float, accuracy: float | None) -> None:
