@@ -36,7 +36,7 @@ PICTURES = [
         "pictures/spectra.py",
         "test_pictures.py::test_amplitude_of_one_signal "
         "test_pictures.py::test_spectra_part_forward_from_backward",
-        ("one side of two", "2.0 * found[:, kept]", "found[:, kept]"),
+        ("one side of two", "2.0 * lines[:, shown]", "lines[:, shown]"),
         ("backward for forward", "values[:, 0] + 1j * values", "values[:, 0] - 1j * values"),
         ("weights of another sum", "weights = weights / weights.sum()", "weights = weights / size"),
     ),

@@ -13,8 +13,8 @@ REDUCTION = [
         ),
         (
             "loads of static modes forgotten",
-            "loads.append(own / frequencies)",
-            "loads.append(0.0 * own)",
+            "loads.append(residual / frequencies)",
+            "loads.append(0.0 * residual)",
         ),
     ),
     *mutations(

@@ -45,8 +45,8 @@ STRENGTH = [
         "test_strength.py::test_history_is_the_superposition_and_finds_the_peak",
         (
             "smallest instead of largest stress",
-            "peak[part] = values.max(axis=0)",
-            "peak[part] = values.min(axis=0)",
+            "peak[rows] = values.max(axis=0)",
+            "peak[rows] = values.min(axis=0)",
         ),
         ("coolest nodes first", "np.argsort(peak)[::-1][:count]", "np.argsort(peak)[:count]"),
     ),
