@@ -258,9 +258,7 @@ def harmonic_response(
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
     extra = _kept(model, solved)
-    return HarmonicResponse(
-        labels, *collected, frame, values, speed, basis_errors=errors, **extra
-    )
+    return HarmonicResponse(labels, *collected, frame, values, speed, basis_errors=errors, **extra)
 
 
 def _basis_errors(
