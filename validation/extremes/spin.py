@@ -106,7 +106,7 @@ def false_instability(quick: bool = False) -> Row:
     rotor = rigid_on_support("none")
 
     def stable(speed: float) -> bool:
-        return bool(stability(rotor, [speed]).stable[0])
+        return bool(stability(rotor, [speed], accuracy=None).stable[0])
 
     found = breaking_point(stable, 0.6 * exact, 2.1 * exact, 1.0 + 1e-9)
     held_up = bool(

@@ -238,7 +238,9 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
         bases |= {f"{n} at rest, {n} at speed": spinning_modes(rotor, n, [speed]) for n in (2, 4)}
         for name, modes in bases.items():
             reduced = rotor.reduce(modes)
-            found = campbell(reduced, speed, stiffening="full").frequencies_rotor[0, :4]
+            found = campbell(reduced, speed, stiffening="full", accuracy=None).frequencies_rotor[
+                0, :4
+            ]
             row: Row = {"hub": hub, "eta": eta, "modes": name, "columns": reduced.size}
             errors = np.abs(found / exact - 1.0)
             rows.append(row | {f"frequency {i + 1} / full": e for i, e in enumerate(errors)})
