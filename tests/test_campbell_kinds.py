@@ -58,6 +58,25 @@ def test_a_pair_that_is_split_is_one_critical_speed():
     assert "pair, the other 2.0e-03 above" in result.table()
 
 
+@pytest.mark.parametrize("ratio", [1.5, 1.01])
+def test_pairs_on_anisotropic_supports_are_joined(ratio):
+    """Each of the two critical speeds of an even rotor once, lower by an uneven one's split.
+
+    On average over a turn, springs of 40 N/m along one direction of the rotor add 20 N/m; a motion
+    along x, ``x cos Ωt`` or ``x sin Ωt``, sees 20 ± 10 N/m: ``√((k + 20 ± 10)/m)``, but for the
+    coupling of both directions by 10 N/m, which is ``10² / (k_x − k_y)`` where these differ.
+    """
+    uneven = Support("at", np.diag([0.0, 40.0, 0.0]), frame="rotor")
+    stiffness = np.array([1e4, ratio * 1e4])
+    even = Support("at", np.diag([*stiffness, 1e4]))
+    given = {"nodal_diameters": [1], "max_speed": 200.0}
+    result = critical_speeds(point_mass(), supports=[uneven, even], **given)
+    lower, upper = np.sqrt(stiffness + 10.0), np.sqrt(stiffness + 30.0)
+    error = 1e2 / (stiffness[1] - stiffness[0]) / stiffness[0]
+    np.testing.assert_allclose(result.speeds, lower, rtol=error)
+    np.testing.assert_allclose(result.splits, upper / lower - 1.0, atol=2.0 * error)
+
+
 def test_a_map_has_such_a_pair_once():
     """The same springs beside those of the map: `critical_speeds` for each stiffness."""
     uneven = Support("at", np.diag([0.0, 40.0, 0.0]), frame="rotor")

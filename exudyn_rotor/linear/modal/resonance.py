@@ -341,8 +341,8 @@ def _turning(
 def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]:
     """Return resonances, of each pair that an uneven rotor splits the lower one.
 
-    Motions at rest in the rotor frame; those of a pair are one circular motion each way when
-    combined, which independent motions are not.
+    Those of a pair are two phases of one motion: combined, all that is seen from outside turns one
+    way in time, ``exp(ipΩt)``, or the other, which independent motions cannot do.
     """
     joined: list[Resonance] = []
     taken: set[int] = set()
@@ -362,13 +362,15 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
 
 
 def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
-    if not np.array_equal(entry.multiples, [0.0]) or not np.array_equal(other.multiples, [0.0]):
+    if 0.0 not in entry.multiples or not np.array_equal(entry.multiples, other.multiples):
         return False
     vectors = np.stack([entry.vectors, other.vectors], axis=2)
     combined = content.polarised(vectors, entry.multiples)
-    energy = content.energies(combined)[0]
-    mean = content.orders @ energy / np.maximum(content.whole_energy(combined), 1e-300)
-    size = np.abs(content.orders) @ energy / np.maximum(content.whole_energy(combined), 1e-300)
+    energy = content.energies(combined)
+    seen = np.add.outer(entry.multiples, content.orders)
+    whole = np.maximum(content.whole_energy(combined), 1e-300)
+    mean = np.tensordot(seen, energy, 2) / whole
+    size = np.tensordot(np.abs(seen), energy, 2) / whole
     return bool(mean.min() < -_CIRCULAR * size.min() and mean.max() > _CIRCULAR * size.min() > 0.0)
 
 

@@ -326,6 +326,11 @@ LINEAR = [
         "linear/modal/resonance.py",
         "test_campbell_kinds.py",
         (
+            "phases of a pair told apart against the harmonics",
+            "seen = np.add.outer(entry.multiples, content.orders)",
+            "seen = np.subtract.outer(entry.multiples, content.orders)",
+        ),
+        (
             "any two close critical speeds are a pair",
             "return bool(mean.min() < -_CIRCULAR * size.min() and",
             "return bool(mean.min() < _CIRCULAR + size.min() and",
