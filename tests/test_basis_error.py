@@ -23,7 +23,9 @@ from exudyn_rotor import (
     keep_modes,
     linear_model,
     stability,
+    stability_threshold,
     unbalance_response,
+    unstable_ranges,
 )
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
@@ -260,3 +262,44 @@ def test_errors_of_the_least_stable_motion(modes):
     assert np.abs(result.basis_shifts).max() > 10.0 * SMALL * np.abs(values).max()
     assert "basis error" in result.table()
     assert not np.any(full.basis_shifts)
+
+
+def damped(inner: float) -> list[Support]:
+    names = ("left", "right")
+    return [*supports("stiff"), *(Support(each, damping=inner, frame="rotor") for each in names)]
+
+
+@pytest.mark.parametrize("parameter", ["speed", "inner damping"])
+def test_errors_of_limits_of_stability(parameter):
+    """Against the full model's limit; the estimate is of first order in an error of 2 to 4 %."""
+    over = (1100.0, 2500.0) if parameter == "speed" else (50.0, 1000.0)
+    given = {"supports": damped(400.0)} if parameter == "speed" else {"supports": damped}
+    given |= {} if parameter == "speed" else {"speed": 1500.0}
+    full = stability_threshold(solid("tilt"), *over, samples=2, modes=6, residual=1e-5, **given)
+    with pytest.warns(UserWarning, match="the limit of stability at .* errs by about"):
+        result = stability_threshold(reduced("tilt", "free 4"), *over, samples=2, **given)
+    errors = full.values - result.values
+    assert np.all(np.abs(errors) > 0.01 * result.values)
+    np.testing.assert_allclose(result.basis_shifts, errors, rtol=0.1)
+    np.testing.assert_allclose(result.basis_errors, np.abs(errors) / result.values, rtol=0.1)
+    assert "basis error" in result.table()
+    assert "basis" not in full.table()
+    np.testing.assert_array_equal(full.basis_errors, 0.0)
+
+
+def test_errors_of_unstable_ranges_are_in_a_warning():
+    rotor, speeds = reduced("tilt", "free 4"), [1100.0, 2500.0]
+    with pytest.warns(UserWarning, match="the limit of stability at .* errs by about 0.015"):
+        ranges = unstable_ranges(rotor, speeds, supports=damped(400.0))
+    unchecked = unstable_ranges(rotor, speeds, supports=damped(400.0), accuracy=None)
+    np.testing.assert_array_equal(ranges, unchecked)
+
+
+@pytest.mark.filterwarnings("error")
+def test_limits_where_modes_meet_have_no_estimate():
+    """Between two critical speeds, here those of a mesh that is not quite axisymmetric."""
+    given = {"supports": [*supports("stiff"), Support("left", damping=2e4, frame="rotor")]}
+    result = stability_threshold(reduced("tilt", "free 4"), 400.0, 2500.0, samples=4, **given)
+    assert result.frequencies_inertial == pytest.approx(result.values, rel=1e-4)
+    assert np.all(np.isnan(result.basis_errors))
+    assert result.table().endswith(" -")

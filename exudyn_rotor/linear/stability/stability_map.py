@@ -108,6 +108,9 @@ def stability_map(
 ) -> StabilityMap:
     """Compute the growth over a grid of two parameters.
 
+    What the basis of a reduced rotor leaves out is not checked here: :func:`stability` and
+    :func:`stability_threshold` tell at single points how far they are from the full model.
+
     Parameters
     ----------
     build : callable

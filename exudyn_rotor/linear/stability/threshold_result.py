@@ -9,8 +9,16 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
 from exudyn_rotor.linear.modal.whirl import WHIRLS, families
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
+
+_SMALL = 0.1  # share of the range that a limit counts as at least
+
+
+def limit_errors(shifts: np.ndarray, values: np.ndarray, span: float) -> np.ndarray:
+    """Return relative errors of limits (t,) found in a range; NaN where they are not known."""
+    return np.abs(shifts) / np.maximum(np.abs(values), _SMALL * span)
 
 
 @storable
@@ -33,6 +41,11 @@ class StabilityThresholds(Result):
     unstable_at_low : bool
     label : str
         Name of the parameter with its unit.
+    basis_shifts : ndarray, shape (t,), or None
+        Estimated ``p − p_reduced`` with the limit p of the full model, to first order: the growth
+        that the mode gains by what the basis leaves out, over its slope. NaN by Floquet's method
+        and where two modes meet, as at the ends of a range of parametric resonance or between the
+        critical speeds of an asymmetric rotor; None where it is not known at all.
 
     Examples
     --------
@@ -41,6 +54,7 @@ class StabilityThresholds(Result):
     >>> print(result.table())
     speed [rad/s]   above      frequency [rad/s]  n  whirl    kind
               300   unstable                 100  1  forward  lateral
+    error of the basis: not known
     """
 
     values: np.ndarray = numbers("thresholds")
@@ -52,6 +66,7 @@ class StabilityThresholds(Result):
     high: float
     unstable_at_low: bool
     label: str = "speed [rad/s]"
+    basis_shifts: np.ndarray | None = numbers("thresholds", finite=False, optional=True)
 
     @property
     def ranges(self) -> np.ndarray:
@@ -61,10 +76,21 @@ class StabilityThresholds(Result):
         edges += [self.high] if len(edges) % 2 else []
         return np.array(edges).reshape(-1, 2)
 
+    @property
+    def basis_errors(self) -> np.ndarray | None:
+        """Estimated relative errors of the thresholds by the basis, shape (t,).
+
+        Of a threshold or, where that is more, of a tenth of the range; None where not known.
+        """
+        if self.basis_shifts is None:
+            return None
+        return limit_errors(self.basis_shifts, self.values, self.high - self.low)
+
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of the frequencies."""
         shown = Units.of(units)
         frequencies = shown.frequencies(self.frequencies_inertial)
+        errors = self.basis_errors
         return {
             self.label: self.values,
             "onset": self.onset,
@@ -72,11 +98,19 @@ class StabilityThresholds(Result):
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(WHIRLS)[self.whirl_codes],
             "kind": families(self.whirl_codes, self.nodal_diameters),
+            "basis error": np.full(self.values.shape, np.nan) if errors is None else errors,
         }
 
     def table(self) -> str:
-        """Return the thresholds with the modes that grow there as lines of text."""
+        """Return the thresholds with the modes that grow there as lines of text.
+
+        The error of the basis is '-' where it is not estimated, see :attr:`basis_shifts`.
+        """
         lines = [f"{self.label:>13}   above      frequency [rad/s]  n  whirl    kind"]
+        errors = self.basis_errors
+        reduced = errors is not None and np.any(errors != 0.0)
+        if reduced:
+            lines[0] += "       basis error"
         kinds = families(self.whirl_codes, self.nodal_diameters)
         for row, (value, onset) in enumerate(zip(self.values, self.onset, strict=True)):
             n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
@@ -85,9 +119,11 @@ class StabilityThresholds(Result):
                 f"{self.frequencies_inertial[row]:20.5g}  {n if n >= 0 else '-'}  {word:8} "
                 f"{kinds[row]}"
             )
+            if reduced:
+                lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{in_table(errors[row]):>11}"
         if not self.values.size:
             lines.append(f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range")
-        return "\n".join(lines)
+        return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded."""

@@ -18,7 +18,7 @@ ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
 _DAMPED = 0.05
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
 # of the range: by which rates of change are told; changes below a share of |λ| are not
-_STEP, _NOISE = 1e-5, 1e-5
+STEP, _NOISE = 1e-5, 1e-5
 
 
 class Made(Protocol):
@@ -82,7 +82,7 @@ class Search:
 
     @property
     def _step(self) -> float:
-        return _STEP * self.span
+        return STEP * self.span
 
     def _meet(self, value: float, pair: np.ndarray, low: float, high: float) -> None:
         """Follow two motions to where their frequencies meet, until something is unstable.
@@ -130,7 +130,7 @@ class _Piece:
 
     @classmethod
     def between(cls, search: Search, low: float, high: float) -> _Piece:
-        growths, step = [search.at(value) for value in (low, high)], _STEP * search.span
+        growths, step = [search.at(value) for value in (low, high)], STEP * search.span
         rates = [search.rate(value, s) for value, s in ((low, step), (high, -step))]
         base, half = growths[1].base, 0.5 * (high - low)
         halfway = [growths[0].values + half * rates[0], growths[1].values - half * rates[1]]

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
-from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
-from exudyn_rotor.linear.stability.threshold_search import ASIDE, Search
+from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
+from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
 from exudyn_rotor.sweep import ascending_from_zero
 
 _ROOT = 1e-8  # of the largest parameter
+# share of λ or Ω: motions so near one another change with the root of what the basis leaves out
+_NEAR = 0.05
 Supports = Sequence[Support] | Support
 
 
@@ -57,7 +64,9 @@ def stability_threshold(
         Name of the parameter with its unit.
     **given
         Further arguments of :func:`stability`: `body`, `stiffening`, `method`, `tolerance`,
-        `modes`, `residual`.
+        `modes`, `residual`, `accuracy`. The last is the relative error of a threshold by the basis
+        of a reduced rotor, estimated, above which a warning is given: see
+        :attr:`StabilityThresholds.basis_errors`.
 
     Raises
     ------
@@ -105,17 +114,20 @@ def stability_threshold(
         search.at(float(point))
     search.refine()
     found = search.changes(_ROOT * max(abs(low), abs(high)))
-    names = [made.mode(value, ASIDE * (high - low) * (1 if on else -1)) for value, on in found]
-    columns = list(zip(*names, strict=True)) if names else [(), (), ()]
+    limits = [_limit(search, value, on, 0.5 * (low + high)) for value, on in found]
+    names = list(zip(*(limit.name for limit in limits), strict=True)) if limits else [(), (), ()]
+    values, shifts = np.array([value for value, _ in found]), _shifts(limits, made.accuracy)
+    _warn_of_basis(limits, shifts, values, high - low, label)
     return StabilityThresholds(
-        np.array([value for value, _ in found]),
+        values,
         np.array([on for _, on in found], dtype=bool),
-        np.array(columns[0], dtype=float),
-        *(np.array(column, dtype=np.int64) for column in columns[1:]),
+        np.array(names[0], dtype=float),
+        *(np.array(column, dtype=np.int64) for column in names[1:]),
         low,
         high,
         bool(search.at(low).excess > 0.0),
         label,
+        basis_shifts=shifts,
     )
 
 
@@ -125,7 +137,7 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     Every change between two neighbours of `speeds` is found to 1e-8 of the highest speed; a range
     narrower than their spacing can be missed: :func:`stability_threshold` looks for those, too. A
     range that is open at the first or last speed ends there. `given` are further arguments of
-    :func:`stability`.
+    :func:`stability`; `accuracy` is that of :func:`stability_threshold`.
 
     Examples
     --------
@@ -141,12 +153,71 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     array([[300., 400.]])
     """
     values = ascending_from_zero(speeds, "speeds")
-    search = Search(_OverSpeed.of(target, values[-1], given), values[-1])
+    made = _OverSpeed.of(target, values[-1], given)
+    search = Search(made, values[-1])
     unstable = [search.unstable(float(speed)) for speed in values]
     edges = [values[0]] if unstable[0] else []
-    edges += [value for value, _ in search.changes(_ROOT * values[-1])]
+    found = search.changes(_ROOT * values[-1])
+    edges += [value for value, _ in found]
     edges += [values[-1]] if unstable[-1] else []
+    if made.checked.left_out is not None:
+        limits = [_limit(search, value, on, 0.5 * (values[0] + values[-1])) for value, on in found]
+        shifts, at = _shifts(limits, made.accuracy), np.array([value for value, _ in found])
+        _warn_of_basis(limits, shifts, at, values[-1] - values[0], "speed [rad/s]")
     return np.array(edges).reshape(-1, 2)
+
+
+class _Limit(NamedTuple):
+    """The motion that grows beside a limit of stability, and what the basis does to the limit.
+
+    `name` is inertial frequency, whirl code and n; `shift` as one of
+    :attr:`StabilityThresholds.basis_shifts`, None where it is not known.
+    """
+
+    name: tuple[float, int, int]
+    shift: float | None
+    basis: BasisError
+
+
+def _limit(search: Search, value: float, onset: bool, middle: float) -> _Limit:
+    """Return what grows beside a limit; the slope of its growth is told towards the `middle`."""
+    away = search.span if onset else -search.span
+    beside = value + ASIDE * away
+    growth = search.known[beside] = search.made.growth(beside, named=True)
+    which = growth.least_stable
+    name = tuple(entries[which] for entries in growth.names)
+    basis, speed = search.made.basis(beside)
+    shifts = basis.shifts_of([speed], [growth.critical])
+    if shifts is None or shifts[0] == 0.0:
+        return _Limit(name, None if shifts is None else 0.0, basis)
+    step = STEP * search.span * (1.0 if beside < middle else -1.0)
+    slope = search.rate(beside, step)[which].real
+    apart = np.abs(fold(np.delete(growth.values, which) - growth.values[which], growth.base))
+    meets = apart.min(initial=np.inf) < _NEAR * max(speed, abs(growth.values[which]))
+    if meets or slope * away <= 0.0:
+        return _Limit(name, np.nan, basis)
+    return _Limit(name, float(-shifts[0].real / slope), basis)
+
+
+def _shifts(limits: Sequence[_Limit], accuracy: float | None) -> np.ndarray | None:
+    shifts = [limit.shift for limit in limits]
+    return None if accuracy is None or None in shifts else np.array(shifts, dtype=float)
+
+
+def _warn_of_basis(
+    limits: Sequence[_Limit],
+    shifts: np.ndarray | None,
+    values: np.ndarray,
+    span: float,
+    label: str,
+) -> None:
+    """Warn where the basis leaves out too much for the worst of the limits."""
+    if shifts is None or np.all(np.isnan(shifts)):
+        return
+    errors = limit_errors(shifts, values, span)
+    worst = int(np.nanargmax(errors))
+    what = f"the limit of stability at {values[worst]:.5g}, {label},"
+    limits[worst].basis.warn(errors[worst], what)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,30 +229,34 @@ class _Options:
     residual: float
     method: str
     tolerance: float
+    accuracy: float | None
 
     @classmethod
     def of(cls, given: dict) -> _Options:
         given = dict(given)
         method, tolerance = given.pop("method", "auto"), given.pop("tolerance", 1e-9)
         modes, residual = given.pop("modes", None), given.pop("residual", 1e-7)
+        accuracy = given.pop("accuracy", 1e-2)
+        options.check_basis_accuracy(accuracy)
         check_options(method, tolerance, modes, residual)
         unknown = set(given) - {"supports", "body", "stiffening"}
         if unknown:
             raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
-        return cls(given, modes, residual, method, tolerance)
+        return cls(given, modes, residual, method, tolerance, accuracy)
 
 
 class _Made:
-    """Growth over a parameter."""
+    """Growth over a parameter; `accuracy` is that of the basis."""
+
+    accuracy: float | None
 
     def growth(self, value: float, named: bool = False) -> Growth:
         """Return the growth, with the names of the motions if asked for."""
         raise NotImplementedError
 
-    def mode(self, value: float, aside: float) -> tuple[float, int, int]:
-        """Return inertial frequency, whirl code and n of what grows beside a threshold."""
-        growth = self.growth(value + aside, named=True)
-        return tuple(name[growth.least_stable] for name in growth.names)
+    def basis(self, value: float) -> tuple[BasisError, float]:
+        """Return the check of the basis, and the spin speed."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,6 +265,7 @@ class _OverSpeed(_Made):
 
     task: GrowthAt
     named: GrowthAt
+    checked: BasisError
 
     @classmethod
     def of(cls, target: Target, highest: float, given: dict) -> _OverSpeed:
@@ -197,10 +273,18 @@ class _OverSpeed(_Made):
         model = linear_model(target, **chosen.model)
         space = held_space(model, highest, chosen.modes, chosen.residual)
         parts = space, chosen.method, chosen.tolerance
-        return cls(GrowthAt(*parts), GrowthAt(*parts, WhirlContent.of(model)))
+        checked = BasisError.of(model, chosen.accuracy, held=True)
+        return cls(GrowthAt(*parts), GrowthAt(*parts, WhirlContent.of(model)), checked)
+
+    @property
+    def accuracy(self) -> float | None:
+        return self.checked.accuracy
 
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)
+
+    def basis(self, value: float) -> tuple[BasisError, float]:
+        return self.checked, value
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,11 +296,20 @@ class _OverParameter(_Made):
     speed: float
     options: _Options
 
+    @property
+    def accuracy(self) -> float | None:
+        return self.options.accuracy
+
     def growth(self, value: float, named: bool = False) -> Growth:
-        target = self.target(value) if callable(self.target) else self.target
-        supports = self.supports(value) if callable(self.supports) else self.supports
-        chosen = self.options
-        model = linear_model(target, supports=supports, **chosen.model)
+        chosen, model = self.options, self._model(value)
         space = held_space(model, self.speed, chosen.modes, chosen.residual)
         content = WhirlContent.of(model) if named else None
         return GrowthAt(space, chosen.method, chosen.tolerance, content)(self.speed)
+
+    def basis(self, value: float) -> tuple[BasisError, float]:
+        return BasisError.of(self._model(value), self.accuracy, held=True), self.speed
+
+    def _model(self, value: float) -> LinearModel:
+        target = self.target(value) if callable(self.target) else self.target
+        supports = self.supports(value) if callable(self.supports) else self.supports
+        return linear_model(target, supports=supports, **self.options.model)

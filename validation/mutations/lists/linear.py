@@ -398,6 +398,20 @@ LINEAR = [
     ),
     *mutations(
         "linear/stability/thresholds.py",
+        "test_basis_error.py",
+        (
+            "limit of the full model to the other side",
+            "float(-shifts[0].real / slope)",
+            "float(shifts[0].real / slope)",
+        ),
+        (
+            "limits where modes meet estimated like others",
+            "if meets or slope",
+            "if slope",
+        ),
+    ),
+    *mutations(
+        "linear/stability/thresholds.py",
         "test_stability.py test_stability_names.py",
         (
             "mode of a threshold from its stable side",
