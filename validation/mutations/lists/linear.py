@@ -415,8 +415,8 @@ LINEAR = [
         "test_stability.py test_stability_names.py",
         (
             "mode of a threshold from its stable side",
-            "(1 if on else -1)) for value, on in found",
-            "(-1 if on else 1)) for value, on in found",
+            "away = search.span if onset else -search.span",
+            "away = -search.span if onset else search.span",
         ),
         (
             "ranges in the wrong order of their ends",
