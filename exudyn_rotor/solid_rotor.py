@@ -123,10 +123,7 @@ class SolidRotor(FiniteElementRotor):
 
         Raises
         ------
-        TypeError
-            If `mesh` is not an ngsolve.Mesh, `materials` not a dictionary of numbers, or another
-            argument of the wrong kind.
-        ValueError
+        TypeError, ValueError
             If the mesh is no tetrahedral solid or falls into unconnected parts, a material or
             face is missing or impossible, or the units cannot be SI.
 
@@ -174,15 +171,13 @@ class SolidRotor(FiniteElementRotor):
             Whether springs to the ground are inside the stiffness matrix; needed only if the
             matrix itself does not tell.
         allow_parts : bool, optional
-            Take a model of several parts that the stiffness does not connect and that no springs
-            hold, see :meth:`from_ngsolve`.
+            Take several parts that neither the stiffness connects nor springs hold.
 
         Raises
         ------
-        TypeError
-            If `fem` is not a FEMinterface.
-        ValueError
-            If nodes carry rotations, something is missing, or a check of the matrices fails.
+        TypeError, ValueError
+            If `fem` is not a FEMinterface, nodes carry rotations, something is missing, or a check
+            of the matrices fails.
         """
         model = fem_interface.import_model(fem)
         return cls._of_model(model, axis, check_units, grounded, allow_parts)
@@ -210,27 +205,17 @@ class SolidRotor(FiniteElementRotor):
             Symmetric, ordered x0 y0 z0 x1 … [kg], [N/m], [N s/m]. The damping is optional.
         nodes : array_like, shape (n, 3)
             Reference positions [m].
-        axis : SpinAxis, str or array_like
-            Read by :meth:`SpinAxis.of`.
         interfaces : mapping, optional
             Name → node numbers, or name → (node numbers, weights).
         triangles : array_like of int, shape (t, 3) or (t, 6), optional
             Surface for drawing.
-        check_units : bool, optional
-            Refuse sizes and masses that cannot be in SI units.
-        grounded : bool, optional
-            Whether springs to the ground are inside the stiffness matrix; needed only if the
-            matrix itself does not tell.
-        allow_parts : bool, optional
-            Take a model of several parts that the stiffness does not connect and that no springs
-            hold, see :meth:`from_ngsolve`.
+        axis, check_units, grounded, allow_parts
+            As those of :meth:`from_fem_interface`.
 
         Raises
         ------
-        TypeError
-            If an array does not hold numbers, or node numbers are not integers.
-        ValueError
-            If a check fails: shape, finite entries, symmetry, I₃ blocks and positive mass,
+        TypeError, ValueError
+            If a check fails: kind, shape, finite entries, symmetry, I₃ blocks and positive mass,
             rigid motions, node numbers, units.
         """
         entries = {} if interfaces is None else checks.mapping(interfaces, "interfaces", "nodes")
@@ -279,12 +264,10 @@ class SolidRotor(FiniteElementRotor):
 
         Raises
         ------
-        TypeError
-            If `stress`, `yield_stress` or `speed` hold no numbers.
-        ValueError
-            If the rotor has no elements (not made by :meth:`from_ngsolve`) or carries a prestress
-            already, an interface is unknown, or `stress` belongs to another mesh or makes the
-            rotor buckle.
+        TypeError, ValueError
+            For values of the wrong kind, if the rotor has no elements (not made by
+            :meth:`from_ngsolve`) or carries a prestress already, an interface is unknown, or
+            `stress` belongs to another mesh or makes the rotor buckle.
 
         Warns
         -----
@@ -309,12 +292,10 @@ class SolidRotor(FiniteElementRotor):
 
         Raises
         ------
-        TypeError
-            If `prestress` is of another kind.
-        ValueError
-            If the rotor carries one already, or it belongs to another mesh or another static
-            state: other axis, mass, elasticity, springs or held nodes; or if its stress at rest
-            makes the rotor buckle.
+        TypeError, ValueError
+            If `prestress` is of another kind, belongs to another mesh or another static state
+            (other axis, mass, elasticity, springs or held nodes), or its stress at rest makes the
+            rotor buckle; and if the rotor carries one already.
         """
         return with_prestress(self, prestress)
 
