@@ -20,6 +20,7 @@ from test_stability import (
 from exudyn_rotor import (
     SolidRotor,
     Stability,
+    StabilityThresholds,
     Support,
     campbell,
     stability,
@@ -191,3 +192,12 @@ def test_picture_marks_the_least_stable_motion_through_its_threshold():
     drawn = {line.get_label(): line.get_ydata() for line in ax.lines}
     np.testing.assert_array_equal(drawn["least stable"], [-2.0, 0.0, 1.0])
     np.testing.assert_array_equal(drawn["axial"], 0.0)
+
+
+def test_thresholds_stand_below_their_heads():
+    label = "damping of the seal [N s/m]"
+    given = [[3e-7, 5e5], [True, False], [9.0, 9.0], [4, 0], [0, 1], 0.0, 1e6, False]
+    lines = StabilityThresholds(*given, label=label).table().splitlines()[:3]
+    assert [line[: len(label)].strip() for line in lines] == [label, "3e-07", "500000"]
+    kind = lines[0].index("kind")
+    assert [line[kind:] for line in lines[1:]] == ["torsional", "lateral"]

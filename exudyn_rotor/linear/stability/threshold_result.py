@@ -52,8 +52,8 @@ class StabilityThresholds(Result):
     >>> from exudyn_rotor import StabilityThresholds
     >>> result = StabilityThresholds([300.0], [True], [100.0], [0], [1], 0.0, 400.0, False)
     >>> print(result.table())
-    speed [rad/s]   above      frequency [rad/s]  n  whirl    kind
-              300   unstable                 100  1  forward  lateral
+    speed [rad/s]   above      frequency [rad/s]  n  whirl      kind
+              300   unstable                 100  1  forward    lateral
     error of the basis: not known
     """
 
@@ -106,7 +106,8 @@ class StabilityThresholds(Result):
 
         The error of the basis is '-' where it is not estimated, see :attr:`basis_shifts`.
         """
-        lines = [f"{self.label:>13}   above      frequency [rad/s]  n  whirl    kind"]
+        width = max(13, len(self.label))
+        lines = [f"{self.label:>{width}}   above      frequency [rad/s]  n  whirl      kind"]
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors != 0.0)
         if reduced:
@@ -115,8 +116,8 @@ class StabilityThresholds(Result):
         for row, (value, onset) in enumerate(zip(self.values, self.onset, strict=True)):
             n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
             lines.append(
-                f"{value:13.7g}   {'unstable' if onset else 'stable':8}"
-                f"{self.frequencies_inertial[row]:20.5g}  {n if n >= 0 else '-'}  {word:8} "
+                f"{value:{width}.7g}   {'unstable' if onset else 'stable':8}"
+                f"{self.frequencies_inertial[row]:20.5g}  {n if n >= 0 else '-'}  {word:9}  "
                 f"{kinds[row]}"
             )
             if reduced:

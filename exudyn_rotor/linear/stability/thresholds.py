@@ -89,8 +89,8 @@ def stability_threshold(
     array([300.])
     >>> given = {"supports": damped, "speed": 300.0, "samples": 4}
     >>> print(stability_threshold(rotor, 2.0, 20.0, label="inner damping", **given).table())
-    inner damping   above      frequency [rad/s]  n  whirl    kind
-         5.000001   unstable                 100  1  forward  lateral
+    inner damping   above      frequency [rad/s]  n  whirl      kind
+         5.000001   unstable                 100  1  forward    lateral
     """
     low = checks.number(low, "low")
     high = checks.number(high, "high", above=low)
