@@ -382,18 +382,15 @@ def _collected(
 
 def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray | str]:
     """Return what a response keeps beside its motion: the level, and what runs begin with."""
+    level = {"stiffening": model.stiffening}
     if kept_basis(model) is None:
-        return {"stiffening": model.stiffening}
+        return level
     top = max(abs(n) for one in solved for n in one.coordinates)
     coordinates = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
     for row, one in zip(coordinates, solved, strict=True):
         for n, x in one.coordinates.items():
             row[top + n] = x
-    return {
-        "stiffening": model.stiffening,
-        "coordinates": coordinates,
-        "basis": kept_basis(model),
-    }
+    return level | {"coordinates": coordinates, "basis": kept_basis(model)}
 
 
 def _check(frame: str, tolerance: float, residual: float, accuracy: float | None) -> None:
