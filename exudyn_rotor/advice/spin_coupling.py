@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import Request
+from exudyn_rotor.theory.formulation import PrescribedMotion
 
 _SMALL = 0.1  # of the accuracy, since whirl comes on top
 
@@ -18,7 +19,9 @@ def static_share(given: Candidate, speed: float) -> float:
     return float(load @ load / given.invariants.Theta)
 
 
-def spin_coupling_reasons(given: Candidate, request: Request, spin: object) -> list[str]:
+def spin_coupling_reasons(
+    given: Candidate, request: Request, spin: str | float | PrescribedMotion
+) -> list[str]:
     """Return a sentence about ``spin_coupling='frozen'`` for a free spin, none for another."""
     if spin != "free" or not given.frequencies.size:
         return []
