@@ -8,9 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from threading import Lock
 
 from threadpoolctl import ThreadpoolController
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return what is loaded; the search takes as long as two eigenvalue problems."""
+    return ThreadpoolController()
 
 
 class _Limit:
@@ -22,7 +29,7 @@ class _Limit:
     def take(self) -> None:
         with self._lock:
             if self._holders == 0:
-                self._limiter = ThreadpoolController().limit(limits=1, user_api="blas")
+                self._limiter = _libraries().limit(limits=1, user_api="blas")
             self._holders += 1
 
     def leave(self) -> None:
