@@ -26,6 +26,7 @@ from exudyn.itemInterface import (
 from exudyn.utilities import (
     GenericJoint,
     Gravity,
+    InertiaCuboid,
     RevoluteJointZ,
     RigidBodySpringDamper,
     SphericalJoint,
@@ -340,6 +341,12 @@ def test_assembly_warns_of_each_item_once_and_of_this_rotor_alone():
         s.mbs.Assemble()
         s.mbs.Reset()
         add_rotor(s.mbs, rotor("z"))
+        s.mbs.Assemble()
+        # another body in the place of the rotor, with a load that it can carry
+        s.mbs.Reset()
+        inertia = InertiaCuboid(density=1e3, sideLengths=[0.1, 0.1, 0.1])
+        s.mbs.CreateRigidBody(inertia=inertia, nodeType=exu.NodeType.RotationRxyz)
+        s.mbs.AddLoad(LoadCoordinate(markerNumber=tilt_of(s), load=1.0))
         s.mbs.Assemble()
 
 
