@@ -145,6 +145,13 @@ def test_gaps_between_unstable_samples_are_found():
     assert found.plot().get_xlim() == (150.0, 180.0)
 
 
+def test_a_gap_far_from_the_middle_of_two_samples_is_found():
+    """The search goes to where growth falls; it would miss this gap on any other way."""
+    found = stability_threshold(asymmetric_shaft(), 171.0, 179.0, supports=anisotropic(), samples=2)
+    (_, end), (start, _) = found.ranges
+    assert np.abs(inertial_multipliers(0.5 * (end + start))).max() < 1.0
+
+
 def families_of(growth: dict[str, list[float]], speeds: list[float]) -> Stability:
     """Return a result with one motion for each word of whirl."""
     exponents = np.array(list(growth.values())).T + 100j
