@@ -137,8 +137,7 @@ def report(
 def _sections(contents: Any) -> list[tuple[str, list[Any]]]:
     """Return headings with the objects under them, all checked."""
     sections = []
-    several = isinstance(contents, list | tuple | np.ndarray)
-    for number, content in enumerate(contents if several else [contents]):
+    for number, content in enumerate(contents if _several(contents) else [contents]):
         named = content if isinstance(content, Mapping) else {_heading(content): content}
         for heading, given in named.items():
             checks.label(heading, "contents: heading")
@@ -149,9 +148,13 @@ def _sections(contents: Any) -> list[tuple[str, list[Any]]]:
     return sections
 
 
+def _several(given: Any) -> bool:
+    return isinstance(given, list | tuple) or (isinstance(given, np.ndarray) and given.ndim > 0)
+
+
 def _items(given: Any, where: str) -> list[Any]:
     """Return the objects of a sequence, and of sequences and arrays of axes in it."""
-    if isinstance(given, list | tuple | np.ndarray):
+    if _several(given):
         return [item for one in list(given) for item in _items(one, where)]
     _check(given, where)
     return [given]

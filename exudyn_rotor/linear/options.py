@@ -23,7 +23,7 @@ def accuracy(value: float, name: str) -> float:
 def check_basis_accuracy(value: float | None) -> None:
     """Check the largest error by the basis of a reduced rotor, or None: `accuracy`."""
     if value is not None:
-        checks.number(value, "accuracy", above=0.0, most=1.0)
+        checks.tolerance(value, "accuracy")
 
 
 def check_sweep(executor: Executor | None, progress: bool) -> None:
