@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from threading import Lock
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -28,7 +28,7 @@ class Attached(Generic[Rotor]):
     """
 
     def __init__(self, compute: Callable[[], tuple[Rotor | None, np.ndarray | None]]) -> None:
-        self._compute = compute
+        self._compute, self._lock = compute, Lock()
 
     @classmethod
     def known(cls, rotor: Rotor, columns: np.ndarray | None) -> Attached:
@@ -52,11 +52,13 @@ class Attached(Generic[Rotor]):
         """Send to other processes what is known, not the full model."""
         return _sent, self._both
 
-    @cached_property
+    @property
     def _both(self) -> tuple[Rotor | None, np.ndarray | None]:
-        both = self._compute()
-        del self._compute  # and the full model with it
-        return both
+        with self._lock:  # threads may share a rotor
+            if self._compute is not None:
+                self._computed = self._compute()
+                self._compute = None  # and the full model with it
+        return self._computed
 
     @property
     def rotor(self) -> Rotor | None:
