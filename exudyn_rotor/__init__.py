@@ -9,6 +9,7 @@ from exudyn_rotor.advice.energy_balance import EnergyBalance, energy_balance
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
     anticipated_cross_coupling,
@@ -22,7 +23,6 @@ from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, criti
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response

@@ -18,9 +18,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import COEFFICIENTS, Support
 from exudyn_rotor.export import csv_text
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.supports import COEFFICIENTS, Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.storage import write_text

@@ -8,13 +8,13 @@ from models import STEEL, block_beam, disc_rotor, two_masses
 from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import SolidRotor, campbell, linear_model, plotting, stability
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.campbell import Campbell
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.protocol import PointMotions
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.results import load_result

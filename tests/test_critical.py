@@ -8,9 +8,9 @@ from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
 from exudyn_rotor import SolidRotor, campbell
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.results import load_result
 
 KY, KZ = 196e4, 100e4  # Appendix B, unit masses

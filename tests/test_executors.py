@@ -8,7 +8,7 @@ import pytest
 from dask.distributed import Client, LocalCluster
 from point_rotors import ring_rotor
 
-from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.response.steady_response import unbalance_response
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.sweep import sweep

@@ -10,7 +10,7 @@ from point_rotors import ring_rotor
 from small_results import STORED
 
 from exudyn_rotor import plotting, results
-from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response

@@ -10,17 +10,17 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 _BALANCED = 1e-5  # share of the rotor's size by which a mesh may be off the axis
 _ORDER = 2  # harmonics of the speed by which turning coefficients couple: bearings, foundations

@@ -18,7 +18,7 @@ from exudyn_rotor.advice.spin_coupling import spin_coupling_reasons
 from exudyn_rotor.advice.step_size import Step, choose_step
 from exudyn_rotor.advice.stiffening_level import Level, choose_level
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.linear.models.supports import Support
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.truncation import keep_modes

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.campbell import campbell
 from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling is not changed

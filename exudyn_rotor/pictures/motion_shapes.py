@@ -11,12 +11,12 @@ import numpy as np
 from mpl_toolkits.mplot3d import Axes3D
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, axes_of
 from exudyn_rotor.pictures.drawing import Orbit, animated, draw_motion
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.rotating_axes import FRAMES, axes_of
 from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.linear_model import (
@@ -16,7 +17,6 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Mesh
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.response.harmonic_loads import unbalance_load
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.pictures.motion_shapes import MotionShapes

@@ -318,6 +318,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "MotionShapes.displacement": lambda w: {"index": 0, "time": 0.1},
     "MotionShapes.orbits": lambda w: {"index": 0},
     "MotionShapes.to_vtk": lambda w: {"path": w.folder / "shape.vtu"},
+    "Support.check_range": lambda w: {"speed": 10.0},
     "Support.matrices": lambda w: {"speed": 10.0},
     "Support.terms": lambda w: {"speed": 10.0},
     "Unbalance.from_grade": lambda w: {"at": "left", "grade": 2.5, "mass": 5.0, "speed": 300.0},

@@ -9,8 +9,8 @@ from tqdm import tqdm
 
 from exudyn_rotor import ReducedRotor, SolidRotor, Support, Unbalance, unbalance_response
 from exudyn_rotor.demo.scene import BEARINGS, START_SPEED
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
+from exudyn_rotor.theory.rotating_axes import axes_of
 from validation.trade.error import Row
 from validation.trade.scene import (
     CRAIG_BAMPTON,

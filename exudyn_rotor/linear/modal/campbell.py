@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
@@ -23,7 +24,6 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.bearings.support import Support, checked_supports
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.critical_speeds import (
@@ -23,7 +24,6 @@ from exudyn_rotor.linear.modal.critical_speeds import (
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor

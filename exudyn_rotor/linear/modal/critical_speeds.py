@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
@@ -21,7 +22,6 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_left_out_stiffening,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.theory.stiffening import LEVELS

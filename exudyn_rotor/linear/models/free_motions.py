@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind, rigid_names
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 # share of the largest rigid-body stiffness, per unit mass, that counts as none
 _HELD = 1e-10

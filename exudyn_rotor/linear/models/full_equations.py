@@ -10,16 +10,16 @@ from typing import TypeVar
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.bearings.support import Support, check_interfaces
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
-from exudyn_rotor.linear.models.supports import Support, check_interfaces
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import (
     NO_PRESTRESS,

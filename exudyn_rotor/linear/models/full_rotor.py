@@ -15,7 +15,7 @@ from exudyn_rotor.linear.models.full_equations import FullEquations
 from exudyn_rotor.linear.models.points import spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.subspace import Subspace
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import exudyn
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support, checked_supports
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.supports import Support, checked_supports
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

@@ -11,8 +11,8 @@ import scipy.sparse as sp
 
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from exudyn_rotor.bearings.support import Support, check_interfaces
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.identity_basis import as_reduced
@@ -20,14 +21,13 @@ from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
-from exudyn_rotor.linear.models.supports import Support, check_interfaces
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import chosen_level
 from exudyn_rotor.theory.stiffening import stiffening as second_order

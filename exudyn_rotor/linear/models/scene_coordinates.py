@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,13 +25,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 # of the largest rigid motion: nodes on one line are not displaced by a rotation about it
 _NO_MOTION = 1e-6

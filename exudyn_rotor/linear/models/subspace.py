@@ -22,11 +22,11 @@ from exudyn_rotor.linear.models.spin import seeds
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, floquet_modes
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion, senses_of_turning
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.solvers.lanczos import lanczos_modes
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
 

@@ -8,14 +8,14 @@ from typing import TypeVar
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.eccentricity import is_balanced
 from exudyn_rotor.linear.models.points import radius_of_gyration
 from exudyn_rotor.linear.models.spin import Spin
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 Kind = TypeVar("Kind", bound="SupportedRotor")
 

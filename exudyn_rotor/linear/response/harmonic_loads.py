@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_rotor_frame
 from exudyn_rotor.linear.response.places import At, Place, place
 from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.theory.rotating_axes import FRAMES, into_rotor_frame
 
 
 @dataclass(frozen=True, eq=False)

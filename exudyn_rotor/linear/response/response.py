@@ -12,12 +12,12 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
-from exudyn_rotor.linear.periodic.rotating_axes import FRAMES
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
 from exudyn_rotor.linear.response.refinement import peak_between
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
+from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 

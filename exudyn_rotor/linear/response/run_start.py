@@ -16,13 +16,13 @@ from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.periodic.rotating_axes import axes_of
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one

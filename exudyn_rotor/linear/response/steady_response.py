@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import (
@@ -22,8 +23,6 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_left_out_stiffening,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
-from exudyn_rotor.linear.models.supports import Support
-from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, into_inertial_frame
 from exudyn_rotor.linear.response.basis_check import (
     HARMONICS,
     looked_at,
@@ -43,6 +42,7 @@ from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.theory.rotating_axes import FRAMES, into_inertial_frame
 
 _MODES = 6  # that the subspace of a full rotor begins with
 

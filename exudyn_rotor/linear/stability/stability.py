@@ -14,11 +14,11 @@ from concurrent.futures import Executor
 import numpy as np
 from numpy.typing import ArrayLike
 
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.stability.growth import GrowthAt, check_options, held_space
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.multibody.rotor_body import RotorBody

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.supports import Support
 from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors

@@ -1,6 +1,7 @@
 """All mutations, by folder of the package."""
 
 from validation.mutations.lists.advice import ADVICE
+from validation.mutations.lists.bearings import BEARINGS
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.multibody import MULTIBODY
@@ -19,6 +20,7 @@ ALL = (
     *SOLID,
     *PRESTRESS,
     *REDUCTION,
+    *BEARINGS,
     *MULTIBODY,
     *LINEAR,
     *EVALUATION,

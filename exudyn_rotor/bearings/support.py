@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.periodic.rotating_axes import FRAMES, turned_harmonics
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import FRAMES, turned_harmonics
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
 _TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))  # ẽ of displacement and rotation
+_ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
@@ -106,7 +107,7 @@ class Support:
         ValueError
             If the speed is beyond a table that may not be extrapolated.
         """
-        self._check_range(speed)
+        self.check_range(speed)
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
             return {0: damping}, {0: stiffness}
@@ -124,11 +125,21 @@ class Support:
         values = (self.stiffness, self.tilt_stiffness)
         return any(callable(value) or isinstance(value, tuple) for value in values)
 
-    def _check_range(self, speed: float) -> None:
-        """Refuse a speed [rad/s] beyond the end of a table."""
+    def check_range(self, speed: float) -> None:
+        """Refuse a speed [rad/s] beyond the end of a table; rounding at the end is none.
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        checks.number(speed, "speed", "rad/s")
         for name in () if self.extrapolate else COEFFICIENTS:
             value = getattr(self, name)
-            if isinstance(value, tuple) and not value[0][0] <= speed <= value[0][-1]:
+            if not isinstance(value, tuple):
+                continue
+            slack = _ROUNDING * np.abs(value[0]).max()
+            least, most = value[0][0] - slack, value[0][-1] + slack
+            if not least <= speed <= most:
                 raise ValueError(
                     f"support at {self.interface!r}: the table of its {name} holds "
                     f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "
@@ -246,6 +257,10 @@ def _acts(value: Coefficient) -> bool:
 
 def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.ndarray:
     """Interpolate a table over the spin speed; constant beyond its ends."""
-    flat = values.reshape(len(values), -1)
-    columns = [np.interp(speed, speeds, column) for column in flat.T]
-    return np.array(columns).reshape(values.shape[1:])
+    if len(speeds) == 1:
+        return values[0]
+    above = min(max(int(np.searchsorted(speeds, speed)), 1), len(speeds) - 1)
+    low, high = speeds[above - 1], speeds[above]
+    share = (speed - low) / (high - low)
+    share = min(max(share, 0.0), 1.0)
+    return (1.0 - share) * values[above - 1] + share * values[above]

@@ -1,0 +1,1 @@
+"""Bearings and supports: their laws, for scenes and linear analyses alike."""
