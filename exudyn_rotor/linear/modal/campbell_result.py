@@ -37,7 +37,7 @@ class Campbell(Result):
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
     frequencies_rotor : ndarray, shape (s, k)
-        Natural frequencies ν = |Im λ| seen in the rotor frame, ascending [rad/s].
+        Natural frequencies ``ν = |Im λ|`` seen in the rotor frame, ascending [rad/s].
     growth : ndarray, shape (s, k)
         Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
     frequencies_inertial : ndarray, shape (s, k)

@@ -62,7 +62,7 @@ def stability(
     tolerance : float
         Error of periodic exponents relative to Ω.
     modes : int, optional
-        How many modes of a large SolidRotor, those of smallest |λ| in the rotor frame; 10 by
+        How many modes of a large SolidRotor, those of smallest ``|λ|`` in the rotor frame; 10 by
         default. The growth of modes above them is not looked at.
     residual : float, optional
         Largest relative residual of those modes; see :meth:`Subspace.modes`.
