@@ -136,3 +136,16 @@ def test_bad_options_are_refused(beam, options, error, message):
 def test_number_of_modes_is_for_full_models(beam):
     with pytest.raises(ValueError, match="only for a large SolidRotor"):
         stability(beam.reduce(2), [100.0], supports=SUPPORTS["isotropic"], modes=3)
+
+
+def test_slow_motions_near_a_critical_speed_are_not_taken_for_free_ones(shaft):
+    """In the rotor frame the forward motion stands still there: λ = i(ω − Ω).
+
+    Rigid on equal bearings, ω = √(k/m) to the 5e-7 by which the rotor is not rigid.
+    """
+    critical = np.sqrt(2.0 * SOFT / shaft.total_mass)
+    options = {"supports": internally_damped(), "modes": 6}
+    found = stability(shaft, critical * np.array([1.0 - 1e-4, 1.0 + 1e-4]), **options)
+    slowest = np.abs(found.exponents.imag).min(axis=1)
+    np.testing.assert_allclose(slowest, 1e-4 * critical, rtol=0.05)
+    assert found.stable.all()

@@ -274,7 +274,7 @@ def _about_steady_motion(
         terms = [_terms(*entry) for entry in _scaled(points)]
         if any(X is None for X in terms):
             return None
-        system = PeriodicSystem(speed, *terms, scene.structural_damping)
+        system = PeriodicSystem(speed, *terms, scene.structural_damping, probe.rounding)
         if scene.about == "given":
             return system, orders, Y
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples

@@ -10,6 +10,7 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
@@ -40,6 +41,11 @@ class Probe:
         if motion.is_constant:
             zero = np.zeros(motion.size)
             self.constant = motion.forces(0.0, zero, zero), *motion.jacobian(0.0, zero, zero)
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of derivatives: of positions of order 1 m, and of the curvature left."""
+        return EPSILON / self.step + _CURVATURE**2
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""

@@ -159,7 +159,7 @@ class Subspace:
         """Return some modes in all 3n coordinates."""
         basis = self.basis[:, 1:] if self.held else self.basis
         vectors = np.einsum("cv,hvk->hck", basis, modes.vectors[:, :, chosen])
-        return FloquetModes(modes.values[chosen], vectors, modes.orders, modes.resolution)
+        return replace(modes.columns(chosen), vectors=vectors)
 
     def holds(self, motions: Sequence[tuple[float, FloquetModes]]) -> bool:
         """Return whether motions meet the full equations; else the subspace has grown for them."""

@@ -13,9 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import Companion, inverse_iterated, resolution_of
+from exudyn_rotor.linear.periodic.eigenvalues import (
+    Companion,
+    inverse_iterated,
+    resolution_of,
+    resolved,
+)
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.fundamental import floquet_exponents, floquet_motions
+from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
@@ -24,13 +29,12 @@ from exudyn_rotor.linear.periodic.periodic_system import (
 )
 
 METHODS = ("auto", "floquet", "hill", "eigen")
-_NEUTRAL = 1e-7  # |λ|/Ω of a free rigid motion: a double zero keeps half the digits
 
 
 def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1e-9) -> np.ndarray:
     """Return the 2k exponents of one system [1/s], descending in their real parts.
 
-    Free rigid motions (``|λ| < 1e-7 Ω``) are returned as zeros.
+    Those that rounding cannot tell from zero, as of free rigid motions, are returned as zeros.
 
     Parameters
     ----------
@@ -45,15 +49,8 @@ def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1
     ValueError
         For 'eigen' where the system is periodic, and where `tolerance` is not reached.
     """
-    constant = system.is_constant or system.speed == 0.0
-    check_eigen(system, method)
-    if constant and method != "floquet":
-        values = constant_exponents(system).astype(complex)
-    elif method == "floquet":
-        values = floquet_exponents(system, tolerance)
-    else:
-        values = _by_hill(system, tolerance, fall_back=method == "auto")
-    return in_order(values, system.speed)
+    values = fold(motions(system, method, tolerance, False).values, abs(system.base))
+    return values[descending(values)]
 
 
 def motions(
@@ -61,7 +58,8 @@ def motions(
 ) -> FloquetModes:
     """Return the 2k exponents with their motions, in any order; arguments of :func:`exponents`.
 
-    Without `shapes` they may lack coordinates, which is faster where the system is constant.
+    Without `shapes` their vectors may err by rounding, which is faster where the system is
+    constant.
 
     Their imaginary parts are those of the most central copies. By Floquet's method they are known
     but for multiples of the base, and a motion is what it is at θ = 0, as one harmonic.
@@ -77,38 +75,23 @@ def motions(
             if method == "hill":
                 raise
         else:
-            rest = solution.orders, solution.resolution
+            rest = solution.orders, solution.resolution, chosen.bounds
             return FloquetModes(chosen.values, chosen.shapes, *rest)
-    values, states = floquet_motions(system, tolerance)
-    return FloquetModes(values, states[None, : system.size], np.array([0]), 0.0)
+    values, states, bounds = floquet_motions(system, tolerance)
+    shapes = states[None, : system.size]
+    return FloquetModes(resolved(values, bounds), shapes, np.array([0]), 0.0, bounds)
 
 
 def _constant_motions(system: PeriodicSystem, shapes: bool) -> FloquetModes:
-    if not shapes:
-        values = constant_exponents(system).astype(complex)
-        nothing = np.zeros((1, 0, len(values)))
-        return FloquetModes(_resolved(values), nothing, np.array([0]), resolution_of(values))
     matrices = system.matrices(0.0)
-    values, states = Companion.of(*matrices).modes()
-    resolution, values = resolution_of(values), _resolved(values.astype(complex))
-    vectors = inverse_iterated(values, states[: system.size], *matrices)
-    return FloquetModes(values, vectors[None], np.array([0]), resolution)
-
-
-def _resolved(values: np.ndarray) -> np.ndarray:
-    """Return values with zero for those that cannot be told from it."""
-    return np.where(np.abs(values) <= resolution_of(values), 0.0, values)
-
-
-def in_order(values: np.ndarray, speed: float) -> np.ndarray:
-    """Return exponents with neutral ones set to zero, descending in their real parts."""
-    values = without_neutral(values, speed)
-    return values[descending(values)]
-
-
-def without_neutral(values: np.ndarray, speed: float) -> np.ndarray:
-    """Return exponents with free rigid motions set to zero."""
-    return np.where(np.abs(values) < _NEUTRAL * speed, 0.0, values)
+    companion = Companion.of(*matrices, system.rounding)
+    values, states = companion.modes()
+    errors, bounds = companion.errors
+    resolution, values = resolution_of(values), resolved(values, errors).astype(complex)
+    vectors = states[: system.size]
+    if shapes:
+        vectors = inverse_iterated(values, vectors, *matrices)
+    return FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
 
 
 def descending(values: np.ndarray) -> np.ndarray:
@@ -128,15 +111,6 @@ def check_eigen(system: PeriodicSystem, method: str) -> None:
 def constant_exponents(system: PeriodicSystem) -> np.ndarray:
     """Return the 2k eigenvalues of ``λ²M + λD + K`` with the matrices at θ = 0 [1/s]."""
     return Companion.of(*system.matrices(0.0)).values()
-
-
-def _by_hill(system: PeriodicSystem, tolerance: float, fall_back: bool) -> np.ndarray:
-    try:
-        return hill_exponents(system, tolerance)[0]
-    except UnconvergedError:
-        if not fall_back:
-            raise
-        return floquet_exponents(system, tolerance)
 
 
 def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.ndarray, float]:

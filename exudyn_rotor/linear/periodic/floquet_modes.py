@@ -34,12 +34,15 @@ class FloquetModes:
         The harmonics m; only 0 for a constant system.
     resolution : float
         Eigenvalues closer than this cannot be told apart [1/s].
+    bounds : ndarray, shape (k,), optional
+        By how much rounding and the harmonics left out can change the real parts [1/s].
     """
 
     values: np.ndarray
     vectors: np.ndarray
     orders: np.ndarray
     resolution: float
+    bounds: np.ndarray | None = None
 
     @property
     def central(self) -> np.ndarray:
@@ -48,7 +51,9 @@ class FloquetModes:
 
     def columns(self, chosen: np.ndarray) -> FloquetModes:
         """Return some of the modes."""
-        return replace(self, values=self.values[chosen], vectors=self.vectors[:, :, chosen])
+        bounds = None if self.bounds is None else self.bounds[chosen]
+        vectors = self.vectors[:, :, chosen]
+        return replace(self, values=self.values[chosen], vectors=vectors, bounds=bounds)
 
 
 def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> FloquetModes:
@@ -67,13 +72,15 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
         If modes are lost, or the harmonics do not die away.
     """
     if system.is_constant or system.speed == 0.0:
-        values, vectors, resolution = quadratic_modes(*system.matrices(0.0))
-        return FloquetModes(values, vectors[None], np.array([0]), resolution)
+        given = *system.matrices(0.0), system.rounding
+        values, vectors, resolution, bounds = quadratic_modes(*given)
+        return FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
 
     chosen, solution, _ = solve_hill(
         system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance
     )
-    return FloquetModes(chosen.values, chosen.shapes, solution.orders, solution.resolution)
+    rest = solution.orders, solution.resolution, chosen.bounds
+    return FloquetModes(chosen.values, chosen.shapes, *rest)
 
 
 def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:

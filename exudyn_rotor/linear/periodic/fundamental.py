@@ -33,8 +33,8 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
     if system.speed == 0.0:
         raise ValueError("floquet: at 0 rad/s the coefficients have no period")
     period = 2.0 * np.pi / abs(system.base or system.speed)
-    fastest = np.abs(np.linalg.eigvals(_state_matrix(*system.matrices(0.0)))).max()
-    scale = np.repeat([fastest or 1.0, 1.0], system.size)
+    scale = _scale(system)
+    fastest = scale[0]
     steps = max(8, 2 ** int(np.ceil(np.log2(0.5 * fastest * period + 1.0))))
     error, last = np.inf, None
     while steps <= MOST_STEPS:
@@ -49,6 +49,12 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
         f"floquet at {system.speed:g} rad/s: error {error:.1e} with {MOST_STEPS} steps a period, "
         f"more than the tolerance {tolerance:.1e}; use method='hill', or fewer high modes"
     )
+
+
+def _scale(system: PeriodicSystem) -> np.ndarray:
+    """Return max|λ| at θ = 0 for x, 1 for ẋ, shape (2k,)."""
+    fastest = np.abs(np.linalg.eigvals(_state_matrix(*system.matrices(0.0)))).max()
+    return np.repeat([fastest or 1.0, 1.0], system.size)
 
 
 def _magnus(system: PeriodicSystem, period: float, steps: int) -> np.ndarray:
@@ -88,12 +94,22 @@ def floquet_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> np.nda
 
 def floquet_motions(
     system: PeriodicSystem, tolerance: float = 1e-9
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the 2k exponents [1/s], and the states (x, ẋ) at θ = 0 as columns."""
-    multipliers, states = np.linalg.eig(monodromy(system, tolerance))
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the 2k exponents, the states (x, ẋ) at θ = 0 as columns, and bounds of the error.
+
+    The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε``, and by
+    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says.
+    """
+    fundamental = monodromy(system, tolerance)
+    scale = _scale(system)
+    scaled = scale[:, None] * fundamental / scale
+    multipliers, states = np.linalg.eig(scaled)
     base = abs(system.base or system.speed)
     values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
-    return fold(values, base), states.astype(complex)
+    condition = np.linalg.norm(np.linalg.pinv(states), axis=1)
+    error = (len(scale) * system.rounding + tolerance) * np.linalg.norm(scaled)
+    bounds = condition * error / np.abs(multipliers) * base / (2.0 * np.pi)
+    return fold(values, base), states.astype(complex) / scale[:, None], bounds
 
 
 def _state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:

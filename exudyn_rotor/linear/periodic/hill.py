@@ -15,11 +15,11 @@ Math. 8 (1886).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import Companion, resolution_of
+from exudyn_rotor.linear.periodic.eigenvalues import Companion, resolution_of, resolved
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 
 MOST_UNKNOWNS = 1600  # in first-order form
@@ -63,6 +63,8 @@ class HillSolution:
     orders : ndarray of int, shape (h,)
     resolution : float
         Eigenvalues closer than this cannot be told apart [1/s].
+    bounds : ndarray, shape (j,)
+        By how much rounding can change the real parts [1/s].
     """
 
     values: np.ndarray
@@ -70,6 +72,7 @@ class HillSolution:
     states: np.ndarray
     orders: np.ndarray
     resolution: float
+    bounds: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,12 +87,15 @@ class Chosen:
         λ and harmonics, which may be better than those of the solution where copies coincide.
     sizes : ndarray, shape (j,)
         What the error of each λ is relative to [1/s].
+    bounds : ndarray, shape (j,), optional
+        By how much rounding and the harmonics left out can change the real parts [1/s].
     """
 
     columns: np.ndarray
     values: np.ndarray
     shapes: np.ndarray
     sizes: np.ndarray
+    bounds: np.ndarray | None = None
 
 
 Choice = Callable[[HillSolution], Chosen | None]
@@ -131,18 +137,22 @@ def solve_hill(
             shifts = _shifts(system, companion, solution, chosen.columns)
             error = float(np.max(np.abs(shifts) / chosen.sizes, initial=0.0))
             if error <= tolerance:
-                return chosen, solution, error
+                bounds = solution.bounds[chosen.columns] + np.abs(shifts)
+                return replace(chosen, bounds=bounds), solution, error
         last, order = order, order + step * max(1, order // (2 * step))
 
 
 def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, HillSolution]:
     """Return all motions of one truncation."""
     u = _real_basis(len(orders))
-    companion = Companion.of(*(_turned(X, u) for X in hill_matrices(system, orders)))
+    matrices = (_turned(X, u) for X in hill_matrices(system, orders))
+    companion = Companion.of(*matrices, system.rounding)
     values, states = companion.modes()
+    errors, bounds = companion.errors
     half = len(states) // 2
     shapes = np.einsum("nh,nkj->hkj", u.conj(), states[:half].reshape(len(orders), -1, 2 * half))
-    return companion, HillSolution(values, shapes, states, orders, resolution_of(values))
+    resolution, values = resolution_of(values), resolved(values, errors)
+    return companion, HillSolution(values, shapes, states, orders, resolution, bounds)
 
 
 def _real_basis(count: int) -> np.ndarray:
@@ -176,7 +186,7 @@ def _shifts(
     )
     u = _real_basis(len(solution.orders))
     load = np.einsum("nh,hkj->nkj", u, feedback).reshape(-1, len(columns))
-    return companion.shifts(solution.states, load, columns)
+    return companion.shifts(load, columns)
 
 
 def _feedback(

@@ -14,6 +14,7 @@ from math import gcd
 
 import numpy as np
 
+EPSILON = float(np.finfo(float).eps)
 Terms = Mapping[int, np.ndarray]
 
 
@@ -34,6 +35,8 @@ class PeriodicSystem:
     H : ndarray, shape (k, k), optional
         Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i sign(ν) H``. Only
         :func:`forced_motion` knows the frequency ν; all else leaves it out.
+    rounding : float
+        Relative error of the entries of D and K, that of one operation by default.
     """
 
     speed: float
@@ -41,6 +44,7 @@ class PeriodicSystem:
     D: Terms
     K: Terms
     H: np.ndarray | None = None
+    rounding: float = EPSILON
 
     @property
     def size(self) -> int:
@@ -87,7 +91,7 @@ class PeriodicSystem:
             {n: basis.T @ X @ basis for n, X in terms.items()} for terms in (self.M, self.D, self.K)
         )
         H = None if self.H is None else basis.T @ self.H @ basis
-        return PeriodicSystem(self.speed, *parts, H)
+        return PeriodicSystem(self.speed, *parts, H, self.rounding)
 
 
 def fold(exponents: np.ndarray, base: float) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,13 +15,11 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
-from exudyn_rotor.linear.periodic.exponents import METHODS, descending, without_neutral
+from exudyn_rotor.linear.periodic.exponents import METHODS, descending
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
-from exudyn_rotor.linear.periodic.verified import verified
 from exudyn_rotor.threads import one_thread
 
-_ROUND_OFF = 1e-13  # of eigenvalues, as a share of the highest frequency
 _MODES = 10  # of a large SolidRotor
 
 
@@ -70,23 +68,19 @@ class GrowthAt:
     def __call__(self, speed: float) -> Growth:
         shapes = self.content is not None
         modes, system = self.space.motions(speed, self.method, self.tolerance, shapes)
-        return growth_of(modes, system, self.tolerance, self.content)
+        return growth_of(modes, system, self.content)
 
 
 def growth_of(
     modes: FloquetModes,
     system: PeriodicSystem,
-    tolerance: float,
     content: WhirlContent | None = None,
 ) -> Growth:
     """Return the growth of all motions of a system, in order."""
-    values, speed = without_neutral(modes.values, system.speed), system.speed
-    bounds = _bounds(values, system, tolerance)
-    if system.is_constant or speed == 0.0 or len(modes.orders) > 1:
-        values = verified(values, bounds, system, modes.orders)
+    values, speed, bounds = modes.values, system.speed, modes.bounds
     names: tuple[np.ndarray, ...] = ()
     if content is not None:
-        names = content.named(replace(modes, values=values), speed)[1:]
+        names = content.named(modes, speed)[1:]
     folded = fold(values, abs(system.base))
     order = descending(folded)
     names = tuple(name[order] for name in names)
@@ -95,11 +89,6 @@ def growth_of(
     if content is None or not (constant or len(modes.orders) > 1):
         return growth
     return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
-
-
-def _bounds(values: np.ndarray, system: PeriodicSystem, tolerance: float) -> np.ndarray:
-    fastest = np.sqrt(np.abs(np.diag(system.K[0]) / np.diag(system.M[0])).max())
-    return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest
 
 
 def held_space(model: LinearModel, fastest: float, modes: int | None, residual: float) -> Space:

@@ -159,7 +159,7 @@ def _map_point(
 ) -> tuple[float, float]:
     built = build(*point)
     if isinstance(built, PeriodicSystem):
-        growth = growth_of(motions(built, method, tolerance, False), built, tolerance)
+        growth = growth_of(motions(built, method, tolerance, False), built)
     else:
         if not isinstance(built, tuple) or len(built) != 2:
             raise TypeError(

@@ -40,8 +40,8 @@ class Stability(Result):
     base : ndarray, shape (s,)
         Frequency of the coefficients [rad/s], 0 where they are constant.
     bounds : ndarray, as exponents
-        Real parts that truncation and rounding can feign [1/s]: ``tolerance · max(Ω, |λ|)`` and
-        rounding. Growth above it that the motion's own energies do not confirm is rounding, too.
+        Real parts that rounding, of the matrices and of the eigensolver, and harmonics left out can
+        feign [1/s], from the condition of each exponent.
     frequencies_inertial : ndarray, as exponents
         Frequency of the motion's strongest wave seen from outside [rad/s], not modulo `base`; by
         Floquet's method, where Hill's does not converge, modulo `base`.

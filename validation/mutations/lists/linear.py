@@ -280,14 +280,33 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/periodic/verified.py",
+        "linear/periodic/eigenvalues.py",
         "test_growth_by_rounding.py",
         (
-            "skew damping taken for symmetric",
-            "0.5 * (D - D.conj().T) @ x).imag",
-            "0.5 * (D + D.conj().T) @ x).imag",
+            "lengths of states that are no energies",
+            "sizes = np.sqrt(np.where(squared > 0.0, squared, scale**2))",
+            "sizes = np.full(len(squared), scale)",
         ),
-        ("stiffness with the other sign", "b * b - 4.0 * a * c", "b * b + 4.0 * a * c"),
+        (
+            "condition of eigenvalues left out",
+            "solver = 2.0 * count * self.rounding * most * condition",
+            "solver = 1e-3 * self.rounding * most * np.minimum(condition, 1.0)",
+        ),
+        (
+            "rounding of the stiffness left out",
+            "solver + self.noises[0] * each",
+            "solver + self.noises[1] * each",
+        ),
+        (
+            "rounding of the stiffness without its symmetry",
+            "if self.rounding == EPSILON else whole",
+            "if self.rounding < 0.0 else whole",
+        ),
+        (
+            "symmetric part of a product",
+            "crossed = dot(p, u) ** 2 + dot(q, v) ** 2 -",
+            "crossed = dot(p, u) ** 2 + dot(q, v) ** 2 +",
+        ),
     ),
     *mutations(
         "linear/modal/tracking.py",
@@ -353,23 +372,9 @@ LINEAR = [
             "return float(np.min(excess[moving] if np.any(moving) else excess))",
         ),
         (
-            "growth of a tenth of the speed taken for round-off",
-            "return tolerance * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
-            "return 0.1 * np.maximum(system.speed, np.abs(values)) + _ROUND_OFF * fastest",
-        ),
-        (
             "names of folded exponents",
-            "content.named(replace(modes, values=values), speed)",
+            "content.named(modes, speed)",
             "content.named(replace(modes, values=fold(values, abs(system.base))), speed)",
-        ),
-    ),
-    *mutations(
-        "linear/stability/growth.py",
-        "test_growth_by_rounding.py",
-        (
-            "growth by rounding is not looked into",
-            "if system.is_constant or speed == 0.0 or len(modes.orders) > 1:",
-            "if speed < 0.0:",
         ),
     ),
     *mutations(
