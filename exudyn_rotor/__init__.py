@@ -34,6 +34,7 @@ from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
 from exudyn_rotor.multibody.add_rotor import add_rotor
+from exudyn_rotor.multibody.add_supports import add_supports
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
@@ -112,6 +113,7 @@ __all__ = [
     "Unbalance",
     "UnbalanceResponse",
     "add_rotor",
+    "add_supports",
     "anticipated_cross_coupling",
     "bearing_masses",
     "campbell",

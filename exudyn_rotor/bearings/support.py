@@ -122,8 +122,7 @@ class Support:
     @property
     def stiffness_varies(self) -> bool:
         """True when a stiffness depends on the spin speed."""
-        values = (self.stiffness, self.tilt_stiffness)
-        return any(callable(value) or isinstance(value, tuple) for value in values)
+        return varies(self.stiffness) or varies(self.tilt_stiffness)
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed [rad/s] beyond the end of a table; rounding at the end is none.
@@ -239,7 +238,7 @@ def check_interfaces(
                 f"{', '.join(known) or 'none'}"
             )
         for name in _TILTING if known[support.interface].radius == 0.0 else ():
-            if _acts(getattr(support, name)):
+            if acts(getattr(support, name)):
                 raise ValueError(
                     f"support at {support.interface!r}: {name} would act on nothing, since the "
                     "interface is a single node, which has no rotation; make the interface of "
@@ -250,9 +249,14 @@ def check_interfaces(
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 
-def _acts(value: Coefficient) -> bool:
+def acts(value: Coefficient) -> bool:
     """Return whether a coefficient is not zero; a function is taken for one that is not."""
     return callable(value) or bool(np.any(value[1] if isinstance(value, tuple) else value))
+
+
+def varies(value: Coefficient) -> bool:
+    """Return whether a coefficient depends on the speed."""
+    return callable(value) or isinstance(value, tuple)
 
 
 def _interpolate(speeds: np.ndarray, values: np.ndarray, speed: float) -> np.ndarray:

@@ -68,6 +68,13 @@ def add_marker(
     return body.mbs.AddMarker(item)
 
 
+def interface_motion(body: RotorItems, name: str) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return point on the axis, mean motion (6, m) and radius of an interface, axes of the body."""
+    _, motion, radius = _of_interface(body, name)
+    on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
+    return body.frame.points(on_axis), motion, radius
+
+
 def _of_interface(body: RotorItems, name: str) -> tuple[np.ndarray, np.ndarray, float]:
     """Return reference point, motion (6, m) and radius of an interface, axes of the body."""
     known = body.selection.source.interfaces

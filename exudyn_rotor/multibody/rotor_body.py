@@ -51,8 +51,8 @@ class RotorBody(RotorItems):
 
     @property
     def uses_python(self) -> bool:
-        """True when a time step calls Python user functions."""
-        return not self.motion.is_constant
+        """True when a time step calls Python user functions, of the rotor or its supports."""
+        return not self.motion.is_constant or any(each.uses_python for each in self.supports)
 
     @property
     def locked(self) -> tuple[str, ...]:
@@ -72,6 +72,7 @@ class RotorBody(RotorItems):
             f"  modes          {len(self.selection.labels)}: {', '.join(self.selection.labels)}",
             f"  locked         {', '.join(self.locked) or 'none'}",
             f"  constraints    {len(self.constraints)}",
+            f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
             f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
         return "\n".join(lines)

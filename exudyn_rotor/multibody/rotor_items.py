@@ -54,6 +54,8 @@ class RotorItems:
         Mesh nodes that native sensors can be put at.
     mesh_stress : bool
         Whether these sensors know the stress.
+    supports : list
+        What :func:`exudyn_rotor.add_supports` added.
     """
 
     mbs: exudyn.MainSystem
@@ -65,6 +67,7 @@ class RotorItems:
     gravity_load: exudyn.LoadIndex | None = None
     mesh_node_count: int = 0
     mesh_stress: bool = False
+    supports: list = field(default_factory=list, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
     mark: Mark | None = field(default=None, init=False)
 

@@ -130,6 +130,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "at": ["left"],
     },
     "keep_modes": lambda w: {"reduced": w.reduced, "indices": [0]},
+    "add_supports": lambda w: {"body": w.body, "supports": w.supports},
     "linear_model": lambda w: _rotor(w),
     "load_result": lambda w: {"path": w.stored(w.campbell)},
     "mode_shapes": lambda w: {**_rotor(w), "speed": 10.0},

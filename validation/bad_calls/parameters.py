@@ -404,6 +404,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("StressHistory", "speed"): _FIELD,
     ("StressHistory", "stress"): _FIELD,
     ("StressHistory", "time"): _FIELD,
+    ("add_supports", "base"): v.OBJECT.but(name="ground"),
     ("Support", "damping"): _COEFFICIENT,
     ("Support", "interface"): v.NAME,
     ("Support", "stiffness"): _COEFFICIENT,

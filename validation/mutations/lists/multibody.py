@@ -233,4 +233,48 @@ MULTIBODY = [
             "rigid = False",
         ),
     ),
+    *mutations(
+        "multibody/add_supports.py",
+        "test_supports_in_scenes.py::test_scene_and_linear_rotor_have_the_same_exponents",
+        (
+            "damper in the rotor's frame feels the spin",
+            "x_t -= speed * np.array([-x[1], x[0], 0.0])",
+            "x_t -= 0.0 * np.array([-x[1], x[0], 0.0])",
+        ),
+        (
+            "tilts damped by Exudyn's angular velocity",
+            "omega[0] - 2.0 * omega[2] * tilt[1]",
+            "omega[0] - omega[2] * tilt[1]",
+        ),
+        ("torsion spring against the ground", "(angles[2] - angle + np.pi)", "(angles[2] + np.pi)"),
+        (
+            "rotor's frame turned the wrong way",
+            "into = axes @ _rotation(angle) if",
+            "into = axes @ _rotation(-angle) if",
+        ),
+    ),
+    *mutations(
+        "multibody/add_supports.py",
+        "test_supports_in_scenes.py::test_axes_and_formulations_change_nothing",
+        ("matrix not turned into the scene", "turned = axes @ matrix @ axes.T", "turned = matrix"),
+        (
+            "spin counted as the node does",
+            "return sign * float(angles[place]), sign",
+            "return float(angles[place]), sign",
+        ),
+    ),
+    *mutations(
+        "multibody/add_supports.py",
+        "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
+        (
+            "tilt of the base forgotten",
+            "rate += omega[2] * np.array([-b, a, 0.0])",
+            "rate += 0.0 * np.array([-b, a, 0.0])",
+        ),
+        (
+            "place in axes of the scene",
+            "self.orientation.T @ (self.place - self.origin)",
+            "self.place - self.origin",
+        ),
+    ),
 ]
