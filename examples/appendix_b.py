@@ -1,32 +1,60 @@
 """Appendix B of the paper: two masses on springs in a rotating, massless cylinder.
 
 Zwölfer, Rasmussen, Santos, "Rotordynamics Local Frame Formulations for 3D Continuum Finite
-Elements", SSRN 4830498, Eqs. (116–129) and Fig. 2.
+Elements", SSRN 4830498: prints Eqs. (116–129) and draws Fig. 2.
 """
 
 import numpy as np
 
 from exudyn_rotor import SolidRotor, campbell, plotting
-from exudyn_rotor.theory.nodal import block_diagonal, tilde, translations
+from exudyn_rotor.theory.nodal import block_diagonal, tilde, tilde_basis, translations
+from exudyn_rotor.theory.spatial import SpatialInvariants
 
 nodes = [[1.0, 0.0, 0.0], [1.75, 0.0, 0.0]]
 mass = np.eye(6)
 stiffness = 1e4 * np.diag([272.0, 196.0, 100.0, 272.0, 196.0, 100.0])
 stiffness[0, 3] = stiffness[3, 0] = -128e4
 rotor = SolidRotor.from_matrices(mass, stiffness, nodes, axis="x")
-
-print("x (116):", rotor.nodes.ravel())
-print("x̃ (117):\n", tilde(rotor.nodes))
-print("e (118):", rotor.axis.direction)
-print("ẽ (119):\n", rotor.axis.skew)
-print("ẽ_bd (120):\n", block_diagonal(rotor.axis.skew, 2).toarray())
-print("N (121):\n", rotor.axis.plane)
-print("Φ (128):\n", translations(2))
+modes = np.array(  # as printed; twice the same frequency leaves their order open
+    [
+        [0, 0, 1, 0, 0, -1],
+        [0, 0, 0, 0, 1, 0],
+        [1, 0, 0, 0, 0, 0],
+        [0, 0, 1, 0, 0, 1],
+        [0, 0, 0, 1, 0, 0],
+        [0, 1, 0, 0, 0, 0],
+    ]
+)
+along = np.kron(np.eye(6), rotor.axis.direction[:, None])
+frequencies = [1000.0, 1000.0, 1200.0, 1400.0, 1400.0, 2000.0]
+assert np.array_equal(rotor.stiffness @ modes, rotor.mass @ modes * np.square(frequencies))
 
 at_rest, at_300 = campbell(rotor, [0.0, 300.0]).frequencies_rotor
-print("ν at rest (125):", at_rest)
-print("ν at 300 rad/s (129):", at_300)
-assert np.allclose(at_rest, [1000, 1000, 1200, 1400, 1400, 2000], rtol=1e-12)
+printed = {
+    "x (116)": rotor.nodes.ravel(),
+    "x̃ (117)": tilde(rotor.nodes),
+    "e (118)": rotor.axis.direction,
+    "ẽ (119)": rotor.axis.skew,
+    "ẽ_bd (120)": block_diagonal(rotor.axis.skew, 2).toarray(),
+    "N (121)": rotor.axis.plane,
+    "M (122)": rotor.mass.toarray(),
+    "K (123)": rotor.stiffness.toarray(),
+    "Ψ (124)": modes,
+    "ν at rest (125)": at_rest,
+    "Ψ̃ (126)": tilde_basis(modes),
+    "(I_ζ ⊗ e)ᵀ (127)": along.T,
+    "Φ (128)": translations(2),
+    "ν at 300 rad/s (129)": at_300,
+}
+np.set_printoptions(linewidth=120, precision=15, suppress=True)
+for name, value in printed.items():
+    # whole numbers as the paper has them, and no −0
+    whole = np.array_equal(value, np.round(value))
+    print(f"{name}:\n{value.astype(int) if whole else value + 0.0}\n")
+
+spatial = SpatialInvariants.of(nodes, mass, stiffness, None, modes)
+assert np.array_equal(spatial.M_tilde, tilde_basis(modes).T @ mass @ modes)
+assert np.allclose(at_rest, frequencies, rtol=1e-12)
 whirl = [834.497940852066, 1563.206060221641]
 expected = [whirl[0], whirl[0], 1200.0, whirl[1], whirl[1], 2000.0]
 assert np.allclose(at_300, expected, rtol=1e-12)
@@ -35,6 +63,8 @@ assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotor[0], expe
 result = campbell(rotor, np.linspace(0.0, 900.0, 91))
 made, ax = plotting.figure()
 ax.plot(result.speeds, result.frequencies_rotor, color=plotting.COLORS[0])
-ax.set_xlabel("spin speed [rad/s]")
-ax.set_ylabel("frequency in the rotor frame [rad/s]")
+ax.plot(300.0 * np.ones(6), expected, "o", color=plotting.COLORS[1], label="Eq. (129)")
+ax.set_xlabel("rotation speed $\\dot\\vartheta$ [rad/s]")
+ax.set_ylabel("angular eigenfrequency $\\nu$ [rad/s]")
+ax.legend()
 plotting.save(made, "appendix_b.png")

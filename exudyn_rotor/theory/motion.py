@@ -42,6 +42,7 @@ from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
+from exudyn_rotor.theory.terms import Terms, terms_of
 
 
 @dataclass(frozen=True)
@@ -284,6 +285,10 @@ class Motion:
         the frame origin.
         """
         return self.mass_matrix(t, q) @ self._coordinates(q_t, "q_t")
+
+    def terms(self, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
+        """Return every block by its name and equation; see :mod:`exudyn_rotor.theory.terms`."""
+        return terms_of(self, t, q, q_t)
 
     def drive_torque(self, t: float, q: ArrayLike, q_t: ArrayLike, zeta_tt: ArrayLike) -> float:
         """Return the torque about e that a prescribed spin needs, external loads left out [N m].

@@ -44,9 +44,15 @@ def tilde(nodal: Array) -> Array:
     return np.vstack([skew(vector) for vector in np.asarray(nodal, float).reshape(-1, 3)])
 
 
-def tilde_basis(modes: Array) -> Array:
-    """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30)."""
-    return np.hstack([tilde(column) for column in np.asarray(modes, float).T])
+def tilde_basis(modes: Array | sp.csr_array) -> Array | sp.csr_array:
+    """Return ``Ψ̃`` (3n × 3m): the tilde matrix of every mode, side by side (30).
+
+    Sparse where the modes are.
+    """
+    kron = sp.kron if sp.issparse(modes) else np.kron
+    units = np.eye(3)
+    whole = sum(kron(modes[axis::3], skew(units[axis])) for axis in range(3))
+    return sp.csr_array(whole) if sp.issparse(modes) else whole
 
 
 def coupled(matrix: sp.csr_array) -> np.ndarray:

@@ -212,6 +212,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "Motion.jacobian": lambda w: _state(w),
     "Motion.mass_matrix": lambda w: {"t": 0.0, "q": np.zeros(w.motion.size)},
     "Motion.momentum": lambda w: _state(w),
+    "Motion.terms": lambda w: _state(w),
     "ConstantSpeed.acceleration": lambda w: {"t": 0.0},
     "ConstantSpeed.rate": lambda w: {"t": 0.0},
     "ConstantSpeed.value": lambda w: {"t": 0.0},

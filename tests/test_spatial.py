@@ -1,0 +1,149 @@
+"""Sect. 2.1, the frame in three dimensions, against sums over nodes and against Exudyn's body."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from nodal_motion import STEP, derivative, inertia, pseudo_forces
+from point_rotors import random_arrays, random_invariants
+
+from exudyn_rotor.theory.spatial import SpatialInvariants
+
+FRAME = slice(0, 6)
+
+
+def cardan(angles: np.ndarray) -> np.ndarray:
+    """Return ``A = Rx Ry Rz``; of complex angles, too."""
+    (a, b, c), (p, q, r) = np.cos(angles), np.sin(angles)
+    x = np.array([[1, 0, 0], [0, a, -p], [0, p, a]])
+    y = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
+    z = np.array([[c, -r, 0], [r, c, 0], [0, 0, 1]])
+    return x @ y @ z
+
+
+def local_velocity(angles: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Return ω in ``ω̃ = AᵀȦ``."""
+    rate = cardan(angles + 1j * STEP * rates).imag / STEP
+    turning = cardan(angles).T @ rate
+    return np.array([turning[2, 1], turning[0, 2], turning[1, 0]])
+
+
+def local_axes(angles: np.ndarray) -> np.ndarray:
+    """Return G, ``ω = G θ̇``."""
+    return np.column_stack([local_velocity(angles, unit) for unit in np.eye(3)])
+
+
+class Body:
+    """A random body, its frame turned by Cardan angles: component modes, or the full model."""
+
+    def __init__(self, full: bool) -> None:
+        if full:
+            self.arrays = random_arrays(3, node_count=3)
+            self.basis = sp.eye_array(9, format="csr")
+        else:
+            _, self.basis, self.arrays = random_invariants(1, 3)
+        self.mass = self.arrays["mass"]
+        self.spatial = SpatialInvariants.of(**{"damping": None, **self.arrays}, basis=self.basis)
+        self.q, self.q_t = np.random.default_rng(5).normal(size=(2, 6 + self.spatial.size))
+
+    def positions(self, q: np.ndarray) -> np.ndarray:
+        local = self.arrays["nodes"] + (self.basis @ q[6:]).reshape(-1, 3)
+        return q[:3] + local @ cardan(q[3:6]).T
+
+
+@pytest.fixture(scope="module", params=[False, True], ids=["modes", "full model"])
+def body(request) -> Body:
+    return Body(request.param)
+
+
+def dense(value) -> np.ndarray:
+    return value.toarray() if sp.issparse(value) else np.asarray(value)
+
+
+def assert_same(actual, expected, tolerance: float) -> None:
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(dense(actual), expected, rtol=0, atol=tolerance * scale)
+
+
+PLACES = {"t": slice(0, 3), "r": slice(3, 6), "f": slice(6, None)}
+MASS = {"M_tt": 41, "M_ff": 42, "M_tf": 43, "M_tr": 44, "M_rf": 45, "M_rr": 46}
+FORCES = {"Q_t": 47, "Q_r": 48, "Q_f": 49}
+
+
+def test_mass_matrix(body):
+    angles, zeta = body.q[3:6], body.q[6:]
+    terms = body.spatial.mass_terms(cardan(angles), local_axes(angles), zeta)
+    whole = inertia(body.positions, body.mass, body.q)
+    for name, number in MASS.items():
+        rows, columns = (PLACES[letter] for letter in name[2:])
+        assert_same(terms[name].value, whole[rows, columns], 1e-13)
+        assert terms[number] is terms[name]
+
+
+def test_velocity_vector(body):
+    """Cardan angles have ``Ġθ̇ ≠ 0``, so that every part is seen."""
+    angles, rates = body.q[3:6], body.q_t[3:6]
+    remainder = derivative(lambda s: local_velocity(angles + s * rates, rates))
+    assert np.linalg.norm(remainder) > 0.1
+    terms = body.spatial.velocity_terms(
+        cardan(angles),
+        local_axes(angles),
+        local_velocity(angles, rates),
+        body.q[6:],
+        body.q_t[6:],
+        remainder,
+    )
+    whole = pseudo_forces(body.positions, body.mass, body.q, body.q_t)
+    for name, number in FORCES.items():
+        assert_same(terms[name].value, whole[PLACES[name[2:]]], 1e-9)
+        assert terms[number] is terms[name]
+
+
+def test_unprojected_invariants(body):
+    """(31–40) by sums over pairs of nodes, with cross products."""
+    terms = body.spatial.terms()
+    m, x = body.mass.toarray()[::3, ::3], body.arrays["nodes"]
+    psi = dense(body.basis).T.reshape(-1, len(x), 3)
+    # column 3k + c of Ψ̃, and column c of x̃, turn the unit vector c: ψ × e_c
+    psi_tilde = np.cross(psi[:, None], np.eye(3)[None, :, None]).reshape(-1, len(x), 3)
+    x_tilde = np.cross(x[None], np.eye(3)[:, None])
+    phi = np.tile(np.eye(3)[:, None], (1, len(x), 1))
+    sets = {"φ": phi, "x̃": x_tilde, "ψ": psi, "ψ̃": psi_tilde}
+    pairs = {
+        31: ("φ", "φ"),
+        32: ("φ", "x̃"),
+        33: ("x̃", "x̃"),
+        34: ("ψ", "ψ"),
+        35: ("ψ̃", "ψ"),
+        36: ("ψ̃", "ψ̃"),
+        37: ("φ", "ψ"),
+        38: ("φ", "ψ̃"),
+        39: ("x̃", "ψ"),
+        40: ("x̃", "ψ̃"),
+    }
+    for number, (a, b) in pairs.items():
+        expected = np.einsum("kic,ij,ljc->kl", sets[a], m, sets[b])
+        scale = body.spatial.mass if number == 32 else 1.0
+        assert_same(terms[number].value, expected / scale, 1e-13)
+
+
+def test_linear_equations_of_a_prescribed_motion(body):
+    """(103), (107): ω(t) of any direction, the frame's origin shaken."""
+    omega, omega_t, shake = np.array([[0.7, -0.4, 0.9], [-0.5, 0.8, 0.3], [1.0, 2.0, -1.5]])
+    terms = body.spatial.linear_terms(omega, omega_t, shake)
+    size = body.spatial.size
+
+    def inertia_force(zeta, zeta_t):
+        local = body.arrays["nodes"] + (body.basis @ zeta).reshape(-1, 3)
+        rate = (body.basis @ zeta_t).reshape(-1, 3)
+        acceleration = shake + np.cross(omega_t, local) + 2.0 * np.cross(omega, rate)
+        acceleration = acceleration + np.cross(omega, np.cross(omega, local))
+        return -body.basis.T @ (body.mass @ acceleration.ravel())
+
+    rest, unit = np.zeros(size), np.eye(size)
+    load = inertia_force(rest, rest)
+    by_place = np.stack([load - inertia_force(column, rest) for column in unit], axis=-1)
+    by_rate = np.stack([load - inertia_force(rest, column) for column in unit], axis=-1)
+    assert_same(terms["f(ω)"].value, load, 1e-13)
+    assert_same(terms["K(ω)"].value, dense(body.spatial.K) + by_place, 1e-13)
+    assert_same(terms["D(ω)"].value, dense(body.spatial.D) + by_rate, 1e-13)
+    assert terms["K(ω)"].numbers == ({103, 107} if sp.issparse(body.basis) else {107})
