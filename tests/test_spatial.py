@@ -1,8 +1,12 @@
 """Sect. 2.1, the frame in three dimensions, against sums over nodes and against Exudyn's body."""
 
+import exudyn
+import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
+from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
 from nodal_motion import STEP, derivative, inertia, pseudo_forces
 from point_rotors import random_arrays, random_invariants
 
@@ -147,3 +151,82 @@ def test_linear_equations_of_a_prescribed_motion(body):
     assert_same(terms["K(ω)"].value, dense(body.spatial.K) + by_place, 1e-13)
     assert_same(terms["D(ω)"].value, dense(body.spatial.D) + by_rate, 1e-13)
     assert terms["K(ω)"].numbers == ({103, 107} if sp.issparse(body.basis) else {107})
+
+
+# ------------------------------------------------------------------ Exudyn's bodies
+
+
+def exudyn_body(body: Body) -> tuple[exudyn.MainSystem, np.ndarray]:
+    """Return a scene with Exudyn's own body, and the reference of its seven frame coordinates."""
+    arrays = body.arrays
+    reference = np.array([0.3, -0.2, 0.5, 0.5, -0.5, 0.1, 0.7])
+    mbs = exudyn.SystemContainer().AddSystem()
+    if sp.issparse(body.basis):
+        frame = mbs.AddNode(eii.NodeRigidBodyEP(referenceCoordinates=reference))
+        points = [mbs.AddNode(eii.NodePoint(referenceCoordinates=x)) for x in arrays["nodes"]]
+        matrices = (container(arrays[name]) for name in ("mass", "stiffness"))
+        names = ("massMatrixFF", "stiffnessMatrixFF")
+        mbs.AddObject(
+            eii.ObjectFFRF(nodeNumbers=[frame, *points], **dict(zip(names, matrices, strict=True)))
+        )
+        return mbs, reference
+    fem = FEMinterface()
+    fem.nodes = {"Position": arrays["nodes"]}
+    fem.massMatrix, fem.stiffnessMatrix = (
+        sp.csr_matrix(arrays[name]) for name in ("mass", "stiffness")
+    )
+    fem.modeBasis = {"matrix": body.basis, "type": "NormalModes"}
+    reference[3:] /= np.linalg.norm(reference[3:])
+    ObjectFFRFreducedOrderInterface(fem).AddObjectFFRFreducedOrder(
+        mbs,
+        positionRef=reference[:3],
+        rotationMatrixRef=EulerParameters2RotationMatrix(reference[3:]),
+        initialVelocity=[0, 0, 0],
+        initialAngularVelocity=[0, 0, 0],
+    )
+    return mbs, np.array(mbs.GetNode(0)["referenceCoordinates"])
+
+
+def container(matrix) -> exudyn.MatrixContainer:
+    made = exudyn.MatrixContainer()
+    made.SetWithSparseMatrix(sp.csr_matrix(matrix), useDenseMatrix=False)
+    return made
+
+
+def mass_and_forces(mbs: exudyn.MainSystem, q, q_t) -> tuple[np.ndarray, np.ndarray]:
+    """Return Exudyn's mass matrix and right-hand side of the coordinates."""
+    mbs.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.solution.file.write = False
+    settings.timeIntegration.verboseMode = 0
+    solver = exudyn.MainSolverImplicitSecondOrder()
+    solver.InitializeSolver(mbs, settings)
+    mbs.systemData.SetODE2Coordinates(q)
+    mbs.systemData.SetODE2Coordinates_t(q_t)
+    solver.ComputeMassMatrix(mbs, 1.0)
+    solver.ComputeODE2RHS(mbs)
+    found = np.array(solver.GetSystemMassMatrix()), np.array(solver.GetSystemResidual())
+    solver.FinalizeSolver(mbs, settings)
+    return found[0], found[1][: len(q)]
+
+
+def test_exudyns_bodies_have_these_terms(body):
+    """Euler parameters, at a random state; round-off of products of order 100."""
+    mbs, reference = exudyn_body(body)
+    parameters = np.array([0.1, -0.7, 0.5, 0.5])
+    rng, zeta, zeta_t = np.random.default_rng(2), body.q[6:], body.q_t[6:]
+    A, G = EulerParameters2RotationMatrix(parameters), EulerParameters2GLocal(parameters)
+    omega, tau, tau_t = rng.normal(size=(3, 3))
+    # θ̇ = Gᵀω / 4 is orthogonal to the parameters
+    q = np.array([*tau, *(parameters - reference[3:]), *zeta])
+    q_t = np.array([*tau_t, *(0.25 * G.T @ omega), *zeta_t])
+    mass, forces = mass_and_forces(mbs, q, q_t)
+    places = PLACES | {"r": slice(3, 7), "f": slice(7, None)}
+    spatial = body.spatial
+    for name, term in spatial.mass_terms(A, G, zeta).items():
+        rows, columns = (places[letter] for letter in name[2:])
+        assert_same(mass[rows, columns], dense(term.value), 1e-12)
+    terms = spatial.velocity_terms(A, G, omega, zeta, zeta_t)
+    for name, term in terms.items():
+        elastic = spatial.K @ zeta if name == "Q_f" else 0.0
+        assert_same(forces[places[name[2:]]], term.value - elastic, 1e-12)
