@@ -1,11 +1,11 @@
 """Sect. 2.1, the frame in three dimensions, against sums over nodes and against Exudyn's body."""
 
 import exudyn
-import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
+from exudyn.itemInterface import NodePoint, NodeRigidBodyEP, ObjectFFRF
 from exudyn.utilities import EulerParameters2GLocal, EulerParameters2RotationMatrix
 from nodal_motion import STEP, derivative, inertia, pseudo_forces
 from point_rotors import random_arrays, random_invariants
@@ -162,12 +162,12 @@ def exudyn_body(body: Body) -> tuple[exudyn.MainSystem, np.ndarray]:
     reference = np.array([0.3, -0.2, 0.5, 0.5, -0.5, 0.1, 0.7])
     mbs = exudyn.SystemContainer().AddSystem()
     if sp.issparse(body.basis):
-        frame = mbs.AddNode(eii.NodeRigidBodyEP(referenceCoordinates=reference))
-        points = [mbs.AddNode(eii.NodePoint(referenceCoordinates=x)) for x in arrays["nodes"]]
+        frame = mbs.AddNode(NodeRigidBodyEP(referenceCoordinates=reference))
+        points = [mbs.AddNode(NodePoint(referenceCoordinates=x)) for x in arrays["nodes"]]
         matrices = (container(arrays[name]) for name in ("mass", "stiffness"))
         names = ("massMatrixFF", "stiffnessMatrixFF")
         mbs.AddObject(
-            eii.ObjectFFRF(nodeNumbers=[frame, *points], **dict(zip(names, matrices, strict=True)))
+            ObjectFFRF(nodeNumbers=[frame, *points], **dict(zip(names, matrices, strict=True)))
         )
         return mbs, reference
     fem = FEMinterface()
