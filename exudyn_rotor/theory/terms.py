@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,10 +20,26 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.spin_terms import SpinTerms
 
-if TYPE_CHECKING:
-    from exudyn_rotor.theory.motion import Motion
+
+class Equations(Protocol):
+    """What :func:`terms_of` reads of a :class:`~exudyn_rotor.theory.motion.Motion`."""
+
+    invariants: Invariants
+    spin_terms: SpinTerms
+    formulation: Formulation
+    orientation: np.ndarray
+    gravity: np.ndarray
+    free_directions: np.ndarray
+    static_unbalance: np.ndarray
+    S1: np.ndarray
+    translations: slice
+    modes: slice
+    size: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +127,7 @@ class Terms(Mapping[str, Term]):
         return "\n".join(rows)
 
 
-def terms_of(motion: Motion, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
+def terms_of(motion: Equations, t: float, q: ArrayLike, q_t: ArrayLike) -> Terms:
     """Return all blocks of a motion at an instant, those of coordinates that it prescribes, too.
 
     Parameters
@@ -146,7 +162,7 @@ class _Instant:
     A: np.ndarray
 
     @classmethod
-    def of(cls, motion: Motion, t: float, q: np.ndarray, q_t: np.ndarray) -> _Instant:
+    def of(cls, motion: Equations, t: float, q: np.ndarray, q_t: np.ndarray) -> _Instant:
         form, place = motion.formulation, motion.translations.stop
         theta, omega, omega_t = q[place : place + 1], q_t[place : place + 1], 0.0
         if not form.has_spin:
@@ -156,7 +172,7 @@ class _Instant:
         return cls(float(np.sum(omega)), float(omega_t), q[motion.modes], q_t[motion.modes], A)
 
 
-def _invariants(motion: Motion) -> list[Term]:
+def _invariants(motion: Equations) -> list[Term]:
     inv, spin, turn = motion.invariants, motion.spin_terms, skew(motion.invariants.direction)
     terms = [
         Term("m", "31", inv.mass, "mass"),
@@ -180,7 +196,7 @@ def _invariants(motion: Motion) -> list[Term]:
     return terms if spin.K4 is None else [*terms, Term("K4", "", spin.K4, "stiffness per ω⁴")]
 
 
-def _translation(motion: Motion, now: _Instant) -> list[Term]:
+def _translation(motion: Equations, now: _Instant) -> list[Term]:
     inv = motion.invariants
     coupling, force = now.A @ _unbalance(motion, now), now.A @ _inertia_force(motion, now)
     return [
@@ -192,7 +208,7 @@ def _translation(motion: Motion, now: _Instant) -> list[Term]:
     ]
 
 
-def _in_plane(motion: Motion, now: _Instant) -> list[Term]:
+def _in_plane(motion: Equations, now: _Instant) -> list[Term]:
     if motion.formulation.translation_count != 2:
         return []
     inv, A = motion.invariants, motion.free_directions.T @ now.A
@@ -207,7 +223,7 @@ def _in_plane(motion: Motion, now: _Instant) -> list[Term]:
     ]
 
 
-def _spin_and_modes(motion: Motion, now: _Instant) -> list[Term]:
+def _spin_and_modes(motion: Equations, now: _Instant) -> list[Term]:
     """(84–87), the same as (74–77) contracted beforehand."""
     inv, spin = motion.invariants, motion.spin_terms
     omega, zeta, rate = now.omega, now.zeta, now.zeta_t
@@ -230,7 +246,7 @@ def _spin_and_modes(motion: Motion, now: _Instant) -> list[Term]:
     ]
 
 
-def _prescribed(motion: Motion, now: _Instant, t: float) -> list[Term]:
+def _prescribed(motion: Equations, now: _Instant, t: float) -> list[Term]:
     """(104), (105) of the full model, (108), (109) of component modes."""
     inv, spin, form = motion.invariants, motion.spin_terms, motion.formulation
     if form.has_spin:
@@ -249,7 +265,7 @@ def _prescribed(motion: Motion, now: _Instant, t: float) -> list[Term]:
     ]
 
 
-def _gravity(motion: Motion, now: _Instant) -> list[Term]:
+def _gravity(motion: Equations, now: _Instant) -> list[Term]:
     inv, g = motion.invariants, motion.gravity
     local = now.A.T @ g
     terms = [
@@ -265,17 +281,17 @@ def _gravity(motion: Motion, now: _Instant) -> list[Term]:
     return terms
 
 
-def _unbalance(motion: Motion, now: _Instant) -> np.ndarray:
+def _unbalance(motion: Equations, now: _Instant) -> np.ndarray:
     return motion.static_unbalance + motion.S1 @ now.zeta
 
 
-def _inertia_force(motion: Motion, now: _Instant) -> np.ndarray:
+def _inertia_force(motion: Equations, now: _Instant) -> np.ndarray:
     """Bracket of (66), its sign included, rotor axes."""
     centrifugal = skew(motion.invariants.direction) @ _unbalance(motion, now)
     return -(now.omega**2) * centrifugal - 2.0 * now.omega * (motion.S1 @ now.zeta_t)
 
 
-def _number(motion: Motion, reduced: str, full: str = "58, 94, 100") -> str:
+def _number(motion: Equations, reduced: str, full: str = "58, 94, 100") -> str:
     """Numbers of a block; those of its full form come first for a full model."""
     return f"{full}, {reduced}" if motion.invariants.is_sparse else reduced
 
