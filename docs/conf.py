@@ -18,7 +18,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "code_lines",
     "examples",
-    "mathml",
+    "sphinx-mathjax-offline",
 ]
 exclude_patterns = ["_build", "extensions", "spelling.txt"]
 myst_enable_extensions = ["deflist", "dollarmath"]
@@ -35,7 +35,6 @@ napoleon_preprocess_types = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"exudyn_rotor {release}"
-html_math_renderer = "mathml"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_show_sourcelink = False
