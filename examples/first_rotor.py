@@ -34,7 +34,8 @@ settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 4000,
 settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
 settings.solution.sensors.writePeriod = 2e-4
 mbs.SolveDynamic(settings)
-mbs.PlotSensor([orbit], components=[1], componentsX=[0], fileName="first_rotor.png")
+axes = {"components": [1], "componentsX": [0], "xLabel": "x [m]", "yLabel": "y [m]"}
+mbs.PlotSensor([orbit], **axes, labels=["right journal"], fileName="first_rotor.png")
 
 # the journals sag by half the weight over the stiffness of a bearing, and circle around that
 time, _, y, _ = mbs.GetSensorStoredData(orbit).T

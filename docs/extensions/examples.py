@@ -1,4 +1,4 @@
-"""The directive ``example``: a script of ``examples/`` by name, what it says and its code."""
+"""The directive ``example``: a script of ``examples/`` by name, what it says, its code folded."""
 
 import ast
 from pathlib import Path
@@ -23,9 +23,14 @@ class Example(SphinxDirective):
         tree = ast.parse(source)
         text = ast.get_docstring(tree).replace("``", "").split("\n\n")
         code = "\n".join(source.splitlines()[tree.body[0].end_lineno :]).strip()
-        made = [nodes.paragraph(text=" ".join(part.split())) for part in text]
-        made.append(nodes.paragraph("", "", nodes.literal(text=f"python examples/{path.name}")))
-        return [*made, nodes.literal_block(code, code, language="python")]
+        said = [nodes.paragraph(text=" ".join(part.split())) for part in text]
+        opened = f"<details><summary><code>python examples/{path.name}</code></summary>"
+        return [
+            *said,
+            nodes.raw("", opened, format="html"),
+            nodes.literal_block(code, code, language="python"),
+            nodes.raw("", "</details>", format="html"),
+        ]
 
 
 def setup(app: Sphinx) -> dict:
