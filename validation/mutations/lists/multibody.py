@@ -7,6 +7,18 @@ _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_
 
 MULTIBODY = [
     *mutations(
+        "multibody/spatial_body.py",
+        "test_spatial_body.py",
+        ("frame in the mesh origin", "place + turn @ rotor.center_of_mass", "place"),
+        (
+            "mean rotation not held",
+            "translations(len(local)), tilde(local)",
+            "translations(len(local)), 0.0 * tilde(local)",
+        ),
+        ("mean axes by geometry", "rows = (rotor.mass @ motions).T", "rows = motions.T"),
+        ("weight left out", "if np.any(gravity):", "if False:"),
+    ),
+    *mutations(
         "multibody/node_markers.py",
         "test_mean_axis.py::test_force_and_sensor_at_the_node_are_on_exudyns_frame",
         (
