@@ -9,6 +9,9 @@ from exudyn_rotor.advice.energy_balance import EnergyBalance, energy_balance
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.bearings.film.film import OilFilm
+from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
+from exudyn_rotor.bearings.film.picture import plot_pressure
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
@@ -87,6 +90,8 @@ __all__ = [
     "Motion",
     "MotionShapes",
     "ObjectFixedAxisFFRFreducedOrderInterface",
+    "OilFilm",
+    "Pad",
     "PointMass",
     "PrescribedMotion",
     "Prestress",
@@ -123,6 +128,7 @@ __all__ = [
     "critical_speeds",
     "energy_balance",
     "free_modes",
+    "grooved_pads",
     "harmonic_response",
     "keep_modes",
     "linear_model",
@@ -130,6 +136,7 @@ __all__ = [
     "mode_shapes",
     "permissible_unbalance",
     "plot_orbit",
+    "plot_pressure",
     "propose",
     "recommended_settings",
     "report",

@@ -42,6 +42,8 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "ObjectFixedAxisFFRFreducedOrderInterface": lambda w: (
         er.ObjectFixedAxisFFRFreducedOrderInterface(w.fem, axis="z")
     ),
+    "OilFilm": lambda w: w.film,
+    "Pad": lambda w: er.Pad(0.2, 1.5, 1e-4),
     "PointMass": lambda w: w.solid.add_point_mass([0.0, 0.0, 0.1], 0.1).point_masses[0],
     "PrescribedMotion": lambda w: er.PrescribedMotion.run_up(0.0, 10.0, 1.0),
     "Prestress": lambda w: w.prestress,
@@ -79,6 +81,11 @@ def _rotor(world: World) -> dict[str, Any]:
 
 # arguments of valid calls; constructors without an entry take those of their instance
 ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
+    "OilFilm.force": lambda w: {"displacement": [1e-5, 0.0], "velocity": [0.0, 1e-3], "speed": 9.0},
+    "OilFilm.state": lambda w: {"displacement": [1e-5, 0.0], "velocity": [0.0, 1e-3], "speed": 9.0},
+    "OilFilm.equilibrium": lambda w: {"speed": 9.0, "load": [-0.1, 0.0]},
+    "grooved_pads": lambda w: {"clearance": 1e-4, "grooves": [0.5, 3.6], "groove_width": 0.3},
+    "plot_pressure": lambda w: {"state": w.film.equilibrium(9.0, [-0.1, 0.0])},
     "MainSystemCreateFixedAxisFFRFReducedOrderObject": lambda w: {
         "mbs": w.mbs,
         "name": None,

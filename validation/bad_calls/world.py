@@ -44,6 +44,11 @@ class World:
         return er.SolidRotor.from_ngsolve(self.mesh, STEEL, "z", order=1)
 
     @cached_property
+    def film(self) -> er.OilFilm:
+        """A film on a coarse grid between two grooves."""
+        return er.OilFilm(0.05, 0.05, 0.02, er.grooved_pads(1e-4, [0.5, 3.6], 0.3), nodes=24)
+
+    @cached_property
     def prestress(self) -> er.Prestress:
         """Its static stress at speed."""
         return self.solid.prestress(euler=True)

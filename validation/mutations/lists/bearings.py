@@ -38,4 +38,59 @@ BEARINGS = [
             "0.5 * (values - np.swapaxes",
         ),
     ),
+    *mutations(
+        "bearings/film/grid.py",
+        "test_film.py::test_short_cut_film_is_ocvirks "
+        "test_film.py::test_one_profile_is_exact_for_short_bores",
+        ("parabola's square wrong", "4.0 / 15.0 * half**5", "8.0 / 15.0 * half**5"),
+        ("profile's mass without its slope", "mass = weight - stiffness", "mass = weight"),
+    ),
+    *mutations(
+        "bearings/film/reynolds.py",
+        "test_film.py::test_long_full_film_is_sommerfelds "
+        "test_film.py::test_squeezed_short_film_is_damped_as_computed "
+        "test_film.py::test_coefficients_are_derivatives_of_the_force "
+        "test_film.py::test_oil_is_balanced_and_nowhere_pulled",
+        ("surface's speed in place of its half", "gain = 0.5 * self.speed", "gain = self.speed"),
+        (
+            "squeeze reversed",
+            "(gain + step * rates[:, None] * (1.0 - void))",
+            "(gain - step * rates[:, None] * (1.0 - void))",
+        ),
+        (
+            "cube of the thickness not differentiated",
+            "3.0 * equation.heights**2 * h, h, rate",
+            "equation.heights**2 * h, h, rate",
+        ),
+        ("voids keep their pressure's change", "self.empty | (", "False & ("),
+        (
+            "void carried by no surface",
+            'carried = self.cavitation == "mass-conserving"',
+            "carried = False",
+        ),
+    ),
+    *mutations(
+        "bearings/film/state.py",
+        "test_film.py::test_losses_are_those_of_someyas_table "
+        "test_film.py::test_power_that_goes_in_is_dissipated "
+        "test_film.py::test_supply_pressure_pushes_the_journal_away_from_its_groove "
+        "test_film.py::test_rigid_mass_is_at_the_limit_of_whirl",
+        ("pressure's torque reversed", "lift = -(slope @ excess)", "lift = slope @ excess"),
+        (
+            "side flow of one end",
+            "@ slope / (6.0 * film.viscosity)",
+            "@ slope / (12.0 * film.viscosity)",
+        ),
+        ("pressure in the grooves left out", "return supply + self", "return 0.0 * supply + self"),
+        (
+            "cross stiffness left out of the limit",
+            "square = ((k11 - k) * (k22 - k) - k12 * k21)",
+            "square = ((k11 - k) * (k22 - k))",
+        ),
+    ),
+    *mutations(
+        "bearings/film/pads.py",
+        "test_film.py::test_rigid_mass_is_at_the_limit_of_whirl",
+        ("preload opens the film", "-preload * clearance", "preload * clearance"),
+    ),
 ]

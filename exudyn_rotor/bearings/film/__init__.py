@@ -1,0 +1,1 @@
+"""Oil films of journal bearings by Reynolds' equation."""

@@ -1,0 +1,239 @@
+"""Oil film of a journal bearing of finite length: force, equilibrium, coefficients, losses.
+
+Reynolds' equation (`reynolds.py`) in the film of a journal that stays parallel to the bore:
+isothermal, laminar, incompressible, without the oil's inertia.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.film.grid import Axial, Grid
+from exudyn_rotor.bearings.film.pads import Pad
+from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation
+from exudyn_rotor.bearings.film.state import FilmState
+
+_STEPS = 100
+_CLOSE = 1e-9  # of the load: Newton's method stops there
+_PEAK = 4.5  # the pressure's peak, √(2 h_min/c) wide, holds three nodes
+
+
+@dataclass(frozen=True, eq=False)
+class OilFilm:
+    """Oil film in a bore of one or more pads.
+
+    Parameters
+    ----------
+    radius, length : float
+        Of the journal, and of the bore [m].
+    viscosity : float
+        Dynamic [Pa s].
+    pads : sequence of Pad
+        :func:`grooved_pads` makes those of plain, grooved, elliptical and lobed bores.
+    cavitation : {'reynolds', 'half-sommerfeld', 'mass-conserving', 'none'}, optional
+        What holds where the film would be pulled. 'reynolds' (p ≥ 0, p and its slope vanish where
+        the film breaks) is what tables of coefficients mostly hold; 'mass-conserving' adds the
+        oil's balance in the void, for steady states and coefficients: it has a memory, which a
+        force of place and velocity has not. It needs a groove, from which the oil comes.
+    supply_pressure : float, optional
+        In the grooves, which are as long as the bore, above the ambient [Pa].
+    nodes : int, optional
+        Around the whole circle.
+    axial_nodes : int, optional
+        Over half the length; 0 takes one profile for the pressure along the axis, exact for small
+        eccentricities and for short bores, at a small part of the cost.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For sizes that are not positive, pads that overlap, a supply without a groove.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import OilFilm, grooved_pads
+    >>> pads = grooved_pads(1e-4, [np.pi / 2, 3 * np.pi / 2], np.radians(20.0))
+    >>> film = OilFilm(radius=0.05, length=0.05, viscosity=0.02, pads=pads, axial_nodes=0)
+    >>> state = film.equilibrium(300.0, load=[-5000.0, 0.0])
+    >>> round(state.eccentricity_ratio, 2), round(np.degrees(state.attitude))
+    (0.66, 40)
+    >>> stiffness, damping = state.coefficients()
+    """
+
+    radius: float
+    length: float
+    viscosity: float
+    pads: Sequence[Pad]
+    cavitation: str = "reynolds"
+    supply_pressure: float = 0.0
+    nodes: int = 120
+    axial_nodes: int = 12
+    grid: Grid = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        checks.number(self.radius, "radius", "m", above=0.0)
+        checks.number(self.length, "length", "m", above=0.0)
+        checks.number(self.viscosity, "viscosity", "Pa s", above=0.0)
+        checks.choice(self.cavitation, "cavitation", CAVITATION)
+        checks.number(self.supply_pressure, "supply_pressure", "Pa", least=0.0)
+        checks.count(self.nodes, "nodes", least=12, most=10_000)
+        checks.count(self.axial_nodes, "axial_nodes", most=1000)
+        if self.axial_nodes == 1:
+            raise ValueError("axial_nodes: needs 0 (one profile), or 2 nodes or more, got 1")
+        pads = _in_order(checks.instances(self.pads, "pads", Pad))
+        if pads[0].closed and self.supply_pressure > 0.0:
+            raise ValueError("supply_pressure: needs pads with a groove between them")
+        if pads[0].closed and self.cavitation == "mass-conserving":
+            raise ValueError(
+                "cavitation: 'mass-conserving' needs pads with a groove between them, from which "
+                "oil replaces what leaves at the ends; 'reynolds' needs none"
+            )
+        object.__setattr__(self, "pads", pads)
+        half = 0.5 * self.length / self.radius
+        axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
+        object.__setattr__(self, "grid", Grid(pads, self.nodes, axial))
+        if self.clearance <= 0.0:
+            raise ValueError("pads: their centers leave no clearance for a journal in the middle")
+
+    @property
+    def clearance(self) -> float:
+        """Least thickness of the film about a journal in the middle [m]."""
+        return float(self._heights(np.zeros(2))[0].min())
+
+    @property
+    def thinnest(self) -> float:
+        """OilFilm that the grid still resolves [m]."""
+        return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
+
+    def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
+        """Return the force of the film on the journal along n1 and n2, (2,) [N].
+
+        Parameters are those of :meth:`state`.
+        """
+        return self.state(displacement, velocity, speed).force
+
+    def state(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> FilmState:
+        """Return the film at one place and motion of the journal.
+
+        Parameters
+        ----------
+        displacement, velocity : array_like, (2,)
+            Of the journal's centre against the bearing's, along n1 and n2 [m], [m/s].
+        speed : float
+            Of the journal, positive from n1 to n2 [rad/s].
+
+        Raises
+        ------
+        TypeError
+        ValueError
+            If the journal touches the bore, or moves in a film that conserves mass.
+        ArithmeticError
+            If the voids do not settle.
+        """
+        displacement = checks.vector(displacement, "displacement", "m", 2)
+        velocity = checks.vector(velocity, "velocity", "m/s", 2)
+        checks.number(speed, "speed", "rad/s")
+        if self.cavitation == "mass-conserving" and velocity.any():
+            raise ValueError(
+                "velocity: a film with cavitation='mass-conserving' remembers how its voids grew, "
+                "which a force of place and velocity cannot; use 'reynolds' for motions"
+            )
+        return self._state(displacement, velocity, speed)
+
+    def equilibrium(self, speed: float, load: ArrayLike) -> FilmState:
+        """Return the film that carries a load, by Newton's method with the film's stiffness.
+
+        Parameters
+        ----------
+        speed : float
+            [rad/s], not 0.
+        load : array_like, (2,)
+            On the journal along n1 and n2 [N].
+
+        Raises
+        ------
+        TypeError
+        ValueError
+            For no load, no speed, and a load under which the film is thinner than the grid
+            resolves.
+        ArithmeticError
+            If no equilibrium is found.
+        """
+        load = checks.vector(load, "load", "N", 2)
+        checks.number(speed, "speed", "rad/s")
+        size = float(np.linalg.norm(load))
+        if size == 0.0:
+            raise ValueError("load: needs a force other than 0: without one a film has no side")
+        if speed == 0.0:
+            raise ValueError(
+                "speed: needs a number other than 0 rad/s: at rest a film carries nothing"
+            )
+        turn = np.array([[1.0, -np.sign(speed)], [np.sign(speed), 1.0]])
+        state = self._state(0.35 * self.clearance * turn @ load / size, np.zeros(2), speed)
+        for _ in range(_STEPS):
+            unbalanced = state.force + load
+            if np.linalg.norm(unbalanced) < _CLOSE * size:
+                return state
+            state = self._next(state, load)
+            if state.minimum_thickness < self.thinnest:
+                raise ValueError(
+                    f"load: {size:g} N at {speed:g} rad/s presses the film below "
+                    f"{self.thinnest:.3g} m, which {self.nodes} nodes do not resolve; give more "
+                    "nodes, or a smaller load"
+                )
+        raise ArithmeticError(
+            f"film: no equilibrium found for the load {load} N at {speed:g} rad/s: "
+            f"{np.linalg.norm(unbalanced) / size:.1e} of it is left after {_STEPS} steps"
+        )
+
+    def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
+        """Return the state after one step, shortened until the force comes closer to the load."""
+        unbalanced = state.force + load
+        stiffness, _ = state.coefficients()
+        move = np.linalg.lstsq(stiffness, unbalanced, rcond=1e-12)[0]
+        before = self._heights(state.position)[0]
+        closing = before - self._heights(state.position + move)[0]
+        move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
+        for _ in range(12):
+            found = self._state(state.position + move, state.velocity, state.speed)
+            if np.linalg.norm(found.force + load) < np.linalg.norm(unbalanced):
+                break
+            move *= 0.5
+        return found
+
+    def _state(self, position: np.ndarray, velocity: np.ndarray, speed: float) -> FilmState:
+        heights = self._heights(position)
+        if heights.min() <= 0.0:
+            raise ValueError(
+                f"displacement: {position.tolist()} m is outside the clearance of "
+                f"{self.clearance:g} m"
+            )
+        rates = -self.grid.u[0] @ velocity
+        source = 12.0 * self.viscosity * self.radius**2
+        equation = Equation(
+            self.grid, self.cavitation, source, self.supply_pressure, heights, rates, speed
+        )
+        return FilmState(self, position, velocity, speed, equation.solve())
+
+    def _heights(self, position: np.ndarray) -> np.ndarray:
+        """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
+        grid = self.grid
+        return grid.offset - grid.u @ position
+
+
+def _in_order(pads: tuple[Pad, ...]) -> tuple[Pad, ...]:
+    """Return pads by their angle; ValueError if two overlap."""
+    if not pads:
+        raise ValueError("pads: needs one at least")
+    ordered = sorted(pads, key=lambda pad: pad.start % (2.0 * np.pi))
+    starts = np.array([pad.start % (2.0 * np.pi) for pad in ordered])
+    arcs = np.array([pad.arc for pad in ordered])
+    room = np.diff(starts, append=starts[0] + 2.0 * np.pi)
+    if np.any(arcs > room * (1.0 + 1e-12)):
+        raise ValueError(f"pads: overlap; starts {starts} rad, arcs {arcs} rad")
+    return tuple(ordered)

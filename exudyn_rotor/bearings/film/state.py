@@ -1,0 +1,148 @@
+"""What a film does at one place and motion of the journal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_rotor.bearings.film.reynolds import Solution
+
+if TYPE_CHECKING:
+    from exudyn_rotor.bearings.film.film import OilFilm
+
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """OilFilm at one place and motion of the journal, from :meth:`OilFilm.state` and `equilibrium`.
+
+    Attributes
+    ----------
+    film : OilFilm
+    position, velocity : numpy.ndarray, (2,)
+        Of the journal along n1 and n2 [m], [m/s].
+    speed : float
+        [rad/s].
+    solution : Solution
+        Pressure and voids at the nodes of the grid.
+    """
+
+    film: OilFilm
+    position: np.ndarray
+    velocity: np.ndarray
+    speed: float
+    solution: Solution
+
+    @cached_property
+    def force(self) -> np.ndarray:
+        """Force on the journal along n1 and n2, that of the supply in the grooves with it [N].
+
+        The supply's pressure all around has no resultant, so the pads' excess over it is enough.
+        """
+        film, grid = self.film, self.film.grid
+        supply = film.radius * film.length * film.supply_pressure * (grid.step @ grid.u[0])
+        return supply + self._resultant(self.solution.bearing)
+
+    def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] along n1 and n2, each (2, 2).
+
+        The derivatives of the discrete film's force (Lund's perturbation): where the film is
+        broken it stays so, and the pressure at the rim of a void stays zero.
+        """
+        u = np.moveaxis(self.film.grid.u, 2, 0)
+        still = np.zeros_like(u)
+        heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
+        changes = self.solution.change(heights, rates)
+        gradient = -np.array([self._resultant(change) for change in changes]).T
+        return gradient[:, :2], gradient[:, 2:]
+
+    def _resultant(self, pressure: np.ndarray) -> np.ndarray:
+        grid = self.film.grid
+        along = grid.step * (pressure @ grid.axial.weights)
+        return -(self.film.radius**2) * (along @ grid.u[0])
+
+    @property
+    def heights(self) -> np.ndarray:
+        """Thickness at the nodes of the grid, (n,) [m]."""
+        return self.solution.equation.heights[0]
+
+    @property
+    def minimum_thickness(self) -> float:
+        """Least thickness at the nodes [m]."""
+        return float(self.heights.min())
+
+    @property
+    def maximum_pressure(self) -> float:
+        """Largest pressure at the nodes [Pa]."""
+        return float(self.pressure.max())
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure at the angles and axial places of the grid, (n, k) [Pa]."""
+        return self.solution.bearing @ self.film.grid.axial.shapes.T
+
+    @property
+    def eccentricity_ratio(self) -> float:
+        """Distance of the journal from the middle over the least clearance there."""
+        return float(np.linalg.norm(self.position) / self.film.clearance)
+
+    @property
+    def attitude(self) -> float:
+        """Angle from the load, −force, to the journal's place, positive with the spin [rad]."""
+        sense = 1.0 if self.speed >= 0.0 else -1.0
+        (f1, f2), (q1, q2) = -self.force, self.position
+        return float(sense * np.arctan2(f1 * q2 - f2 * q1, f1 * q1 + f2 * q2))
+
+    @property
+    def sommerfeld_number(self) -> float:
+        """S = μ N L D/W (R/c)², N in revolutions per second, c the least clearance."""
+        film = self.film
+        turns = abs(self.speed) / (2.0 * np.pi)
+        load = np.linalg.norm(self.force)
+        area = 2.0 * film.radius * film.length
+        return float(film.viscosity * turns * area / load * (film.radius / film.clearance) ** 2)
+
+    @property
+    def torque(self) -> float:
+        """Torque that the film takes from the journal, positive against a positive spin [N m].
+
+        Shear of the surface, μ R Ω/h, where there is oil, and of the pressure, (h/2R) ∂φ p,
+        integrated by parts. Voids of films that do not conserve mass count as full.
+        """
+        film, grid = self.film, self.film.grid
+        axial, equation = grid.axial, self.solution.equation
+        size = film.length / film.radius
+        filled = size * (1.0 - self.solution.fraction @ axial.weights / axial.weights.sum())
+        # the half volumes at edges have the thickness of their faces
+        ends = ~np.array([grid.at_left, grid.at_right]) / equation.heights[1:]
+        covered = grid.step * (1.0 / self.heights + 0.5 * ends.sum(axis=0))
+        shear = film.viscosity * film.radius**4 * self.speed * (covered @ filled)
+        slope = equation.heights[2] - equation.heights[1]
+        excess = self.solution.bearing @ axial.weights - size * film.supply_pressure
+        lift = -(slope @ excess)
+        return float(shear + 0.5 * film.radius**2 * lift)
+
+    @property
+    def power_loss(self) -> float:
+        """Power that the journal's rotation loses to the film [W]."""
+        return self.torque * self.speed
+
+    @property
+    def side_flow(self) -> float:
+        """Oil that leaves the pads at both ends [m³/s]."""
+        film, grid = self.film, self.film.grid
+        slope = self.solution.bearing @ grid.axial.edge
+        return float((grid.step * self.heights**3) @ slope / (6.0 * film.viscosity))
+
+    def critical_mass(self) -> float:
+        """Return the rigid mass on this film above which it whirls unstably [kg]; inf for none.
+
+        Routh–Hurwitz for M q̈ + C q̇ + K q = 0: at the limit M ν² = k with ``k = (K11 C22 +
+        K22 C11 − K12 C21 − K21 C12)/(C11 + C22)``, ``ν² = ((K11 − k)(K22 − k) − K12 K21)/det C``.
+        """
+        (k11, k12, k21, k22), (c11, c12, c21, c22) = (m.ravel() for m in self.coefficients())
+        k = (k11 * c22 + k22 * c11 - k12 * c21 - k21 * c12) / (c11 + c22)
+        square = ((k11 - k) * (k22 - k) - k12 * k21) / (c11 * c22 - c12 * c21)
+        return float(k / square) if square > 0.0 else float("inf")
