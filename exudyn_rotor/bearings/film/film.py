@@ -6,25 +6,22 @@ isothermal, laminar, incompressible, without the oil's inertia.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.film.grid import Axial, Grid
-from exudyn_rotor.bearings.film.pads import Pad
-from exudyn_rotor.bearings.film.reynolds import CAVITATION, Equation
+from exudyn_rotor.bearings.film.data import FilmData
+from exudyn_rotor.bearings.film.reynolds import Equation
 from exudyn_rotor.bearings.film.state import FilmState
 
 _STEPS = 100
 _CLOSE = 1e-9  # of the load: Newton's method stops there
-_PEAK = 4.5  # the pressure's peak, √(2 h_min/c) wide, holds three nodes
 
 
 @dataclass(frozen=True, eq=False)
-class OilFilm:
+class OilFilm(FilmData):
     """Oil film in a bore of one or more pads.
 
     Parameters
@@ -64,51 +61,6 @@ class OilFilm:
     (0.66, 40)
     >>> stiffness, damping = state.coefficients()
     """
-
-    radius: float
-    length: float
-    viscosity: float
-    pads: Sequence[Pad]
-    cavitation: str = "reynolds"
-    supply_pressure: float = 0.0
-    nodes: int = 120
-    axial_nodes: int = 12
-    grid: Grid = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        checks.number(self.radius, "radius", "m", above=0.0)
-        checks.number(self.length, "length", "m", above=0.0)
-        checks.number(self.viscosity, "viscosity", "Pa s", above=0.0)
-        checks.choice(self.cavitation, "cavitation", CAVITATION)
-        checks.number(self.supply_pressure, "supply_pressure", "Pa", least=0.0)
-        checks.count(self.nodes, "nodes", least=12, most=10_000)
-        checks.count(self.axial_nodes, "axial_nodes", most=1000)
-        if self.axial_nodes == 1:
-            raise ValueError("axial_nodes: needs 0 (one profile), or 2 nodes or more, got 1")
-        pads = _in_order(checks.instances(self.pads, "pads", Pad))
-        if pads[0].closed and self.supply_pressure > 0.0:
-            raise ValueError("supply_pressure: needs pads with a groove between them")
-        if pads[0].closed and self.cavitation == "mass-conserving":
-            raise ValueError(
-                "cavitation: 'mass-conserving' needs pads with a groove between them, from which "
-                "oil replaces what leaves at the ends; 'reynolds' needs none"
-            )
-        object.__setattr__(self, "pads", pads)
-        half = 0.5 * self.length / self.radius
-        axial = Axial.volumes(half, self.axial_nodes) if self.axial_nodes else Axial.profile(half)
-        object.__setattr__(self, "grid", Grid(pads, self.nodes, axial))
-        if self.clearance <= 0.0:
-            raise ValueError("pads: their centers leave no clearance for a journal in the middle")
-
-    @property
-    def clearance(self) -> float:
-        """Least thickness of the film about a journal in the middle [m]."""
-        return float(self._heights(np.zeros(2))[0].min())
-
-    @property
-    def thinnest(self) -> float:
-        """OilFilm that the grid still resolves [m]."""
-        return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
         """Return the force of the film on the journal along n1 and n2, (2,) [N].
@@ -196,8 +148,8 @@ class OilFilm:
         unbalanced = state.force + load
         stiffness, _ = state.coefficients()
         move = np.linalg.lstsq(stiffness, unbalanced, rcond=1e-12)[0]
-        before = self._heights(state.position)[0]
-        closing = before - self._heights(state.position + move)[0]
+        before = self.heights(state.position)[0]
+        closing = before - self.heights(state.position + move)[0]
         move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
         for _ in range(12):
             found = self._state(state.position + move, state.velocity, state.speed)
@@ -207,7 +159,7 @@ class OilFilm:
         return found
 
     def _state(self, position: np.ndarray, velocity: np.ndarray, speed: float) -> FilmState:
-        heights = self._heights(position)
+        heights = self.heights(position)
         if heights.min() <= 0.0:
             raise ValueError(
                 f"displacement: {position.tolist()} m is outside the clearance of "
@@ -219,21 +171,3 @@ class OilFilm:
             self.grid, self.cavitation, source, self.supply_pressure, heights, rates, speed
         )
         return FilmState(self, position, velocity, speed, equation.solve())
-
-    def _heights(self, position: np.ndarray) -> np.ndarray:
-        """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
-        grid = self.grid
-        return grid.offset - grid.u @ position
-
-
-def _in_order(pads: tuple[Pad, ...]) -> tuple[Pad, ...]:
-    """Return pads by their angle; ValueError if two overlap."""
-    if not pads:
-        raise ValueError("pads: needs one at least")
-    ordered = sorted(pads, key=lambda pad: pad.start % (2.0 * np.pi))
-    starts = np.array([pad.start % (2.0 * np.pi) for pad in ordered])
-    arcs = np.array([pad.arc for pad in ordered])
-    room = np.diff(starts, append=starts[0] + 2.0 * np.pi)
-    if np.any(arcs > room * (1.0 + 1e-12)):
-        raise ValueError(f"pads: overlap; starts {starts} rad, arcs {arcs} rad")
-    return tuple(ordered)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Solution
-
-if TYPE_CHECKING:
-    from exudyn_rotor.bearings.film.film import OilFilm
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +17,8 @@ class FilmState:
 
     Attributes
     ----------
-    film : OilFilm
+    film : FilmData
+        The OilFilm.
     position, velocity : numpy.ndarray, (2,)
         Of the journal along n1 and n2 [m], [m/s].
     speed : float
@@ -29,7 +27,7 @@ class FilmState:
         Pressure and voids at the nodes of the grid.
     """
 
-    film: OilFilm
+    film: FilmData
     position: np.ndarray
     velocity: np.ndarray
     speed: float
