@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from exudyn_rotor import OilFilm, Pad, grooved_pads, plot_pressure
+from exudyn_rotor.bearings.film.grid import Axial
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 STILL = (0.0, 0.0)
@@ -254,6 +255,27 @@ def test_one_profile_is_exact_for_short_bores():
         errors.append(np.linalg.norm(error) / np.linalg.norm(fine))
     assert errors[0] < 2e-2
     assert errors[1] < errors[0] / 16.0 + 5e-4  # of the extrapolation, (1/16)⁴ and voids
+
+
+@pytest.mark.parametrize("half", [0.02, 0.5, 3.0])
+def test_profile_is_integrated_along_the_axis(half):
+    """∫ f dζ, ∫ f² dζ and ∫ f'² dζ of f = 1 − cosh ζ / cosh(L/2R), short: (L²/4R² − ζ²)/2."""
+    place = np.linspace(-half, half, 4001)
+    profile, scale = 1.0 - np.cosh(place) / np.cosh(half), Axial.profile(half)
+    size = scale.shapes[0, 0] / profile[2000]
+    slope = np.gradient(profile, place, edge_order=2)
+    for found, exact in (
+        (scale.weights, size * np.trapezoid(profile, place)),
+        (scale.mass, size**2 * np.trapezoid(profile**2, place)),
+        (scale.stiffness[0], size**2 * np.trapezoid(slope**2, place)),
+    ):
+        assert found == pytest.approx(exact, rel=2e-4)  # half², of the parabola
+
+
+def test_preload_brings_the_pads_to_the_journal():
+    """The assembled clearance is 1 − m that of the pads."""
+    # the middle of a pad is up to half a node away: m/(1 − m) (Δφ/2)²/2
+    assert film(preload=0.6).clearance == pytest.approx(0.4 * CLEARANCE, rel=6e-4)
 
 
 def test_rigid_mass_is_at_the_limit_of_whirl():
