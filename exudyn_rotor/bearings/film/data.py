@@ -57,14 +57,14 @@ class FilmData:
     @property
     def clearance(self) -> float:
         """Least thickness of the film about a journal in the middle [m]."""
-        return float(self.heights(np.zeros(2))[0].min())
+        return float(self._heights(np.zeros(2))[0].min())
 
     @property
     def thinnest(self) -> float:
         """OilFilm that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
-    def heights(self, position: np.ndarray) -> np.ndarray:
+    def _heights(self, position: np.ndarray) -> np.ndarray:
         """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
         return self.grid.offset - self.grid.u @ position
 

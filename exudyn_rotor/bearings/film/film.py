@@ -148,8 +148,8 @@ class OilFilm(FilmData):
         unbalanced = state.force + load
         stiffness, _ = state.coefficients()
         move = np.linalg.lstsq(stiffness, unbalanced, rcond=1e-12)[0]
-        before = self.heights(state.position)[0]
-        closing = before - self.heights(state.position + move)[0]
+        before = self._heights(state.position)[0]
+        closing = before - self._heights(state.position + move)[0]
         move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
         for _ in range(12):
             found = self._state(state.position + move, state.velocity, state.speed)
@@ -159,7 +159,7 @@ class OilFilm(FilmData):
         return found
 
     def _state(self, position: np.ndarray, velocity: np.ndarray, speed: float) -> FilmState:
-        heights = self.heights(position)
+        heights = self._heights(position)
         if heights.min() <= 0.0:
             raise ValueError(
                 f"displacement: {position.tolist()} m is outside the clearance of "
