@@ -29,6 +29,7 @@ _INTERFACES = v.NAMES.but(unknown=["nowhere"], number_among=["left", 3])
 _ORDERED = v.UNORDERED.but("minus one", falling=[3.0, 2.0, 1.0], repeated=[1.0, 1.0, 2.0])
 _POSITIVES = Kind(v.SERIES.good - {"zero", "range"}, spoiled=True).but(negative=[-2.0, -1.0])
 _FIELD = v.ARRAY
+_NOTHING = Kind(v.EMPTY - {"empty set"}, spoiled=True)  # arrays that are empty in the valid call
 
 BY_NAME: dict[str, Kind] = {
     "B": _FIELD, "C": _FIELD, "D": _FIELD, "G": _FIELD, "H": _FIELD, "J": _FIELD, "K": _FIELD,
@@ -414,8 +415,12 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("CriticalSpeeds", "splits"): v.ANY_VALUES,
     ("Stability.growth_of", "family"): v.WORD,
     ("Stability", "bounds"): _FIELD,
-    ("StabilityThresholds", "values"): _FIELD,
-    ("StabilityThresholds", "onset"): _FIELD,
+    ("StabilityThresholds", "values"): _NOTHING,
+    ("StabilityThresholds", "onset"): _NOTHING,
+    ("StabilityThresholds", "frequencies_inertial"): _NOTHING,
+    ("StabilityThresholds", "whirl_codes"): _NOTHING,
+    ("StabilityThresholds", "nodal_diameters"): _NOTHING,
+    ("StabilityThresholds", "basis_shifts"): _NOTHING,
     ("StabilityThresholds", "low"): v.SIGNED,
     ("StabilityThresholds", "high"): v.SIGNED,
     ("StabilityThresholds", "label"): v.NAME,
