@@ -72,7 +72,8 @@ def test_point_mass_in_both_frames(reduced):
     rotor = point_mass()
     support = Support("at", (HERTZ * 100.0) ** 2 * np.eye(3))
     model = rotor.reduce(0) if reduced else rotor
-    result = campbell(model, HERTZ * np.array([0.0, 50.0, 130.0]), supports=[support])
+    speeds = HERTZ * np.array([0.0, 50.0, 130.0])
+    result = campbell(model, speeds, supports=[support], frame="rotor")
     np.testing.assert_allclose(
         result.frequencies_rotor / HERTZ, [[100] * 3, [50, 100, 150], [30, 100, 230]], rtol=1e-12
     )
@@ -181,11 +182,14 @@ def test_damping_is_that_of_the_inertial_frequency():
 # ------------------------------------------------------------------ order and whirl
 
 
-def test_columns_ascend_and_tracked_columns_follow_the_modes():
+@pytest.mark.parametrize("frame", ["inertial", "rotor"])
+def test_columns_ascend_and_tracked_columns_follow_the_modes(frame):
     support = Support("at", np.diag([1e4, 1e4, 3.6e5]))
     speeds = np.linspace(0.0, 900.0, 31)
-    result = campbell(point_mass(), speeds, supports=[support])
-    assert np.all(np.diff(result.frequencies_rotor, axis=1) >= 0.0)
+    result = campbell(point_mass(), speeds, supports=[support], frame=frame)
+    seen = {"rotor": result.frequencies_rotor, "inertial": result.frequencies_inertial}
+    assert np.all(np.diff(seen[frame], axis=1) >= -1e-9 * seen[frame][:, 1:])
+    assert result.plot().get_ylabel() == f"frequency in the {frame} frame [Hz]"
     tracked = result.tracked()
     for column in range(3):
         words = set(tracked.whirl[1:, column])
@@ -273,7 +277,7 @@ def test_a_nearly_isotropic_support_takes_hills_way_to_the_same_result():
     both = []
     for ratio in (1.0, 1.0 + 1e-9):
         supports = [Support("all", np.diag([1e6, 1e6 * ratio, 1e6]), tilt_stiffness=1e5)]
-        both.append(campbell(rotor, [50.0, 200.0], supports=supports))
+        both.append(campbell(rotor, [50.0, 200.0], supports=supports, frame="rotor"))
     constant, periodic = both
     assert constant.free_motions == periodic.free_motions == ("spin",)
     for name in ("frequencies_rotor", "frequencies_inertial"):
@@ -318,9 +322,26 @@ def test_subspace_of_a_full_model_meets_the_dense_solution(ratio):
     subspace = FullRotor.of(beam, supports).space(8, 900.0, residual=1e-5)
     for speed in (300.0, 900.0):
         found = subspace.modes(speed, 1e-8).values
-        dense = campbell(beam, speed, supports=supports, modes=8, stiffening="tilt")
+        given = {"supports": supports, "stiffening": "tilt", "frame": "rotor"}
+        dense = campbell(beam, speed, modes=8, **given)
         np.testing.assert_allclose(found.imag, dense.frequencies_rotor[0], rtol=1e-8, atol=1e-3)
         np.testing.assert_allclose(found.real, dense.growth[0], rtol=1e-6, atol=1e-3)
+
+
+def test_full_model_is_solved_for_the_modes_that_are_lowest_as_they_are_asked_for():
+    """Dense equations of all coordinates are the reference; backward whirl is fast in the rotor."""
+    beam = SolidRotor.from_ngsolve(block_beam(0.1), STEEL, "z", order=1).center_interfaces()
+    supports = [Support(name, np.diag([1e7, 1e7, 1e6])) for name in ("left", "right")]
+    speeds, chosen = [4000.0, 5000.0], {}
+    for frame in ("inertial", "rotor"):
+        options = {"modes": 4, "frame": frame}
+        found = campbell(FullRotor.of(beam, supports), speeds, **options)
+        dense = campbell(beam, speeds, supports=supports, stiffening="tilt", **options)
+        for name in ("frequencies_inertial", "frequencies_rotor"):
+            values, expected = getattr(found, name), getattr(dense, name)
+            np.testing.assert_allclose(values, expected, rtol=1e-6, atol=1e-3)
+        chosen[frame] = np.sort(dense.frequencies_inertial[0])
+    assert np.abs(chosen["inertial"] - chosen["rotor"]).max() > 1.0
 
 
 def test_large_full_model_by_its_residual():

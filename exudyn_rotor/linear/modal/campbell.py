@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
+from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
 from exudyn_rotor.linear.modal.tracking import Tracks, track
 from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of, oscillates
 from exudyn_rotor.linear.models.basis_error import BasisError, judged
@@ -27,8 +29,10 @@ from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.theory.rotating_axes import FRAMES
 
 _FULL_MODES = 10
+_SAME = 1e-9  # relative distance of frequencies in the inertial frame that is none
 
 
 def campbell(
@@ -38,6 +42,7 @@ def campbell(
     supports: Sequence[Support] = (),
     body: RotorBody | None = None,
     modes: int | None = None,
+    frame: str = "inertial",
     stiffening: str = "auto",
     allow_negative: bool = False,
     tolerance: float = 1e-8,
@@ -65,9 +70,12 @@ def campbell(
     body : RotorBody, optional
         The rotor in a scene.
     modes : int, optional
-        How many modes to keep: those with the lowest inertial frequencies at the first speed,
-        followed from there, overdamped ones last. All by default. A large SolidRotor is solved
-        for as many modes, 10 by default, as are lowest in the rotor frame at each speed.
+        How many modes to keep: those with the lowest frequencies in the `frame` at the first
+        speed, followed from there, overdamped ones last. All by default, 10 of a large SolidRotor;
+        that is solved for as many more at every speed as move at up to the highest of their
+        frequencies with one nodal diameter at most.
+    frame : {'inertial', 'rotor'}
+        In which modes are chosen, stand in order in the result, and are drawn.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`).
@@ -135,6 +143,7 @@ def campbell(
     residual = options.accuracy(residual, "residual")
     options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
+    seen = checks.choice(frame, "frame", FRAMES) == "inertial"
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
@@ -143,16 +152,20 @@ def campbell(
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:
         space = space.prepared(values)
-    computed = model.size if model.gives_all else count
-    task = _Task(space, computed, tolerance, WhirlContent.of(model))
+    content, computed = WhirlContent.of(model), model.size
+    if not model.gives_all:
+        fastest = values[np.argmax(np.abs(values))]
+        computed = count if not seen else _computed(space, count, fastest, tolerance, content)
+    task = _Task(space, computed, tolerance, content, seen)
     workers = None if space.is_shared else executor
     solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
-    tracks = track([entry[0] for entry in solved], values, model.mass_matrix.__matmul__)
-    solved, tracks = _lowest(solved, tracks, count)
-    inertial = np.array([entry[1] for entry in solved])
+    tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
+    solved, tracks = _lowest(solved, tracks, count, seen)
+    inertial = np.array([entry.inertial for entry in solved])
     chosen = judged(inertial, values) if modes is None else np.full(inertial.shape, True)
-    shifts = basis.shifts(values, [entry[0] for entry in solved], chosen)
-    result = _collected(values, solved, tracks, model, shifts)
+    shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
+    splits = _splits(solved, content, space)
+    result = _collected(values, solved, tracks, model, (shifts, splits, frame))
     _warn_of_basis(basis, result)
     return result
 
@@ -165,17 +178,30 @@ class _Task:
     count: int
     tolerance: float
     content: WhirlContent
+    seen: bool
 
-    def __call__(self, speed: float) -> Solved:
+    def __call__(self, speed: float) -> _Solved:
         modes = self.space.modes(speed, self.tolerance)
-        return _classified(modes, speed, self.content, self.count)
+        return _classified(modes, speed, self.content, self.count, self.seen)
 
 
-Solved = tuple[FloquetModes, np.ndarray, np.ndarray, np.ndarray]
+class _Solved(NamedTuple):
+    """Modes at one speed, with inertial frequency, whirl and nodal diameter, each (k,)."""
+
+    modes: FloquetModes
+    inertial: np.ndarray
+    codes: np.ndarray
+    diameters: np.ndarray
+
+    def columns(self, chosen: np.ndarray) -> _Solved:
+        """Return some of the modes."""
+        return _Solved(self.modes.columns(chosen), *(array[chosen] for array in self[1:]))
 
 
-def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count: int) -> Solved:
-    """Return the modes with inertial frequency, whirl and nodal diameter, each (k,).
+def _classified(
+    modes: FloquetModes, speed: float, content: WhirlContent, count: int, seen: bool
+) -> _Solved:
+    """Return the modes ascending as they are `seen` from outside, or in the rotor frame.
 
     Overdamped ones, which have the inertial frequency 0, stand behind the others.
     """
@@ -185,37 +211,71 @@ def _classified(modes: FloquetModes, speed: float, content: WhirlContent, count:
     growth, resolution = lowest.values.real, lowest.resolution
     moves = oscillates(growth, inertial, resolution)
     inertial = np.where(moves, inertial, 0.0)
-    order = np.argsort(~moves & (growth < -resolution), kind="stable")
-    return lowest.columns(order), inertial[order], codes[order], diameters[order]
+    key = _ranks(inertial) if seen else np.arange(count)
+    order = np.lexsort((key, ~moves & (growth < -resolution)))
+    return _Solved(lowest, inertial, codes, diameters).columns(order)
 
 
-def _lowest(solved: list[Solved], tracks: Tracks, count: int) -> tuple[list[Solved], Tracks]:
-    """Keep the modes that have the lowest inertial frequencies at the first speed.
+def _ranks(frequencies: np.ndarray) -> np.ndarray:
+    """Return the rank of each frequency, one and the same where only rounding tells them apart."""
+    order = np.argsort(frequencies, kind="stable")
+    ascending, ranks = frequencies[order], np.zeros(len(order), dtype=np.int64)
+    ranks[order[1:]] = np.cumsum(np.diff(ascending) > _SAME * ascending[1:])
+    return ranks
+
+
+def _computed(
+    space: Space, count: int, speed: float, tolerance: float, content: WhirlContent
+) -> int:
+    """Return how many modes of a large rotor to solve for, so that none of `count` is missed.
+
+    A motion with one nodal diameter at most that is seen at ω has at most ω + Ω in the rotor frame.
+    The space solves for as many from here on.
+    """
+    while True:
+        modes = space.modes(speed, tolerance)
+        lowest = _classified(modes, speed, content, space.count, True).inertial[:count]
+        if modes.values.imag.max() >= lowest.max() + abs(speed) or not space.ask_for_more():
+            return space.count
+
+
+def _splits(solved: list[_Solved], content: WhirlContent, space: Space) -> np.ndarray:
+    """Return :attr:`Campbell.splits`; supports that differ in their directions have no pairs."""
+    if any(len(entry.modes.orders) > 1 for entry in solved):
+        return np.zeros((len(solved), len(solved[0].inertial)))
+    return np.array(
+        [pair_splits(content, entry.modes.vectors, entry.modes.orders, *entry[1:])
+         for entry in solved]
+    )  # fmt: skip
+
+
+def _lowest(
+    solved: list[_Solved], tracks: Tracks, count: int, seen: bool
+) -> tuple[list[_Solved], Tracks]:
+    """Keep the modes that have the lowest frequencies at the first speed.
 
     Of overdamped ones only where there are no others left.
     """
     if count >= tracks.columns.shape[1]:
         return solved, tracks
-    first = tracks.columns[0]
-    modes, inertial = solved[0][0].columns(first), solved[0][1][first]
-    overdamped = (inertial == 0.0) & (modes.values.real < -modes.resolution)
-    chosen = np.sort(np.lexsort((inertial, overdamped))[:count])
+    first = solved[0].columns(tracks.columns[0])
+    modes = first.modes
+    overdamped = (first.inertial == 0.0) & (modes.values.real < -modes.resolution)
+    frequencies = first.inertial if seen else modes.values.imag
+    chosen = np.sort(np.lexsort((frequencies, overdamped))[:count])
     used = tracks.columns[:, chosen]
     ascending = np.sort(used, axis=1)
     places = [np.searchsorted(*rows) for rows in zip(ascending, used, strict=True)]
-    fewer = [
-        (entry[0].columns(row), *(array[row] for array in entry[1:]))
-        for entry, row in zip(solved, ascending, strict=True)
-    ]
+    fewer = [entry.columns(row) for entry, row in zip(solved, ascending, strict=True)]
     return fewer, Tracks(np.array(places), tracks.continued[:, chosen])
 
 
 def _collected(
     speeds: np.ndarray,
-    solved: list[Solved],
+    solved: list[_Solved],
     tracks: Tracks,
     model: LinearModel,
-    shifts: np.ndarray | None,
+    found: tuple[np.ndarray | None, np.ndarray, str],
 ) -> Campbell:
     modes, inertial, whirl, diameters = zip(*solved, strict=True)
     # adding zero turns −0 into 0
@@ -237,7 +297,9 @@ def _collected(
         continued=tracks.continued,
         free_motions=model.free_motions,
         stiffening=model.stiffening,
-        basis_shifts=shifts,
+        basis_shifts=found[0],
+        splits=found[1],
+        frame=found[2],
     )
 
 

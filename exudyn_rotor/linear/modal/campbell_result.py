@@ -27,7 +27,7 @@ _UNSTABLE = 1e-4
 @storable
 @dataclass(frozen=True, eq=False)
 class Campbell(Result):
-    """Eigenfrequencies over spin speed, at every speed ascending in the rotor frame.
+    """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
     Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others.
     In the order of :meth:`tracked`, column j is the same mode at all speeds.
@@ -37,7 +37,7 @@ class Campbell(Result):
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
     frequencies_rotor : ndarray, shape (s, k)
-        Natural frequencies ``ν = |Im λ|`` seen in the rotor frame, ascending [rad/s].
+        Natural frequencies ``ν = |Im λ|`` seen in the rotor frame [rad/s].
     growth : ndarray, shape (s, k)
         Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
     frequencies_inertial : ndarray, shape (s, k)
@@ -66,6 +66,12 @@ class Campbell(Result):
         twice the highest speed and the lowest six; None where it is not known, as of a scene.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    splits : ndarray, shape (s, k), or None
+        Relative distance to the other mode of a pair in two planes, less than 1 % apart, of a rotor
+        whose mesh or shaft is uneven: positive at the lower one, which stands for both in the
+        table, negative at the upper one, 0 for single modes.
+    frame : {'inertial', 'rotor'}
+        In which columns ascend, and modes were chosen.
 
     Examples
     --------
@@ -103,9 +109,12 @@ class Campbell(Result):
     basis_shifts: np.ndarray | None = numbers(
         "speeds", "modes", dtype=complex, finite=False, optional=True
     )
+    splits: np.ndarray | None = numbers("speeds", "modes", optional=True)
+    frame: str = "inertial"
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        checks.choice(self.frame, "frame", FRAMES)
         if self.stiffening is not None:
             checks.choice(self.stiffening, "stiffening", LEVELS)
         if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
@@ -158,7 +167,9 @@ class Campbell(Result):
         """
         names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
-        names += ("basis_shifts",) * (self.basis_shifts is not None)
+        names += tuple(
+            name for name in ("basis_shifts", "splits") if getattr(self, name) is not None
+        )
         moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
         moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
@@ -185,7 +196,7 @@ class Campbell(Result):
     def plot(
         self,
         ax: Axes | None = None,
-        frame: str = "inertial",
+        frame: str | None = None,
         *,
         units: str = "Hz",
         orders: Sequence[float] | float | None = None,
@@ -200,7 +211,8 @@ class Campbell(Result):
         ----------
         ax : matplotlib.axes.Axes, optional
             A new figure without a window by default.
-        frame : {'inertial', 'rotor'}
+        frame : {'inertial', 'rotor'}, optional
+            That of the result by default.
         units : {'Hz', 'rpm', 'SI'}
             Of the picture: 'rpm' has speeds in rpm and frequencies in Hz, 'SI' rad/s.
         orders : sequence of float, optional
@@ -217,7 +229,7 @@ class Campbell(Result):
         TypeError, ValueError
             For an unknown frame or unit, orders in the rotor frame, or numbers out of range.
         """
-        checks.choice(frame, "frame", FRAMES)
+        frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
         shown, inertial = Units.of(units), frame == "inertial"
         limits = excitation.checked_range(operating_range)
         shares = excitation.checked_margins(margins, limits is not None)
@@ -267,11 +279,17 @@ class Campbell(Result):
             "nodal diameters": tracked.nodal_diameters.ravel(),
             "whirl": tracked.whirl.ravel(),
             "continued": tracked.continued.ravel(),
+            "split": np.zeros(rows) if self.splits is None else tracked.splits.ravel(),
             "basis error": np.full(rows, np.nan) if errors is None else errors.ravel(),
         }
 
+    def _listed(self, row: int) -> np.ndarray:
+        """Return the columns at one speed without the upper modes of pairs."""
+        columns = np.arange(self.order.shape[1])
+        return columns if self.splits is None else columns[self.splits[row] >= 0.0]
+
     def table(self, count: int | None = None, *, units: str = "Hz") -> str:
-        """Return the lowest `count` modes at every speed as lines of text.
+        """Return the lowest `count` modes at every speed as lines of text, a pair as one line.
 
         `units` are those of :meth:`plot`. The error of the basis is '-' where it is not estimated,
         see :attr:`basis_shifts`.
@@ -292,10 +310,12 @@ class Campbell(Result):
             known.frequencies(f) for f in (self.frequencies_rotor, self.frequencies_inertial)
         )
         for i, at in enumerate(known.speeds(self.speeds)):
-            for j in range(self.order.shape[1])[shown]:
+            for j in self._listed(i)[shown]:
                 n = self.nodal_diameters[i, j]
                 error = f"{in_table(errors[i, j]):>13}" if reduced else ""
                 kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
+                if self.splits is not None and self.splits[i, j] > 0.0:
+                    kind += f"  pair, the other {self.splits[i, j]:.1e} above"
                 lines.append(
                     f"{at:12.4g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
                     f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"

@@ -40,7 +40,7 @@ _NO_INERTIA = 1e-6
 # deviation from K − Ω²B, relative to K, that differences in a scene may leave
 _QUADRATIC = 1e-6
 # two critical speeds this close are looked at as a pair; share of a mean wave number that turns
-_PAIR, _CIRCULAR = 1e-2, 0.8
+PAIR, CIRCULAR = 1e-2, 0.8
 _BRACKETS = 200
 _MOST_ROUNDS = 20
 Entry = TypeVar("Entry")
@@ -351,7 +351,7 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
             continue
         for other in range(index + 1, len(critical)):
             upper = critical[other]
-            if upper.speed > (1.0 + _PAIR) * entry.speed:
+            if upper.speed > (1.0 + PAIR) * entry.speed:
                 break
             if other not in taken and _is_pair(entry, upper, content):
                 taken.add(other)
@@ -371,7 +371,7 @@ def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
     whole = np.maximum(content.whole_energy(combined), 1e-300)
     mean = np.tensordot(seen, energy, 2) / whole
     size = np.tensordot(np.abs(seen), energy, 2) / whole
-    return bool(mean.min() < -_CIRCULAR * size.min() and mean.max() > _CIRCULAR * size.min() > 0.0)
+    return bool(mean.min() < -CIRCULAR * size.min() and mean.max() > CIRCULAR * size.min() > 0.0)
 
 
 def _same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:

@@ -341,8 +341,8 @@ LINEAR = [
         ),
         (
             "any two close critical speeds are a pair",
-            "return bool(mean.min() < -_CIRCULAR * size.min() and",
-            "return bool(mean.min() < _CIRCULAR + size.min() and",
+            "return bool(mean.min() < -CIRCULAR * size.min() and",
+            "return bool(mean.min() < CIRCULAR + size.min() and",
         ),
     ),
     *mutations(
@@ -350,8 +350,32 @@ LINEAR = [
         "test_campbell_kinds.py",
         (
             "overdamped motions in front of the others",
-            "order = np.argsort(~moves &",
-            "order = np.argsort(moves |",
+            "order = np.lexsort((key, ~moves &",
+            "order = np.lexsort((key, moves |",
+        ),
+    ),
+    *mutations(
+        "linear/modal/campbell.py",
+        "test_campbell_frames.py",
+        (
+            "order in the other frame",
+            "key = _ranks(inertial) if seen else",
+            "key = _ranks(inertial) if not seen else",
+        ),
+        (
+            "a large rotor is not solved for more modes",
+            "lowest.max() + abs(speed) or",
+            "lowest.max() - abs(speed) or",
+        ),
+    ),
+    *mutations(
+        "linear/modal/mesh_pairs.py",
+        "test_mesh_pairs.py",
+        ("the upper mode of a pair stands for both", "= split, -split", "= -split, split"),
+        (
+            "motions of one sense taken for a pair",
+            "mean.max() > CIRCULAR * size.min() > 0.0",
+            "mean.max() < CIRCULAR * size.min()",
         ),
     ),
     *mutations(
