@@ -32,6 +32,7 @@ from exudyn_rotor.sweep import ascending_from_zero, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 
 _FULL_MODES = 10
+_SLOW = 1.0  # rad/s
 _SAME = 1e-9  # relative distance of frequencies in the inertial frame that is none
 
 
@@ -164,7 +165,7 @@ def campbell(
     inertial = np.array([entry.inertial for entry in solved])
     chosen = judged(inertial, values) if modes is None else np.full(inertial.shape, True)
     shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
-    splits = _splits(solved, content, space)
+    splits = _splits(solved, values, content, space)
     result = _collected(values, solved, tracks, model, (shifts, splits, frame))
     _warn_of_basis(basis, result)
     return result
@@ -239,9 +240,15 @@ def _computed(
             return space.count
 
 
-def _splits(solved: list[_Solved], content: WhirlContent, space: Space) -> np.ndarray:
+def _splits(
+    solved: list[_Solved], speeds: np.ndarray, content: WhirlContent, space: Space
+) -> np.ndarray:
     """Return :attr:`Campbell.splits`; supports that differ in their directions have no pairs."""
-    if any(len(entry.modes.orders) > 1 for entry in solved):
+    if np.any(speeds):
+        alike = all(len(entry.modes.orders) == 1 for entry in solved)
+    else:  # supports that stand still differ from turning ones at a speed only
+        alike = space.at(_SLOW).is_constant
+    if not alike:
         return np.zeros((len(solved), len(solved[0].inertial)))
     return np.array(
         [pair_splits(content, entry.modes.vectors, entry.modes.orders, *entry[1:])
