@@ -29,7 +29,7 @@ along = np.kron(np.eye(6), rotor.axis.direction[:, None])
 frequencies = [1000.0, 1000.0, 1200.0, 1400.0, 1400.0, 2000.0]
 assert np.array_equal(rotor.stiffness @ modes, rotor.mass @ modes * np.square(frequencies))
 
-at_rest, at_300 = campbell(rotor, [0.0, 300.0]).frequencies_rotor
+at_rest, at_300 = campbell(rotor, [0.0, 300.0], frame="rotor").frequencies_rotor
 printed = {
     "x (116)": rotor.nodes.ravel(),
     "x̃ (117)": tilde(rotor.nodes),
@@ -58,9 +58,11 @@ assert np.allclose(at_rest, frequencies, rtol=1e-12)
 whirl = [834.497940852066, 1563.206060221641]
 expected = [whirl[0], whirl[0], 1200.0, whirl[1], whirl[1], 2000.0]
 assert np.allclose(at_300, expected, rtol=1e-12)
-assert np.allclose(campbell(rotor.reduce(6), [300.0]).frequencies_rotor[0], expected, rtol=1e-12)
+assert np.allclose(
+    campbell(rotor.reduce(6), [300.0], frame="rotor").frequencies_rotor[0], expected, rtol=1e-12
+)
 
-result = campbell(rotor, np.linspace(0.0, 900.0, 91))
+result = campbell(rotor, np.linspace(0.0, 900.0, 91), frame="rotor")
 made, ax = plotting.figure()
 ax.plot(result.speeds, result.frequencies_rotor, color=plotting.COLORS[0])
 ax.plot(300.0 * np.ones(6), expected, "o", color=plotting.COLORS[1], label="Eq. (129)")

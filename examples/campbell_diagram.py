@@ -26,7 +26,8 @@ point = SolidRotor.from_matrices(
     np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"mass": [0]}
 )
 springs = (HERTZ * 100.0) ** 2 * np.eye(3)
-result = campbell(point, HERTZ * np.array([0.0, 50.0]), supports=[Support("mass", springs)])
+given = {"supports": [Support("mass", springs)], "frame": "rotor"}
+result = campbell(point, HERTZ * np.array([0.0, 50.0]), **given)
 print(result.table())
 assert np.allclose(result.frequencies_rotor[1] / HERTZ, [50, 100, 150], rtol=1e-12)
 assert np.allclose(result.frequencies_inertial / HERTZ, 100.0, rtol=1e-12)

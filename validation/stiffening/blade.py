@@ -89,7 +89,7 @@ def solid_frequencies(
         displaced = level == "full, displaced"
         rotor = rotor.with_prestress(rotor.prestress(initial_displacement=displaced))
     speeds = UNIT * np.asarray(etas)
-    found = campbell(rotor, speeds, stiffening=LEVELS[level], modes=modes)
+    found = campbell(rotor, speeds, stiffening=LEVELS[level], modes=modes, frame="rotor")
     rows = []
     for vectors, values in zip(found.vectors, found.frequencies_rotor, strict=True):
         energy = (np.abs(vectors.reshape(rotor.node_count, 3, -1)) ** 2).sum(axis=0)
@@ -233,14 +233,13 @@ def basis_table(size: float, eta: float, hubs: Sequence[float]) -> list[Row]:
     for hub in tqdm(hubs, desc="component modes"):
         rotor = blade(size, hub)
         rotor = rotor.with_prestress(rotor.prestress())
-        exact = campbell(rotor, speed, stiffening="full", modes=4).frequencies_rotor[0, :4]
+        given = {"stiffening": "full", "frame": "rotor"}
+        exact = campbell(rotor, speed, modes=4, **given).frequencies_rotor[0, :4]
         bases = {f"{n} at rest": free_modes(rotor, n) for n in (4, 8, 12, 20, 40)}
         bases |= {f"{n} at rest, {n} at speed": spinning_modes(rotor, n, [speed]) for n in (2, 4)}
         for name, modes in bases.items():
             reduced = rotor.reduce(modes)
-            found = campbell(reduced, speed, stiffening="full", accuracy=None).frequencies_rotor[
-                0, :4
-            ]
+            found = campbell(reduced, speed, accuracy=None, **given).frequencies_rotor[0, :4]
             row: Row = {"hub": hub, "eta": eta, "modes": name, "columns": reduced.size}
             errors = np.abs(found / exact - 1.0)
             rows.append(row | {f"frequency {i + 1} / full": e for i, e in enumerate(errors)})

@@ -218,7 +218,7 @@ def bending_modes(rotor: SolidRotor, speed: float, modes: int = 12) -> Campbell:
     """Return the lowest modes of the unreduced plate, clamped at its bore, level 'full'."""
     held = rotor.clamped("bore")
     carrying = held.with_prestress(held.prestress())
-    return campbell(carrying, [speed], stiffening="full", modes=modes)
+    return campbell(carrying, [speed], stiffening="full", modes=modes, frame="rotor")
 
 
 def pair(found: Campbell, n: int) -> np.ndarray:

@@ -105,9 +105,11 @@ class Subspace:
 
     def ask_for_more(self) -> bool:
         """Raise the number of modes by a half, or return False where there are no more."""
-        before, self.count = self.count, min(self.count + self.count // 2 + 1, _MOST_COLUMNS // 4)
-        self.count = min(self.count, self.full.size // 4)
-        return self.count > before
+        more = min(self.count + self.count // 2 + 1, _MOST_COLUMNS // 4, self.full.size // 4)
+        if more <= self.count:
+            return False
+        self.count = more
+        return True
 
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return the lowest modes in |Im λ| at a spin speed, vectors in all 3n coordinates.
