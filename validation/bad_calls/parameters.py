@@ -332,6 +332,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Campbell", "continued"): _FIELD,
     ("Campbell", "order"): _FIELD,
     ("Campbell", "speeds"): _FIELD,
+    ("Campbell", "splits"): v.ANY_VALUES,
     ("Campbell.crossings", "order"): v.POSITIVE,
     ("Campbell.plot", "orders"): Kind(v.POSITIVE.good | {"three numbers"}),
     ("CriticalSpeedMap", "speeds"): v.ANY_VALUES,
