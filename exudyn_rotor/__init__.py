@@ -41,6 +41,7 @@ from exudyn_rotor.multibody.add_supports import add_supports
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
+from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.multibody.start_state import StartState
@@ -80,6 +81,7 @@ __all__ = [
     "CriticalSpeeds",
     "EnergyBalance",
     "Formulation",
+    "FullRotorBody",
     "HarmonicForce",
     "HarmonicResponse",
     "Interface",

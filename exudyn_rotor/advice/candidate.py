@@ -16,6 +16,7 @@ from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -173,7 +174,7 @@ def _acts_along(support: Support) -> bool:
 
 
 def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
-    checks.instance(body, "body", RotorBody, "a scene needs what add_rotor returned")
+    reduced_body(body, how="a scene needs what add_rotor returned")
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")
     source = LinearScene.of(mbs, body, about="given")

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from exudyn_rotor import checks, plotting
+from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.locking import guiding_force
 from exudyn_rotor.multibody.record import Record
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -144,7 +145,7 @@ def energy_balance(body: RotorBody) -> EnergyBalance:
     >>> float(np.ptp(balance.weight).round(3)), bool(np.abs(balance.error).max() < 1e-8)
     (3.84, True)
     """
-    checks.instance(body, "body", RotorBody, "add_rotor returned it")
+    reduced_body(body)
     if body.formulation.moves_origin:
         raise ValueError(
             f"body: rotor {body.name!r} follows a prescribed translation, whose work is not known"

@@ -15,6 +15,7 @@ from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.advice.unresisted import unresisted_load
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises
@@ -147,7 +148,7 @@ def check_run(
     >>> check_run(body).ok
     True
     """
-    checks.instance(body, "body", RotorBody, "add_rotor returns one")
+    reduced_body(body, how="add_rotor returns one")
     body.check_assembled()
     if reduced is not None:
         _check_same(body, checks.instance(reduced, "reduced", ReducedRotor))

@@ -1,54 +1,46 @@
-"""Adding a reduced rotor to an Exudyn ``mbs``: checks first, then nodes, objects, markers."""
+"""Adding a rotor to an Exudyn ``mbs``: checks first, then nodes, objects, markers."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import (
-    LoadMassProportional,
-    MarkerBodyMass,
-    NodeGenericODE2,
-    NodeRigidBodyRxyz,
-    ObjectGenericODE2,
-    VNodeRigidBodyRxyz,
-)
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import condensed_markers, inputs
+from exudyn_rotor.multibody import inputs
+from exudyn_rotor.multibody.add_full import add_full
+from exudyn_rotor.multibody.add_reduced import add_bare, add_with_marker_body
 from exudyn_rotor.multibody.assembly import check_at_assembly
-from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
 from exudyn_rotor.multibody.frame import CENTRE_OF_MASS, FRAME_NODES
+from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.full_plan import make_full_plan
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
-    ConstraintMonitor,
-    add_constraints,
-    add_spin_guide,
-    guiding_force,
 )
 from exudyn_rotor.multibody.marker_body import (
-    MarkerBodyMesh,
-    interface_markers,
     marker_body_mesh,
-    marker_body_object,
 )
-from exudyn_rotor.multibody.node_markers import carry_markers
+from exudyn_rotor.multibody.node_markers import carry_markers, refuse_markers
 from exudyn_rotor.multibody.plan import Plan, make_plan
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.sparse_solver import needs_sparse_solver
 from exudyn_rotor.multibody.static_check import watched
+from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
 from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
+from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.formulation import (
     ConstantSpeed,
     Formulation,
     PrescribedMotion,
     suited_translation,
 )
-from exudyn_rotor.theory.stiffening import chosen_level, warn_of_left_out
+from exudyn_rotor.theory.stiffening import CHOICES, chosen_level, warn_of_left_out
 
 TURNED_AXES = (
     "rotor {!r}: no node of Exudyn turns about mesh direction {} mounted along {} with the axes of "
@@ -62,7 +54,7 @@ DEFAULT_COLOR = (0.62, 0.70, 0.80, 1.0)
 
 def add_rotor(
     mbs: exudyn.MainSystem,
-    reduced: ReducedRotor,
+    rotor: ReducedRotor | SolidRotor,
     *,
     name: str | None = "rotor",
     translation: str | PrescribedMotion = "free",
@@ -89,13 +81,14 @@ def add_rotor(
     marker_body: bool = True,
     negligible: float = NEGLIGIBLE,
     color: Sequence[float] = DEFAULT_COLOR,
-) -> RotorBody:
+) -> RotorBody | FullRotorBody:
     """Add a fixed-axis rotor to `mbs`.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
-    reduced : ReducedRotor
+    rotor : ReducedRotor or SolidRotor
+        A reduced rotor, or a solid one for the full formulation; see the notes.
     name : str or None
         Unique name; items are called like those of Exudyn's own flexible body. None leaves them
         without names; markers are then called like their interfaces.
@@ -121,7 +114,8 @@ def add_rotor(
     initial_angle, initial_speed : float, optional
         Of a free spin [rad], [rad/s].
     modal_coordinates, modal_velocities : array_like, optional
-        Initial values of the modes named by ``body.selection.labels`` (√kg m, √kg m/s).
+        Initial values of the modes named by ``body.selection.labels`` (√kg m, √kg m/s); of a full
+        body the displacements [m] of all nodes in the rotor frame and their rates, (3n,) or (n, 3).
     gravity : array_like, shape (3,)
         Inertial axes [m/s²].
     mass_damping, stiffness_damping : float
@@ -163,6 +157,7 @@ def add_rotor(
     Returns
     -------
     RotorBody
+        A FullRotorBody for a solid rotor.
 
     Raises
     ------
@@ -210,6 +205,16 @@ def add_rotor(
     :func:`exudyn_rotor.steady_state` gives the motion instead. θ is that of the solver's load time
     (1 s by default). For θ(t) a static solution has no meaning but at its initial speed.
 
+    A solid rotor is added with the displacements of all its nodes, Ψ = I, and sparse matrices: the
+    formulations of Sects. 2.2 to 2.5 in full. What the frame describes, 4, 3 or 1 rigid motions, is
+    held out of the displacements by linear conditions within the same equations, and each interface
+    with a marker has its mean motion as coordinates (:mod:`exudyn_rotor.multibody.ties`). At a
+    constant speed a time step calls no Python and needs no new factor. Give
+    ``recommended_settings(…, body=body)``: Exudyn's default linear solver is a dense one. Markers
+    come by ``markers`` and ``body.add_marker``, not by mesh nodes of the flexible body; markers at
+    the node of the frame, damping by `mass_damping` of a rotor that nothing holds, and checks and
+    linear analyses of the scene need a reduced rotor.
+
     Examples
     --------
     Two masses of 1 kg at r = 0.1 m, each on springs k = 1 MN/m in the rotor frame. At Ω = 10 rad/s
@@ -235,18 +240,21 @@ def add_rotor(
     True
     """
     inputs.main_system(mbs)
-    checks.instance(reduced, "reduced", ReducedRotor, "SolidRotor.reduce(…) makes one")
+    how = "SolidRotor.from_ngsolve(…) makes one, SolidRotor.reduce(…) the other"
+    checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor), how)
+    full = isinstance(rotor, SolidRotor)
+    checks.choice(stiffening, "stiffening", CHOICES)
     formulation = Formulation(
-        suited_translation(translation, reduced.grounded), spin, drive, spin_coupling
+        suited_translation(translation, rotor.grounded), spin, drive, spin_coupling
     )
-    requests = inputs.marker_requests(reduced, markers, marker_offsets, show_markers, marker_body)
+    requests = inputs.marker_requests(rotor, markers, marker_offsets, show_markers, marker_body)
     setup = inputs.Setup(
         name=None if name is None else checks.label(name, "name"),
         formulation=formulation,
-        stiffening=chosen_level(stiffening, reduced.invariants.K2 is not None),
+        stiffening=stiffening,
         placement=inputs.placement(
             formulation,
-            reduced.axis.direction,
+            rotor.axis.direction,
             position,
             rotation,
             initial_velocity,
@@ -263,23 +271,51 @@ def add_rotor(
         locking=checks.choice(locking, "locking", LOCKINGS),
         frame_node=checks.choice(frame_node, "frame_node", FRAME_NODES),
         marker_body=marker_body,
-        negligible=negligible,
+        negligible=checks.number(negligible, "negligible", least=0.0, below=1.0),
         color=inputs.color_of(color),
     )
-    plan = make_plan(reduced, setup)
     inputs.check_free_names(mbs, setup)
-    if stiffening == "auto" and reduced.invariants.K2 is None:
-        warn_of_left_out(reduced.invariants, setup.placement.speed, 3)
+    if full:
+        return _add_solid(mbs, rotor, setup)
+    return _add_reduced(mbs, rotor, setup)
+
+
+def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: inputs.Setup) -> RotorBody:
+    by_default = setup.stiffening == "auto"
+    level = chosen_level(setup.stiffening, reduced.invariants.K2 is not None)
+    setup = replace(setup, stiffening=level)
+    plan = make_plan(reduced, setup)
+    if by_default and level == "tilt":
+        warn_of_left_out(reduced.invariants, setup.placement.speed, 4)
     if reduced.invariants.H is not None:
-        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=2)
-    if not marker_body:
-        return watched(_add_bare(mbs, plan))
+        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
+    if not setup.marker_body:
+        return watched(add_bare(mbs, plan))
     _warn_of_turned_axes(plan)
-    offsets = {interface: request.offset for interface, request in requests.items()}
-    mesh = marker_body_mesh(reduced, plan.selection, plan.frame, offsets)
-    body = watched(_add_with_marker_body(mbs, plan, mesh))
+    offsets = {interface: request.offset for interface, request in setup.markers.items()}
+    mesh = marker_body_mesh(
+        reduced.shapes, reduced.interfaces, plan.selection.T, reduced.axis, plan.frame, offsets
+    )
+    body = watched(add_with_marker_body(mbs, plan, mesh))
     carry_markers(body)
     check_at_assembly(body)
+    return body
+
+
+def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -> FullRotorBody:
+    if setup.stiffening in ("auto", "full"):
+        rotor = with_chosen_prestress(rotor, None)
+    level = chosen_level(setup.stiffening, rotor.carried_prestress is not None)
+    plan = make_full_plan(rotor, replace(setup, stiffening=level))
+    if rotor.structural_damping is not None:
+        warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
+    if setup.marker_body:
+        _warn_of_turned_axes(plan)
+    body = watched(add_full(mbs, plan, None))
+    needs_sparse_solver(mbs)
+    if setup.marker_body:
+        refuse_markers(body)
+        check_at_assembly(body)
     return body
 
 
@@ -288,99 +324,4 @@ def _warn_of_turned_axes(plan: Plan) -> None:
         return
     e = plan.motion.invariants.direction
     axes = (np.round(axis, 3).tolist() for axis in (e, plan.motion.orientation @ e))
-    warnings.warn(TURNED_AXES.format(plan.setup.name, *axes), UserWarning, stacklevel=3)
-
-
-def _add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
-    """Add only the unknowns of the formulation, on one generic node."""
-    motion, start = plan.motion, plan.setup.placement
-    formulation = plan.setup.formulation
-    spin = int(formulation.has_spin)
-    values = [*np.zeros(formulation.translation_count), *([start.angle] * spin), *plan.modal_start]
-    rates = [
-        *(motion.free_directions.T @ start.velocity),
-        *([start.speed] * spin),
-        *plan.modal_start_rate,
-    ]
-    node = mbs.AddNode(_generic_node(plan.setup.name, values, rates))
-    physics = mbs.AddObject(_physics(plan, [node], None))
-    return RotorBody(mbs, plan, {"coordinates": node}, {"physics": physics})
-
-
-def _add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMesh) -> RotorBody:
-    """Add nodes, the marker body, locks, equations, gravity and markers."""
-    rigid = mbs.AddNode(_rigid_node(plan))
-    modes = mbs.AddNode(_generic_node(plan.setup.name, plan.modal_start, plan.modal_start_rate))
-    # first of all objects, as in scripts that know it by its number
-    marker_body = mbs.AddObject(
-        marker_body_object(
-            plan.setup.name or "",
-            [rigid, modes],
-            mesh,
-            plan.motion.invariants,
-            plan.selection.origin + plan.motion.invariants.center,
-            plan.frame,
-            plan.setup.color,
-        )
-    )
-    tilts = plan.frame.B @ plan.motion.invariants.mean_rotation
-    condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers, tilts)
-    guide = guiding_force(plan.locks, plan.layout)
-    constraints = {}
-    if not plan.by_mass:
-        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
-        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
-        guide = monitor or guide
-    physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
-    if plan.motion.is_constant:
-        add_spin_guide(mbs, plan.locks, plan.layout, rigid)
-    load = None
-    if np.any(plan.marker_body_gravity):
-        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))
-        load = mbs.AddLoad(
-            LoadMassProportional(markerNumber=marker, loadVector=plan.marker_body_gravity)
-        )
-    return RotorBody(
-        mbs,
-        plan,
-        nodes={"rigid": rigid, "modes": modes},
-        objects={"physics": physics, "marker_body": marker_body},
-        markers=interface_markers(mbs, plan.setup, marker_body, mesh, plan.frame),
-        constraints=constraints,
-        gravity_load=load,
-        mesh_node_count=mesh.mesh_node_count,
-        mesh_stress=bool(mesh.stress.size),
-    )
-
-
-def _physics(plan: Plan, nodes: list, guide: LockedForce | None) -> ObjectGenericODE2:
-    if plan.node_motion.is_constant:
-        return constant_object(plan.node_motion, plan.layout, nodes)
-    return user_function_object(plan.node_motion, plan.layout, nodes, guide)
-
-
-def _rigid_node(plan: Plan) -> NodeRigidBodyRxyz:
-    values, rates = np.zeros(6), np.zeros(6)
-    start = plan.setup.placement
-    values[:3], rates[:3] = start.translation, start.velocity
-    spin, sign = plan.locks.spin, plan.locks.sign
-    values[spin], rates[spin] = sign * start.angle, sign * start.speed
-    return NodeRigidBodyRxyz(
-        name=inputs.item_name("NodeRigidBody:", plan.setup.name),
-        referenceCoordinates=[*plan.frame.position, *plan.frame.angles],
-        initialCoordinates=values,
-        initialVelocities=rates,
-        visualization=VNodeRigidBodyRxyz(show=False),
-    )
-
-
-def _generic_node(
-    name: str | None, values: Sequence[float], rates: Sequence[float]
-) -> NodeGenericODE2:
-    return NodeGenericODE2(
-        name=inputs.item_name("NodeGeneric:", name),
-        numberOfODE2Coordinates=len(values),
-        referenceCoordinates=np.zeros(len(values)),
-        initialCoordinates=values,
-        initialCoordinates_t=rates,
-    )
+    warnings.warn(TURNED_AXES.format(plan.setup.name, *axes), UserWarning, stacklevel=4)

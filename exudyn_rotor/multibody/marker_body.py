@@ -15,11 +15,9 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor.multibody.frame import BodyFrame
-from exudyn_rotor.multibody.inputs import Setup, marker_name
-from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.reduction.selection import Selection
+from exudyn_rotor.multibody.inputs import MarkerRequest, Setup, marker_name
+from exudyn_rotor.reduction.fields import ModeShapes, ReducedInterface
 from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.invariants import Invariants
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,37 +53,39 @@ class MarkerBodyMesh:
 
 
 def marker_body_mesh(
-    reduced: ReducedRotor,
-    selection: Selection,
+    shapes: ModeShapes | None,
+    interfaces: Mapping[str, ReducedInterface],
+    T: np.ndarray,
+    axis: SpinAxis,
     frame: BodyFrame,
     offsets: Mapping[str, np.ndarray],
 ) -> MarkerBodyMesh:
-    """Return the nodes of the marker body for one formulation.
+    """Return the nodes of the marker body for one formulation, whose basis is T (k, m).
 
     `offsets` shift an interface's virtual nodes [m, mesh axes]. A marker's own offset is of no use
     here: in Exudyn a force at it exerts no moment on modal coordinates.
     """
-    positions, modes = [np.zeros((0, 3))], [np.zeros((0, selection.T.shape[1]))]
+    positions, modes = [np.zeros((0, 3))], [np.zeros((0, T.shape[1]))]
     triangles, stress = np.zeros((0, 3), dtype=int), np.zeros((0, 0))
-    if reduced.shapes is not None:
-        positions.append(reduced.shapes.nodes)
-        modes.append(reduced.shapes.matrix @ selection.T)
-        triangles = reduced.shapes.triangles
+    if shapes is not None:
+        positions.append(shapes.nodes)
+        modes.append(shapes.matrix @ T)
+        triangles = shapes.triangles
     mesh_count = count = sum(map(len, positions))
     rigid_nodes, point_nodes = {}, {}
-    for name, interface in reduced.interfaces.items():
-        motion = interface.motion @ selection.T
+    for name, interface in interfaces.items():
+        motion = interface.motion @ T
         offset = offsets.get(name, np.zeros(3))
         motion[:3] += np.cross(motion[3:], offset, axisa=0, axisc=0)
         points, columns = virtual_nodes(
-            interface.reference + offset, interface.radius, motion, reduced.axis
+            interface.reference + offset, interface.radius, motion, axis
         )
         positions += [points, interface.reference[None, :] + offset]
         modes += [columns, motion[:3]]
         rigid_nodes[name], point_nodes[name] = [count, count + 1, count + 2], [count + 3]
         count += 4
-    if reduced.shapes is not None and reduced.shapes.stress is not None:
-        stress = stress_columns(reduced.shapes.stress @ selection.T, count)
+    if shapes is not None and shapes.stress is not None:
+        stress = stress_columns(shapes.stress @ T, count)
     return MarkerBodyMesh(
         positions=frame.points(np.vstack(positions)),
         modes=frame.columns(np.vstack(modes)),
@@ -146,17 +146,18 @@ def marker_body_object(
     name: str,
     nodes: list,
     mesh: MarkerBodyMesh,
-    invariants: Invariants,
+    mass: float,
     center: np.ndarray,
+    S: np.ndarray,
     frame: BodyFrame,
     color: Sequence[float],
 ) -> ObjectFFRFreducedOrder:
     """Return the marker body without inertia or stiffness of its own.
 
-    Mass, centre of mass (mesh coordinates) and ``ΦᵀMΨ`` are given for gravity by
+    Mass, centre of mass (mesh coordinates) and ``S = ΦᵀMΨ`` (3, m) are given for gravity by
     ``MarkerBodyMass`` alone.
     """
-    size = invariants.size
+    size = S.shape[1]
     empty = exudyn.MatrixContainer()
     empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
     stress = {}
@@ -173,9 +174,9 @@ def marker_body_object(
         computeFFRFterms=False,
         modeBasis=mesh.modes,
         referencePositions=mesh.positions.ravel(),
-        mass=invariants.mass,
+        mass=mass,
         centerOfMass=frame.points(center),
-        mPhitTPsi=frame.B @ invariants.S,
+        mPhitTPsi=frame.B @ S,
         **stress,
         visualization=VObjectFFRFreducedOrder(
             triangleMesh=mesh.triangles.tolist(), color=color, showNodes=False
@@ -191,25 +192,40 @@ def interface_markers(
     frame: BodyFrame,
 ) -> dict[str, exudyn.MarkerIndex]:
     """Add one marker per interface; rigid markers have the mesh axes as their frame."""
-    markers = {}
-    for interface, request in setup.markers.items():
-        common = {
-            "name": marker_name(setup.name, interface),
-            "bodyNumber": marker_body,
-            "visualization": {"show": request.show, "showMarkerNodes": False},
-        }
-        if request.kind == "rigid":
-            turn = np.eye(4)
-            turn[:3, :3] = frame.B
-            item = MarkerSuperElementRigid(
-                meshNodeNumbers=mesh.rigid_nodes[interface],
-                weightingFactors=[1.0 / 3.0] * 3,
-                localHT=turn,
-                **common,
-            )
-        else:
-            item = MarkerSuperElementPosition(
-                meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
-            )
-        markers[interface] = mbs.AddMarker(item)
-    return markers
+    return {
+        interface: add_interface_marker(
+            mbs, marker_name(setup.name, interface), interface, request, marker_body, mesh, frame
+        )
+        for interface, request in setup.markers.items()
+    }
+
+
+def add_interface_marker(
+    mbs: exudyn.MainSystem,
+    name: str,
+    interface: str,
+    request: MarkerRequest,
+    marker_body: exudyn.ObjectIndex,
+    mesh: MarkerBodyMesh,
+    frame: BodyFrame,
+) -> exudyn.MarkerIndex:
+    """Add the marker of one interface; a rigid one has the mesh axes as its frame."""
+    common = {
+        "name": name,
+        "bodyNumber": marker_body,
+        "visualization": {"show": request.show, "showMarkerNodes": False},
+    }
+    if request.kind == "position":
+        item = MarkerSuperElementPosition(
+            meshNodeNumbers=mesh.point_nodes[interface], weightingFactors=[1.0], **common
+        )
+        return mbs.AddMarker(item)
+    turn = np.eye(4)
+    turn[:3, :3] = frame.B
+    item = MarkerSuperElementRigid(
+        meshNodeNumbers=mesh.rigid_nodes[interface],
+        weightingFactors=[1.0 / 3.0] * 3,
+        localHT=turn,
+        **common,
+    )
+    return mbs.AddMarker(item)

@@ -62,6 +62,8 @@ class NodePlace:
         Distance of the virtual nodes of a rigid marker from the point [m].
     held : bool
         Whether elastic modes move the frame of Exudyn's body, which they hold at a boundary.
+    refusal : str, optional
+        Why no marker can be put there.
     """
 
     physics: int
@@ -73,6 +75,7 @@ class NodePlace:
     axes: np.ndarray
     arm: float
     held: bool
+    refusal: str | None = None
     virtual: dict[tuple, list[int]] = field(default_factory=dict)
 
     @property
@@ -81,7 +84,15 @@ class NodePlace:
         return [nodes for key, nodes in self.virtual.items() if key[0]]
 
     def nodes(self, mbs: exudyn.MainSystem, rigid: bool, shift: np.ndarray) -> list[int]:
-        """Return one or three virtual nodes at the point, shifted by (3,); add them once."""
+        """Return one or three virtual nodes at the point, shifted by (3,); add them once.
+
+        Raises
+        ------
+        ValueError
+            Where no marker can be put there.
+        """
+        if self.refusal:
+            raise ValueError(self.refusal)
         key = (rigid, *shift)
         if key not in self.virtual:
             u = self.motion[:3] - skew(shift) @ self.motion[3:]
@@ -118,6 +129,26 @@ def carry_markers(body: RotorItems, held: np.ndarray | None = None) -> None:
         axes=frame.B,
         arm=float(np.sqrt(np.trace(inv.J) / inv.mass)),
         held=held is not None,
+    )
+
+
+def refuse_markers(body: RotorItems) -> None:
+    """Refuse markers and sensors at the node of a full body's frame, which would see no tilts."""
+    body.mbs.sys.setdefault(_PLACES, {})[body.mark] = NodePlace(
+        physics=int(body.objects["physics"]),
+        node=int(body.nodes["rigid"]),
+        marker_body=int(body.objects["marker_body"]),
+        mark=body.mark,
+        point=body.frame.points(body.frame.node),
+        motion=np.zeros((6, 0)),
+        axes=body.frame.B,
+        arm=0.0,
+        held=False,
+        refusal=(
+            f"nodeNumber: is that of the frame of rotor {body.name!r}, a full body; its tilts are "
+            "displacements, which no marker or sensor there would see. Use body.marker(interface), "
+            "body.add_marker(nodes) and their sensors, or a reduced rotor, rotor.reduce(…)"
+        ),
     )
 
 

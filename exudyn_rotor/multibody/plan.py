@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,7 +15,6 @@ from exudyn_rotor.multibody.locking import Locks, layout
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import Selection, select_modes
 from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
 
@@ -56,13 +57,54 @@ class Plan:
     modal_start_rate: np.ndarray
 
 
+PlanKind = TypeVar("PlanKind", bound=Plan)
+# of a formulation, the plane of its translations, gravity in the equations, and the sense in which
+# the node counts the spin
+Motions = Callable[[Formulation, np.ndarray | None, np.ndarray | None, int], Motion]
+
+
 def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     """Check what needs the modes, and lay out the equations."""
-    formulation, place = setup.formulation, setup.placement
     damped = reduced.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
-    selection = select_modes(damped, formulation, setup.negligible)
-    invariants = selection.invariants
-    direction = reduced.axis.direction
+    selection = select_modes(damped, setup.formulation, setup.negligible)
+
+    def motion(
+        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None, sign: int
+    ) -> Motion:
+        invariants = selection.invariants if sign > 0 else selection.invariants.reversed()
+        return Motion(
+            invariants,
+            formulation,
+            second_order(invariants, setup.stiffening),
+            orientation=setup.placement.rotation,
+            plane=plane,
+            gravity=gravity,
+        )
+
+    labels = selection.labels
+    return laid_out(
+        Plan,
+        setup,
+        selection,
+        motion,
+        modal_start=inputs.modal_values(setup.modal_coordinates, "modal_coordinates", labels),
+        modal_start_rate=inputs.modal_values(setup.modal_velocities, "modal_velocities", labels),
+    )
+
+
+def laid_out(
+    kind: type[PlanKind],
+    setup: inputs.Setup,
+    selection: Selection,
+    motions: Motions,
+    **more: Any,
+) -> PlanKind:
+    """Return a plan of the given kind, with frame, locks, layout and motions.
+
+    `more` is what else the kind holds.
+    """
+    formulation, place, invariants = setup.formulation, setup.placement, selection.invariants
+    direction = invariants.direction
     frame = BodyFrame.of(
         direction, selection.origin, place.position, place.rotation, setup.frame_node
     )
@@ -87,12 +129,11 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
     # a skew plane of rotation keeps all three translations and adds a linear constraint
     form = replace(formulation, translation="free") if skew else formulation
     gravity = setup.gravity if in_equations else None
-    motion = _motion(invariants, form, setup, locks.plane, gravity)
+    motion = motions(form, locks.plane, gravity, 1)
     node_motion = motion
     if sign < 0:
-        plane = motion.free_directions
-        node_motion = _motion(invariants.reversed(), form.reversed(), setup, plane, gravity)
-    return Plan(
+        node_motion = motions(form.reversed(), motion.free_directions, gravity, -1)
+    return kind(
         setup=setup,
         selection=selection,
         frame=frame,
@@ -106,27 +147,5 @@ def make_plan(reduced: ReducedRotor, setup: inputs.Setup) -> Plan:
         node_motion=node_motion,
         by_mass=by_mass,
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
-        modal_start=inputs.modal_values(
-            setup.modal_coordinates, "modal_coordinates", selection.labels
-        ),
-        modal_start_rate=inputs.modal_values(
-            setup.modal_velocities, "modal_velocities", selection.labels
-        ),
-    )
-
-
-def _motion(
-    invariants: Invariants,
-    formulation: Formulation,
-    setup: inputs.Setup,
-    plane: np.ndarray | None,
-    gravity: np.ndarray | None,
-) -> Motion:
-    return Motion(
-        invariants,
-        formulation,
-        second_order(invariants, setup.stiffening),
-        orientation=setup.placement.rotation,
-        plane=plane,
-        gravity=gravity,
+        **more,
     )

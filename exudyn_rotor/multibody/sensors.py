@@ -78,6 +78,14 @@ def add_node_sensor(
     )
 
 
+def settings_at_mesh_node(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a sensor at a mesh node of a full body; stress is none of them."""
+    _check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
+    return _settings(body, options)
+
+
 def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
     """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
     spin = body.formulation.spin

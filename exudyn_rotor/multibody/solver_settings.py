@@ -7,6 +7,8 @@ import math
 import exudyn
 
 from exudyn_rotor import checks
+from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _LOOSEST, _TIGHTEST = 1e-5, 1e-9
 _MOST_STEPS = 2**31  # Exudyn counts steps with 32 bits
@@ -18,6 +20,7 @@ def recommended_settings(
     *,
     accuracy: float = 1e-4,
     settings: exudyn.SimulationSettings | None = None,
+    body: RotorItems | None = None,
 ) -> exudyn.SimulationSettings:
     """Return settings for the implicit solver, matched to a wanted accuracy.
 
@@ -30,6 +33,8 @@ def recommended_settings(
         size is another matter; :func:`exudyn_rotor.propose` proposes a step.
     settings : exudyn.SimulationSettings, optional
         Settings to change and return; Exudyn's defaults otherwise.
+    body : RotorBody or FullRotorBody, optional
+        The rotor of the run; give it where it is a full one, which needs a sparse linear solver.
 
     Raises
     ------
@@ -54,6 +59,9 @@ def recommended_settings(
         rotor with its frame in the centre of mass, and keeps iterations few where supports seen
         from the rotor turn.
 
+    Under ``linearSolver``, for a full body: ``solverType`` is ``EigenSparse``, which factorises the
+    Jacobian once where the equations are constant.
+
     Examples
     --------
     >>> from exudyn_rotor import recommended_settings
@@ -65,6 +73,8 @@ def recommended_settings(
     """
     if settings is not None:
         checks.instance(settings, "settings", exudyn.SimulationSettings)
+    if body is not None:
+        checks.instance(body, "body", RotorItems, "add_rotor returned it")
     end_time = checks.number(end_time, "end_time", "s", above=0.0)
     step = checks.number(step, "step", "s", above=0.0)
     if step > end_time:
@@ -81,4 +91,6 @@ def recommended_settings(
     newton.relativeTolerance = tolerance
     newton.absoluteTolerance = 1e-2 * tolerance
     newton.modifiedNewtonContractivity = 0.1
+    if isinstance(body, FullRotorBody):
+        settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
     return settings

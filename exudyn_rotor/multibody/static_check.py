@@ -25,6 +25,7 @@ from exudyn_rotor.multibody.evaluation import (
 )
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.sparse_solver import check_solver
 from exudyn_rotor.multibody.wrapping import wraps_method
 from exudyn_rotor.theory.formulation import start_values
 
@@ -146,6 +147,7 @@ def _solve_static(
     solve: Callable, mbs: exudyn.MainSystem, *given: object, **options: object
 ) -> bool:
     """Solve as Exudyn does, then refuse what holds at one angle only."""
+    check_solver(mbs, given, options)
     if _ROTORS not in mbs.sys:
         return solve(mbs, *given, **options)
     if not mbs.systemIsConsistent and options.get("autoAssemble", True):

@@ -239,6 +239,14 @@ def tilt_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
     return V, -W
 
 
+def euler_factors(invariants: Invariants) -> tuple[np.ndarray, np.ndarray]:
+    """Return V (6, k) and W (6, 6) of ``B = VᵀWV``: what rigid rotations feel of the Euler field.
+
+    The form for full models.
+    """
+    return _work_factors(_rigid_split(invariants), skew(invariants.direction))
+
+
 @dataclass(frozen=True, eq=False)
 class _RigidSplit:
     """Columns split into rotation about the centre of mass and a flexible rest."""

@@ -147,6 +147,14 @@ class World:
         return self._body
 
     @cached_property
+    def full_body(self) -> er.FullRotorBody:
+        """The bar with all its displacements, assembled."""
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = er.add_rotor(mbs, self.solid, spin=10.0, translation="none", stiffening="tilt")
+        mbs.Assemble()
+        return body
+
+    @cached_property
     def steady(self) -> er.SteadyState:
         """The steady state of `assembled`."""
         return er.steady_state(self.body)
@@ -167,7 +175,7 @@ class World:
 
     def renew(self) -> None:
         """Forget scenes and mesh, after a call that should have been refused has changed them."""
-        for name in ("mbs", "assembled", "steady", "motion", "run_check", "mesh"):
+        for name in ("mbs", "assembled", "full_body", "steady", "motion", "run_check", "mesh"):
             self.__dict__.pop(name, None)
 
     # -------------------------------------------------------------- results

@@ -14,6 +14,7 @@ from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -96,7 +97,7 @@ def linear_model(
         if supports:
             raise ValueError("supports: are for a rotor; a scene has its own connectors")
         how = "the rotor in the scene, which add_rotor returned"
-        return LinearScene.of(target, checks.instance(body, "body", RotorBody, how), about=about)
+        return LinearScene.of(target, reduced_body(body, how=how), about=about)
     if body is not None:
         raise TypeError(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "

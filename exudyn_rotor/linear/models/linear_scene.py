@@ -28,6 +28,7 @@ from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.marker_body import around
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
@@ -373,7 +374,7 @@ def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
 def _check(mbs: exudyn.MainSystem, body: RotorBody) -> None:
     checks.instance(mbs, "mbs", exudyn.MainSystem)
     how = "exudyn_rotor.add_rotor returned it for the rotor in this system"
-    checks.instance(body, "body", RotorBody, how)
+    reduced_body(body, how=how)
     if body.mbs is not mbs:
         raise ValueError(f"rotor {body.name!r} belongs to another mbs")
     body.check_present()

@@ -8,6 +8,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import Response
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState, spin_at_start
 from exudyn_rotor.results import numbers, storable
@@ -77,7 +78,7 @@ class UnbalanceResponse(Response):
             computed, or a system that is not assembled.
         """
         speed = checks.number(speed, "speed", "rad/s")
-        checks.instance(body, "body", RotorBody, "add_rotor returned it")
+        reduced_body(body)
         angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
         return self._start(speed, body, angle, speed)
 

@@ -16,6 +16,7 @@ from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.reduction.mode_kind import ModeKind
@@ -60,7 +61,7 @@ class RunStart(Result):
 
     def _start(self, value: float, body: RotorBody, angle: float, speed: float) -> StartState:
         """Return the state of a scene at a computed speed or frequency."""
-        checks.instance(body, "body", RotorBody, "add_rotor returned it")
+        reduced_body(body)
         body.check_assembled()
         index = self._computed_at(value)
         scene = self._scene(body)

@@ -9,6 +9,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState, spin_at_start
 
@@ -174,7 +175,7 @@ def steady_state(
     array([ 0.      , -0.000981])
     >>> body.start_from(steady.state())
     """
-    checks.instance(body, "body", RotorBody, "add_rotor returned it")
+    reduced_body(body)
     tolerance = options.accuracy(tolerance, "tolerance")
     body.check_assembled()
     scene = LinearScene.of(body.mbs, body)

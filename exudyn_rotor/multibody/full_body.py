@@ -1,0 +1,199 @@
+"""A full body in an Exudyn ``mbs``: a solid rotor with the displacements of all its nodes."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody import full_markers, sensors
+from exudyn_rotor.multibody.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody.full_plan import FullPlan
+from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FullRotorBody(RotorItems):
+    """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
+
+    The attributes are those of :class:`~exudyn_rotor.multibody.rotor_items.RotorItems`, with the
+    displacements of all nodes, in the rotor frame and mesh axes, in the place of modal coordinates;
+    and these:
+
+    Attributes
+    ----------
+    plan : FullPlan
+    ties : ObjectIndex or None
+        The object that ties interfaces to the nodes and holds the conditions of the frame.
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, add_rotor
+    >>> rotor = SolidRotor.from_matrices(
+    ...     np.eye(6), 1e6 * np.eye(6), [[0.1, 0, 0], [-0.1, 0, 0]], "z", interfaces={"top": [0]}
+    ... )
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor, spin=10.0, translation="none")
+    >>> body
+    FullRotorBody('rotor', Sect. 2.5, stiffening 'tilt', 2 nodes, markers: top)
+    >>> mbs.Assemble()
+    >>> settings = exudyn.SimulationSettings()
+    >>> settings.staticSolver.verboseMode = 0
+    >>> mbs.SolveStatic(settings)
+    True
+    >>> bool(np.isclose(body.displacement()[0, 0], 10.0 / (1e6 - 100.0), rtol=1e-9))
+    True
+    """
+
+    plan: FullPlan
+    ties: exudyn.ObjectIndex | None = None
+
+    def __repr__(self) -> str:
+        """Return one line; :meth:`report` says more."""
+        return (
+            f"{type(self).__name__}({self.name!r}, Sect. {self.formulation.section}, "
+            f"stiffening {self.stiffening!r}, {self.node_count} nodes, "
+            f"markers: {', '.join(self.markers) or 'none'})"
+        )
+
+    @property
+    def node_count(self) -> int:
+        """Number of nodes of the mesh."""
+        return self.selection.source.node_count
+
+    @property
+    def condition_count(self) -> int:
+        """Number of conditions that keep the frame's motions out of the displacements."""
+        return len(self.selection.conditions.rows)
+
+    @property
+    def uses_python(self) -> bool:
+        """True when a time step calls Python user functions."""
+        return not self.motion.is_constant
+
+    @property
+    def locked(self) -> tuple[str, ...]:
+        """Coordinates that exist only because the marker body's node has them."""
+        return self.locks.locked_names if "marker_body" in self.objects else ()
+
+    def report(self) -> str:
+        """Return a short table of what was added and what it means at run time."""
+        names = {3: "x, y, z", 2: "two in the plane of rotation", 0: "none"}
+        spin = "unknown" if self.formulation.has_spin else "prescribed"
+        lines = [
+            f"rotor {self.name!r}: Sect. {self.formulation.section}, full, "
+            f"stiffening {self.stiffening!r}",
+            f"  translations   {names[self.formulation.translation_count]}",
+            f"  spin           {spin}",
+            f"  nodes          {self.node_count}, {3 * self.node_count} displacements",
+            f"  conditions     {self.condition_count} of the frame, in mass matrix and stiffness",
+            f"  locked         {', '.join(self.locked) or 'none'}",
+            f"  constraints    {len(self.constraints)}",
+            f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
+        ]
+        return "\n".join(lines)
+
+    def displacement(
+        self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+    ) -> np.ndarray:
+        """Return the displacements of all nodes in the rotor frame, mesh axes, (n, 3) [m]."""
+        return self.coordinates(configuration)[0][self.motion.modes].reshape(-1, 3)
+
+    def stress(
+        self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+    ) -> np.ndarray:
+        """Return the stress at all nodes, (n, 6) [Pa]: xx, yy, zz, yz, xz, xy in mesh axes.
+
+        That of the displacements, the static one by the spin among them. A stress at rest, of
+        ``prestress(stress=…)``, is not in it.
+
+        Raises
+        ------
+        ValueError
+            For a rotor without elements.
+        """
+        recover = self.selection.source.stress_recovery
+        if recover is None:
+            raise ValueError(
+                f"stress: rotor {self.name!r} has no elements that it could be computed with; make "
+                "it with SolidRotor.from_ngsolve"
+            )
+        return recover(self.displacement(configuration).reshape(-1, 1))[:, :, 0]
+
+    def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
+        """Return what the scene attaches to the rotor that it cannot carry; as of RotorBody."""
+        checks.flag(warn, "warn")
+        self.check_assembled()
+        lost = lost_connections(self)
+        for sentence in lost if warn else ():
+            warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
+        return lost
+
+    def add_marker(
+        self,
+        where: str | Sequence[int],
+        offset: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        weights: ArrayLike | None = None,
+        kind: str = "rigid",
+        name: str | None = None,
+        show: bool = True,
+    ) -> exudyn.MarkerIndex:
+        """Add a marker that moves with the mean rigid motion of an interface or of mesh nodes.
+
+        Arguments and axes are those of :meth:`RotorBody.add_marker`; a single node has a marker of
+        `kind` 'position'. Every marker has twelve unknowns of its own.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, e.g. nodes on a line for a rigid marker; nothing has been added then.
+        """
+        return full_markers.add_marker(
+            self, where, offset, weights=weights, kind=kind, name=name, show=show
+        )
+
+    def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
+        """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
+        return full_markers.add_node_sensor(self, node, output, options)
+
+    def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
+        """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
+        return sensors.add_interface_sensor(self, interface, output, **options)
+
+    def add_spin_sensor(self, **options):
+        """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
+        return sensors.add_spin_sensor(self, **options)
+
+    def add_drive_torque_sensor(self, **options):
+        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
+        return sensors.add_drive_torque_sensor(self, **options)
+
+    def add_energy_sensor(self, **options):
+        """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J]."""
+        return sensors.add_energy_sensor(self, **options)
+
+
+def reduced_body(body: object, name: str = "body", how: str = "add_rotor returned it") -> RotorBody:
+    """Return a rotor body in component modes, which analyses of a scene need.
+
+    Raises
+    ------
+    TypeError
+        For a full body, or anything else.
+    """
+    if isinstance(body, FullRotorBody):
+        raise TypeError(
+            f"{name}: rotor {body.name!r} is a full body, whose displacements of all nodes this "
+            "does not analyse; add the reduced rotor, add_rotor(mbs, rotor.reduce(…)), or give a "
+            "linear analysis the SolidRotor and its supports"
+        )
+    return checks.instance(body, name, RotorBody, how)

@@ -1,0 +1,362 @@
+"""The full formulations: all nodal displacements c_f as unknowns, ``Ψ = I`` (58, 94, 100, 104).
+
+A rigid motion that the frame describes must not be in c_f a second time. Component modes leave it
+out of their basis; here linear conditions ``R c_f = 0`` do,
+
+    ΦᵀM c_f / m = 0     along the translations that are unknowns,
+    eᵀI⁻¹ Σ M y × c_f = 0   where the frame holds the spin,
+
+the mean translation and the mean rotation about the axis, with y from the centre of mass and I the
+tensor of inertia about it. There are 4, 3, 1 and 0 of them in Sections 2.2, 2.3, 2.4 and 2.5; one
+in 2.5 as well where the rotor's mean rotation follows θ(t). They neither add nor lose a motion:
+each motion of the nodes is, to first order in c_f, one of the frame and one field c_f that keeps
+them, and only one, since the frame's own motions break them (``R`` times a rigid motion is not
+singular). A complete basis of component modes spans the same fields.
+
+Forces ``Rᵀλ`` that belong to the conditions take up every force in the range of ``Rᵀ``. So of S the
+part along the conditions is zero here, and g is ``g − α r``, with r the row of the spin and α such
+that a rotor in balance has g = 0: the same accelerations, other λ.
+
+Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.stiffening import (
+    Stiffening,
+    euler_factors,
+    relief_factors,
+    tilt_factors,
+)
+
+_ROUNDING = 1e-13  # of their upper bound: what P leaves of moments that are zero
+Factors = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class SumMatrix:
+    """A sparse matrix and low-rank terms, ``A + Σ VᵀWV``, for products with vectors.
+
+    Attributes
+    ----------
+    sparse : scipy.sparse.csr_array, shape (k, k)
+    factors : tuple of (ndarray (r, k), ndarray (r, r))
+        V and W of every term.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import scipy.sparse as sp
+    >>> from exudyn_rotor.theory.full_motion import SumMatrix
+    >>> ones = np.ones((1, 2))
+    >>> SumMatrix(sp.csr_array(np.eye(2)), ((ones, np.eye(1)),)) @ np.array([1.0, 2.0])
+    array([4., 5.])
+    """
+
+    sparse: sp.csr_array
+    factors: tuple[Factors, ...] = ()
+
+    def __matmul__(self, vector: np.ndarray) -> np.ndarray:
+        """Return the product with a vector (k,)."""
+        product = self.sparse @ vector
+        for V, W in self.factors:
+            product += V.T @ (W @ (V @ vector))
+        return product
+
+
+@dataclass(frozen=True, eq=False)
+class FullStiffening:
+    """Centrifugal stiffening of a full model.
+
+    Attributes
+    ----------
+    K2, B : scipy.sparse.csr_array, shape (3n, 3n)
+        Sparse parts per ω² and per ω̇.
+    tilt, euler : tuple of V and W
+        Low-rank parts ``VᵀWV`` of the same; W is zero where there is none.
+    K4 : scipy.sparse.csr_array or None
+        Stiffness per ω⁴.
+    """
+
+    K2: sp.csr_array
+    B: sp.csr_array
+    tilt: Factors
+    euler: Factors
+    K4: sp.csr_array | None = None
+
+    def reversed(self) -> FullStiffening:
+        """Return the same for the opposite axis: the Euler field changes its sign."""
+        V, W = self.euler
+        return replace(self, B=sp.csr_array(-self.B), euler=(V, -W))
+
+
+def full_stiffening(
+    invariants: Invariants, level: str, turns: np.ndarray | None = None
+) -> FullStiffening:
+    """Return the stiffening of a level; the full form of ``theory.stiffening.stiffening``.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Sparse, with the matrices of a prestress in K2, B and K4 at the level 'full'.
+    level : {'none', 'tilt', 'full'}
+    turns : ndarray, shape (2, 3), optional
+        Angular accelerations of the prestress's inertia relief, for 'full'.
+    """
+    zero = sp.csr_array(invariants.C.shape)
+    if level == "full":
+        tilt = relief_factors(invariants, turns[0])
+        known = invariants.B is not None
+        euler = relief_factors(invariants, turns[1]) if known else euler_factors(invariants)
+        B = invariants.B if known else zero
+        return FullStiffening(invariants.K2, B, tilt, euler, invariants.K4)
+    tilt, euler = tilt_factors(invariants), euler_factors(invariants)
+    if level == "none":
+        tilt, euler = ((V, 0.0 * W) for V, W in (tilt, euler))
+    return FullStiffening(zero, zero, tilt, euler)
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What keeps the frame's own motions out of the nodal displacements.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (c, 3n)
+        R in ``R c_f = 0``: mean translations, then the mean rotation.
+    held : ndarray, shape (3, 0…3)
+        Directions of the mean translations that are held, rotor axes.
+    invariants : Invariants
+        S and g without what the forces of the conditions take up.
+    """
+
+    rows: np.ndarray
+    held: np.ndarray
+    invariants: Invariants
+
+
+def conditions(
+    invariants: Invariants, formulation: Formulation, grounded: bool, negligible: float
+) -> Conditions:
+    """Return the conditions of a formulation.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Sparse, about the frame's origin.
+    formulation : Formulation
+    grounded : bool
+        Whether the stiffness holds the rotor in its frame; there are no conditions then.
+    negligible : float
+        Share of their upper bound below which couplings are taken as zero.
+    """
+    e = invariants.direction
+    held = np.zeros((3, 0))
+    if formulation.translation_count == 3:
+        held = np.eye(3)
+    elif formulation.translation_count == 2:
+        held = np.linalg.svd(np.eye(3) - np.outer(e, e))[0][:, :2]
+    rows = held.T @ invariants.S / invariants.mass
+    S = invariants.S - held @ (held.T @ invariants.S)
+    size = np.sqrt(invariants.M.diagonal())
+    spread = np.sqrt(np.diag(invariants.J))[:, None, None]
+    S = _cut(S, negligible * np.sqrt(invariants.mass) * size)
+    center = _cut(invariants.center, negligible * np.linalg.norm(spread) / np.sqrt(invariants.mass))
+    P = invariants.P
+    turn = e @ invariants.mean_rotation
+    if not grounded and np.any(turn) and (formulation.has_spin or formulation.drive == "rigid"):
+        rows = np.vstack([rows, turn[None, :]])
+        central = invariants.moved(invariants.center).J
+        inertia = np.trace(central) * np.eye(3) - central
+        inverse = np.linalg.pinv(inertia, rcond=1e-12, hermitian=True)
+        # g = Σ ẽ_ba P_abk; the part of P that is skew about e holds it, h has no share in that
+        left = invariants.g - turn / (e @ inverse @ e)
+        left = _cut(left, negligible * np.sqrt(2.0 * np.trace(invariants.J)) * size)
+        P = P - 0.5 * skew(e).T[:, :, None] * (invariants.g - left)
+    return Conditions(rows, held, replace(invariants, S=S, center=center, P=P))
+
+
+def _cut(values: np.ndarray, bound: np.ndarray | float) -> np.ndarray:
+    """Put zeros for all of `values` where each is below its bound."""
+    return 0.0 * values if np.all(np.abs(values) <= bound) else values
+
+
+def principal(V: np.ndarray, W: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return orthonormal rows (r, k) and values (r,) of ``VᵀWV``, without those of rounding.
+
+    Examples
+    --------
+    >>> rows, values = principal(np.array([[2.0, 0.0], [0.0, 0.0]]), np.eye(2))
+    >>> abs(rows), values
+    (array([[1., 0.]]), array([4.]))
+    """
+    Q, R = np.linalg.qr(V.T)
+    values, vectors = np.linalg.eigh(R @ W @ R.T)
+    kept = np.abs(values) > _ROUNDING * np.abs(values).max(initial=0.0)
+    return (Q @ vectors[:, kept]).T, values[kept]
+
+
+class FullMotion(Motion):
+    """Equations of motion in nodal displacements that keep the conditions.
+
+    As :class:`Motion`, whose terms serve it, with matrices for products only where the centrifugal
+    stiffening is of low rank. Translations that are unknowns have no coupling: their S is zero.
+
+    Parameters
+    ----------
+    invariants : Invariants
+        Of :class:`Conditions`.
+    second_order : FullStiffening
+    formulation, orientation, plane, gravity
+        As for :class:`Motion`.
+    """
+
+    def __init__(
+        self,
+        invariants: Invariants,
+        formulation: Formulation,
+        second_order: FullStiffening,
+        orientation: ArrayLike | None = None,
+        plane: ArrayLike | None = None,
+        gravity: ArrayLike | None = None,
+    ) -> None:
+        sparse = Stiffening(second_order.K2, second_order.B, second_order.K4)
+        super().__init__(invariants, formulation, sparse, orientation, plane, gravity)
+        terms, (V, W) = self.spin_terms, second_order.tilt
+        euler = (second_order.euler,)
+        self.second_order = second_order
+        self.spin_terms = replace(
+            terms,
+            C_hat=SumMatrix(sp.csr_array(terms.C_hat), ((V, -W),)),
+            W=SumMatrix(sp.csr_array(terms.W), euler),
+            B=SumMatrix(sp.csr_array(terms.B), euler),
+        )
+
+    @property
+    def is_coupled(self) -> bool:
+        """False: the conditions hold the mean translation that the unknowns describe."""
+        return False
+
+    @property
+    def unbalance_momentum(self) -> np.ndarray:
+        """``g`` (82) [kg m]; zero, without rounding, for a rotor in balance."""
+        inv = self.invariants
+        bound = _ROUNDING * np.sqrt(2.0 * np.trace(inv.J)) * np.sqrt(inv.M.diagonal())
+        return _cut(inv.g, bound)
+
+    @property
+    def has_varying_inertia(self) -> bool:
+        """Whether the mass matrix depends on the displacements."""
+        return self.formulation.has_spin and not self.formulation.has_frozen_spin
+
+    @property
+    def has_varying_forces(self) -> bool:
+        """Whether there are forces beside those of constant matrices."""
+        return self.has_body_force or not self.formulation.is_constant_speed
+
+    def constant_matrices(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
+        """Return mass, damping and stiffness (size, size), with the spin terms of a constant speed.
+
+        Without low-rank stiffening.
+        """
+        form, inv = self.formulation, self.invariants
+        damping, stiffness = inv.D, inv.K
+        if form.is_constant_speed:
+            speed, terms = form.spin.speed, self.spin_terms
+            damping = damping + terms.damping(speed)
+            stiffness = stiffness - speed**2 * terms.C_hat.sparse
+            if terms.K4 is not None:
+                stiffness = stiffness + speed**4 * terms.K4
+        blocks = {("f", "f"): inv.M}
+        if form.translation_count:
+            blocks["t", "t"] = inv.mass * np.eye(form.translation_count)
+        if form.has_spin:
+            blocks["r", "r"] = [[inv.Theta]]
+            if np.any(self.unbalance_momentum):
+                blocks["r", "f"] = self.unbalance_momentum[None, :]
+                blocks["f", "r"] = blocks["r", "f"].T
+        empty = sp.csr_array((self.size, self.size))
+        of_fields = [self._placed({("f", "f"): matrix}, empty) for matrix in (damping, stiffness)]
+        return self._placed(blocks, empty), *of_fields
+
+    def constant_force(self) -> np.ndarray:
+        """Return the weight on translations and, at constant speed, ``ω²h``, shape (size,)."""
+        force = np.zeros(self.size)
+        force[self.translations] = self.weight
+        if self.formulation.is_constant_speed:
+            force[self.modes] = self.spin_terms.load(self.formulation.spin.speed)
+        return force
+
+    def varying_inertia(self, c: np.ndarray) -> tuple[float, np.ndarray]:
+        """Return ``2hᵀc + cᵀĈc`` of (85) and ``Wc`` of (84), which add to Θ and g."""
+        terms = self.spin_terms
+        return float((2.0 * terms.h + terms.C_hat @ c) @ c), terms.W @ c
+
+    def varying_forces(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return (86), (87), the accelerations of (108) and App. A without weight, shape (size,).
+
+        The elastic and damping forces are left out, and at constant speed all of (87).
+        """
+        terms, now = self.spin_terms, self._state(t, q, q_t)
+        omega, c, rate = now.omega, now.zeta, now.zeta_t
+        force = np.zeros(self.size)
+        if not self.formulation.is_constant_speed:
+            loads = omega**2 * self._centrifugal(c) - (2.0 * omega) * (terms.G @ rate)
+            if now.omega_t:
+                loads -= now.omega_t * (terms.g + terms.W @ c)
+            if terms.K4 is not None:
+                loads -= omega**4 * (terms.K4 @ c)
+            force[self.modes] = loads
+        if self.has_body_force:
+            self._add_body_force(now, force)
+        if self.formulation.has_spin:
+            force[self._spin] += self._spin_torque(omega, c, rate)
+        return force
+
+    def _spin_torque(self, omega: float, c: np.ndarray, rate: np.ndarray) -> float:
+        """(86)."""
+        terms, frozen = self.spin_terms, self.formulation.has_frozen_spin
+        torque = -(1.0 if frozen else 2.0) * omega * (self._centrifugal(c) @ rate)
+        if not frozen:
+            torque -= rate @ (terms.B @ rate)
+        if terms.K4 is not None:
+            torque += omega**3 * (c @ (terms.K4 @ rate))
+        return float(torque)
+
+    def varying_jacobian(
+        self, t: float, q: np.ndarray, q_t: np.ndarray, factor_q: float, factor_v: float
+    ) -> sp.csr_array:
+        """Return ``−factor_q ∂f/∂q − factor_v ∂f/∂q̇`` of :meth:`varying_forces`, for Newton.
+
+        Without what is not sparse and small beside mass and stiffness in a time step: low-rank
+        stiffening, and how gravity turns.
+        """
+        matrix = sp.csr_array((self.size, self.size))
+        if self.formulation.is_constant_speed:
+            return matrix
+        terms, now = self.spin_terms, self._state(t, q, q_t)
+        omega = now.omega
+        block = (-factor_q * omega**2) * terms.C_hat.sparse + (2.0 * factor_v * omega) * terms.G
+        if now.omega_t:
+            block = block + (factor_q * now.omega_t) * terms.W.sparse
+        if terms.K4 is not None:
+            block = block + (factor_q * omega**4) * terms.K4
+        blocks = {("f", "f"): block}
+        if self.formulation.has_spin:
+            share = 1.0 if self.formulation.has_frozen_spin else 2.0
+            centrifugal = self._centrifugal(now.zeta)
+            row = share * omega * (factor_v * centrifugal + factor_q * (terms.C_hat @ now.zeta_t))
+            column = 2.0 * factor_v * (terms.G @ now.zeta_t - omega * centrifugal)
+            blocks["r", "f"], blocks["f", "r"] = row[None, :], column[:, None]
+            blocks["r", "r"] = [[share * factor_v * (centrifugal @ now.zeta_t)]]
+        return self._placed(blocks, matrix)
