@@ -56,6 +56,12 @@ class FullRotorBody(RotorItems):
     plan: FullPlan
     ties: exudyn.ObjectIndex | None = None
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.instance(self.plan, "plan", FullPlan, "add_rotor makes one")
+        if self.ties is not None:
+            checks.instance(self.ties, "ties", exudyn.ObjectIndex)
+
     def __repr__(self) -> str:
         """Return one line; :meth:`report` says more."""
         return (

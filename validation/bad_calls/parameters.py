@@ -370,6 +370,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("ReducedRotor", "interfaces"): v.MAPPING,
     ("FullRotorBody", "markers"): v.MAPPING,
     ("FullRotorBody", "nodes"): v.MAPPING,
+    ("FullRotorBody", "ties"): v.OBJECT,
     ("FullRotorBody.add_marker", "where"): Kind(frozenset({"range"}), spoiled=True),
     ("RotorBody", "markers"): v.MAPPING,
     ("RotorBody.add_marker", "where"): Kind(frozenset({"range"}), spoiled=True),
