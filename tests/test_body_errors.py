@@ -176,9 +176,10 @@ def test_wrong_objects(solid, reduced):
         add_rotor(exu.SystemContainer(), reduced)
     mbs = exu.SystemContainer().AddSystem()
     with pytest.raises(
-        TypeError, match=r"reduced: needs ReducedRotor, got SolidRotor.*; SolidRotor\.reduce"
+        TypeError,
+        match=r"rotor: needs ReducedRotor or SolidRotor, got SpinAxis.*SolidRotor\.reduce",
     ):
-        add_rotor(mbs, solid)
+        add_rotor(mbs, solid.axis)
 
 
 def test_sensors_of_what_is_not_there(solid, reduced):

@@ -50,7 +50,7 @@ WRONG_TRANSLATION = [motion(0.0), motion(np.full(3, NAN)), motion("abc"), motion
 
 ROTOR = {
     "mbs": [*ANYTHING, None, exu.SystemContainer()],
-    "reduced": [*ANYTHING, None, "rotor.npz", ring_rotor(0.1, 0.1, 2.0)],
+    "rotor": [*ANYTHING, None, "rotor.npz"],
     "name": NAME,
     "translation": [*WORD, *WRONG_TRANSLATION],
     "spin": [*SPIN, *WRONG_SPIN],
@@ -176,7 +176,7 @@ def test_add_rotor(reduced, argument):
     mbs = exu.SystemContainer().AddSystem()
     add_rotor(mbs, reduced, name="taken")
     fixed = {"spin": 10.0} if argument == "drive" else {}
-    arguments = {"mbs": mbs, "reduced": reduced, "name": "rotor"} | fixed
+    arguments = {"mbs": mbs, "rotor": reduced, "name": "rotor"} | fixed
     all_refused(mbs, add_rotor, arguments, {argument: ROTOR[argument]})
 
 
