@@ -12,13 +12,14 @@ from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
 from exudyn_rotor.bearings.film.picture import plot_pressure
+from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
     anticipated_cross_coupling,
     stability_level_one,
 )
-from exudyn_rotor.evaluation.placement import bearing_masses, standard_unbalances
+from exudyn_rotor.evaluation.placement import bearing_loads, bearing_masses, standard_unbalances
 from exudyn_rotor.evaluation.separation import SeparationMargins, separation_margins
 from exudyn_rotor.html_report import report
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
@@ -104,6 +105,7 @@ __all__ = [
     "RotorBody",
     "RunCheck",
     "SeparationMargins",
+    "ShortJournalBearing",
     "SolidRotor",
     "Spectra",
     "SpinAxis",
@@ -122,6 +124,7 @@ __all__ = [
     "add_rotor",
     "add_supports",
     "anticipated_cross_coupling",
+    "bearing_loads",
     "bearing_masses",
     "campbell",
     "check_run",

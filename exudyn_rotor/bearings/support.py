@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.reduction.fields import ReducedInterface
-from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import FRAMES, turned_harmonics
 
@@ -134,6 +132,8 @@ class Support:
         checks.number(speed, "speed", "rad/s")
         for name in () if self.extrapolate else COEFFICIENTS:
             value = getattr(self, name)
+            if hasattr(value, "check_range"):  # a bearing's
+                value.check_range(speed)
             if not isinstance(value, tuple):
                 continue
             slack = _ROUNDING * np.abs(value[0]).max()
@@ -215,38 +215,6 @@ def _in_three_axes(value: float | np.ndarray) -> np.ndarray:
     else:
         full[: len(value), : len(value)] = value
     return full
-
-
-def checked_supports(supports: Sequence[Support] | Support) -> tuple[Support, ...]:
-    """Return supports as a tuple; TypeError for anything else."""
-    return checks.instances(supports, "supports", Support)
-
-
-def check_interfaces(
-    supports: Iterable[Support], known: Mapping[str, Interface | ReducedInterface]
-) -> None:
-    """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
-
-    Raises
-    ------
-    ValueError
-    """
-    for support in supports:
-        if support.interface not in known:
-            raise ValueError(
-                f"support at {support.interface!r}: no such interface; the rotor has: "
-                f"{', '.join(known) or 'none'}"
-            )
-        for name in _TILTING if known[support.interface].radius == 0.0 else ():
-            if acts(getattr(support, name)):
-                raise ValueError(
-                    f"support at {support.interface!r}: {name} would act on nothing, since the "
-                    "interface is a single node, which has no rotation; make the interface of "
-                    "three nodes or more, or leave this out"
-                )
-
-
-_TILTING = ("tilt_stiffness", "tilt_damping")
 
 
 def acts(value: Coefficient) -> bool:

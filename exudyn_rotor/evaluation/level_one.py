@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.support import Support, check_interfaces, checked_supports
+from exudyn_rotor.bearings.given import check_interfaces, checked_supports
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes, first_forward
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

@@ -102,6 +102,12 @@ class World:
         )
 
     @cached_property
+    def journal(self) -> er.ShortJournalBearing:
+        """A journal bearing under a load."""
+        size = {"radius": 0.05, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
+        return er.ShortJournalBearing(interface="left", load=[0.0, -500.0], **size)
+
+    @cached_property
     def isotropic(self) -> tuple[er.Support, ...]:
         """Bearings whose damper turns with the rotor, too: unstable above some speed."""
         return (

@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.support import Support, checked_supports
+from exudyn_rotor.bearings.given import checked_supports
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.critical_speeds import (

@@ -10,7 +10,8 @@ from typing import TypeVar
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.bearings.support import Support, check_interfaces
+from exudyn_rotor.bearings.given import check_interfaces
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor

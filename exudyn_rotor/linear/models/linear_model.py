@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import exudyn
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support, checked_supports
+from exudyn_rotor.bearings.given import checked_supports
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene

@@ -21,6 +21,7 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.models.journal_start import journal_start
 from exudyn_rotor.linear.models.points import Ring, ring_motions
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
@@ -268,7 +269,7 @@ def _about_steady_motion(
     angles = 2.0 * np.pi * np.arange(samples) / samples
     orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
     waves = np.exp(1j * np.outer(angles, orders))
-    Y = np.zeros((len(orders), scene.size), dtype=complex)
+    Y = journal_start(scene, speed, orders)
     for _ in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]

@@ -20,7 +20,7 @@ from exudyn_rotor.theory.stiffening import stiffening as second_order
 # Exudyn's forces are differences of positions of order 1 m
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 _CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
-_VELOCITY_STEP = 1e-3  # m/s
+_VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
 
 
 class Probe:
@@ -35,7 +35,7 @@ class Probe:
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
         self.spin = scene.spin_coordinate
         self.rotor = np.arange(scene.modal.stop)
-        self.step = None
+        self.step = self.velocity_step = None
         self.constant = None
         motion = body.plan.node_motion
         if motion.is_constant:
@@ -151,9 +151,11 @@ def linearised(
         return probe.force(theta, x, v + v_i)
 
     if probe.step is None:
-        probe.step = _chosen_step(moved, T * sizes)
+        probe.step = _chosen_step(moved, T * sizes, _STEPS)
+        probe.velocity_step = _chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
     rest_K = -_differences(moved, probe.step * T * sizes)[0] / (probe.step * sizes)
-    rest_D = -_differences(sped_up, _VELOCITY_STEP * T * sizes)[0] / (_VELOCITY_STEP * sizes)
+    faster = probe.velocity_step
+    rest_D = -_differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
     carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
     return (
         T.T @ M @ T,
@@ -176,9 +178,9 @@ def _differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, flo
     return near + (near - far) / 3.0, float(error)
 
 
-def _chosen_step(function: Callable, moves: np.ndarray) -> float:
-    """Return the largest step [m] at which the forces are straight enough."""
-    for step in _STEPS:
+def _chosen_step(function: Callable, moves: np.ndarray, steps: tuple[float, ...]) -> float:
+    """Return the largest step [m] or [m/s] at which the forces are straight enough."""
+    for step in steps:
         if _differences(function, step * moves)[1] < _CURVATURE:
             return step
-    return _STEPS[-1]
+    return steps[-1]

@@ -13,7 +13,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from exudyn_rotor.bearings.support import Support, check_interfaces
+from exudyn_rotor.bearings.given import check_interfaces
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.identity_basis import as_reduced

@@ -92,4 +92,26 @@ BEARINGS = [
         "test_film.py::test_preload_brings_the_pads_to_the_journal",
         ("preload opens the film", "-preload * clearance", "preload * clearance"),
     ),
+    *mutations(
+        "bearings/short_journal.py",
+        "test_journal_bearing.py::test_film_is_the_integral_of_its_pressure",
+        ("oil carried around at the journal's speed", "vx + 0.5 * speed * y", "vx + speed * y"),
+        ("film on the wrong half", "beta = 0.5 * pi + atan", "beta = 0.5 * pi - atan"),
+        (
+            "force across with the wrong sign",
+            "return size * (along * a - across * b)",
+            "return size * (along * a + across * b)",
+        ),
+    ),
+    *mutations(
+        "bearings/short_journal.py",
+        "test_journal_bearing.py",
+        ("cross damping reversed", "s**5, -2.0 * ratio / s2**2],", "s**5, 2.0 * ratio / s2**2],"),
+        (
+            "attitude on the other side",
+            "c, s = radial / size, -tangential / size",
+            "c, s = radial / size, tangential / size",
+        ),
+        ("a slow film carries all", "size = self._size * abs(speed)\n", "size = self._size\n"),
+    ),
 ]

@@ -246,7 +246,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/add_supports.py",
+        "multibody/support_connectors.py",
         "test_supports_in_scenes.py::test_scene_and_linear_rotor_have_the_same_exponents",
         (
             "damper in the rotor's frame feels the spin",
@@ -266,7 +266,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/add_supports.py",
+        "multibody/support_connectors.py",
         "test_supports_in_scenes.py::test_axes_and_formulations_change_nothing",
         ("matrix not turned into the scene", "turned = axes @ matrix @ axes.T", "turned = matrix"),
         (
@@ -276,13 +276,17 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/add_supports.py",
+        "multibody/support_connectors.py",
         "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (
             "tilt of the base forgotten",
             "rate += omega[2] * np.array([-b, a, 0.0])",
             "rate += 0.0 * np.array([-b, a, 0.0])",
         ),
+    ),
+    *mutations(
+        "multibody/seats.py",
+        "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (
             "place in axes of the scene",
             "self.orientation.T @ (self.place - self.origin)",

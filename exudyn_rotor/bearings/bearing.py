@@ -1,0 +1,101 @@
+"""What every bearing with a law of its own offers to scenes and linear analyses."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
+
+_SLOW = 1.0  # rad/s, where only the directions that a bearing holds are asked for
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Bearing(ABC):
+    """A bearing across the axis: a force on the journal by its place, velocity and spin speed.
+
+    Components are along (n1, n2) of :attr:`SpinAxis.plane`, which stand still, from the centre of
+    the bearing, where the axis of the rotor at rest passes.
+
+    Attributes
+    ----------
+    interface : str
+        Interface of the rotor that is the journal.
+    load : ndarray, shape (2,), or None
+        Static load on the journal [N], about whose equilibrium linear analyses take the bearing;
+        see :func:`exudyn_rotor.bearing_loads`. Scenes do not need it.
+    """
+
+    interface: str
+    load: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        checks.label(self.interface, "interface")
+        if self.load is not None:
+            load = checks.read_only(checks.vector(self.load, "load", "N", size=2))
+            object.__setattr__(self, "load", load)
+
+    @property
+    def law(self) -> Callable[[float, float, float, float, float], tuple[float, float]]:
+        """For scenes: the force on the journal [N] by x, y, ẋ, ẏ and Ω, at any place, unchecked."""
+        return self._law
+
+    @abstractmethod
+    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+        """Return the force on the journal [N]."""
+
+    @abstractmethod
+    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return where the journal rests under a static load [N], the bearing's own by default."""
+
+    @abstractmethod
+    def coefficients(
+        self, speed: float, load: ArrayLike | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness [N/m] and damping [N s/m], each (2, 2), about the equilibrium."""
+
+    def with_load(self, load: ArrayLike) -> Bearing:
+        """Return the bearing with a static load on the journal [N], shape (2,)."""
+        return replace(self, load=load)
+
+    def linearised(self) -> Support:
+        """Return the support for linear analyses: the coefficients under the load at every speed.
+
+        Raises
+        ------
+        ValueError
+            Where the bearing has no load.
+        """
+        self._static_load(None)
+        return Support(self.interface, Linearised(self, 0), Linearised(self, 1))
+
+    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
+        if load is not None:
+            return checks.vector(load, "load", "N", size=2)
+        if self.load is None:
+            raise ValueError(
+                f"bearing at {self.interface!r}: linear analyses need its static load; give "
+                "load=…, e.g. of bearing_loads(rotor, interfaces, gravity)"
+            )
+        return self.load
+
+
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """Stiffness (`index` 0) or damping (1) of a bearing under its load, by the spin speed."""
+
+    bearing: Bearing
+    index: int
+
+    def __call__(self, speed: float) -> np.ndarray:
+        """Return the coefficient, shape (2, 2); at rest, where films carry nothing, a slow one."""
+        return self.bearing.coefficients(speed or _SLOW)[self.index]
+
+    def check_range(self, speed: float) -> None:
+        """Refuse a speed at which the bearing has no equilibrium, by a ValueError."""
+        self.bearing.equilibrium(speed)
