@@ -20,7 +20,9 @@ import scipy.sparse as sp
 
 from exudyn_rotor.prestress.static_solution import centrifugal_load
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.solvers.choice import Way
 from exudyn_rotor.solvers.inertia_relief import InertiaRelief, inertia_relief
+from exudyn_rotor.solvers.memory import TooLittleMemoryError
 from exudyn_rotor.theory.nodal import translations
 
 # force on the ground by a translation, of the largest on a node, that is more than rounding
@@ -32,7 +34,8 @@ _FEWEST = 50
 def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     """Return the geometric stiffness per ω² of a truss.
 
-    None where the truss is a mechanism, and for less than 50 nodes: those are no mesh of a solid.
+    None where the truss is a mechanism or memory is too little, and for less than 50 nodes: those
+    are no mesh of a solid.
 
     Parameters
     ----------
@@ -57,8 +60,9 @@ def estimated_stiffness(rotor: FiniteElementRotor) -> sp.csr_array | None:
     stiffness = np.linalg.norm(K.data[joined], axis=(1, 2)) / lengths**2
     try:
         rigid = inertia_relief(rotor).rigid
-        relief = InertiaRelief(_truss(rotor, i, j, bars, stiffness), rotor.mass, rigid)
-    except ValueError:
+        truss = _truss(rotor, i, j, bars, stiffness)
+        relief = InertiaRelief(truss, rotor.mass, rigid, Way("direct", rotor.nodes))
+    except (ValueError, TooLittleMemoryError):
         return None
     moved = relief.solve(centrifugal_load(rotor)).reshape(-1, 3)
     tension = stiffness * np.einsum("ba,ba->b", bars, moved[j] - moved[i])  # force per length

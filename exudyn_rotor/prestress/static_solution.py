@@ -40,6 +40,7 @@ from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solvers.choice import Way, way_of
 from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_rigid_motions, inertia_relief
 from exudyn_rotor.theory.nodal import rotations, skew
 
@@ -144,7 +145,7 @@ def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
 
 
 def relief_under_stress(
-    stiffness: sp.csr_array, mass: sp.csr_array, free: np.ndarray
+    stiffness: sp.csr_array, mass: sp.csr_array, free: np.ndarray, way: Way
 ) -> InertiaRelief:
     """Return the elastic inverse of a stiffness with a stress at rest in it.
 
@@ -154,7 +155,7 @@ def relief_under_stress(
         If it is not positive definite but for the `free` rigid motions: the rotor buckles.
     """
     try:
-        return InertiaRelief(stiffness, mass, free)
+        return InertiaRelief(stiffness, mass, free, way)
     except ValueError as error:
         raise ValueError(
             "prestress: the rotor buckles under its stress at rest; check sign and unit of "
@@ -188,7 +189,7 @@ class _StaticState:
         """Return the state with the stiffness of a stress at rest, which acts on every load."""
         free = matrices.without_nodes(constant, self.supported.elements.held)
         held = sp.csr_array(self.supported.stiffness + free)
-        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid)
+        relief = relief_under_stress(held, self.rotor.mass, self.relief.rigid, way_of(self.rotor))
         return replace(self, stiffness=self.stiffness + constant, relief=relief)
 
     def solve(self, load: np.ndarray) -> np.ndarray:

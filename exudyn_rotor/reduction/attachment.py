@@ -14,12 +14,14 @@ from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers.factor import SparseCholesky
-from exudyn_rotor.solvers.inertia_relief import inertia_relief
+from exudyn_rotor.solvers.choice import coordinates
+from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
 from exudyn_rotor.theory.nodal import coupled, rotations, translations
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6
+# residual of responses, share of the load: what a basis errs by is of second order in it
+_TOLERANCE = 1e-8
 
 
 def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis:
@@ -73,11 +75,13 @@ def static_responses(
         If the rotor has loose parts.
     """
     if not held:
-        return inertia_relief(rotor).solve(loads)
+        return inertia_relief(rotor).solve(loads, _TOLERANCE)
     nodes = np.concatenate([one.nodes for one in held])
-    inner = np.setdiff1d(np.arange(rotor.nodes.size), (3 * nodes[:, None] + np.arange(3)).ravel())
+    moving = np.setdiff1d(np.arange(rotor.node_count), nodes)
     columns = np.zeros_like(loads)
-    columns[inner] = SparseCholesky(rotor.stiffness[inner][:, inner]).solve(loads[inner])
+    columns[coordinates(moving)] = held_inverse(rotor, moving).solve(
+        loads[coordinates(moving)], _TOLERANCE
+    )
     return columns
 
 

@@ -14,6 +14,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     inertia_relief,
     relative_rounding,
 )
+from exudyn_rotor.solvers.modes import lowest_modes
 
 # of the median: beside stiffer springs dense eigenvalues of the rest lose digits
 _GRADED = 1e4
@@ -130,8 +131,8 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
             stiffness.toarray(), mass.toarray(), count, skip=rigid_count
         )
     else:
-        inverse = inertia_relief(rotor).solve
-        values, modes = lanczos.lanczos_modes(stiffness, mass, inverse, count, tolerance)
+        inverse = inertia_relief(rotor)
+        values, modes = lowest_modes(stiffness, mass, inverse, count, tolerance)
     precision = relative_rounding(stiffness, rigid)
     lanczos.check_modes(stiffness, mass, values, modes, precision=precision)
     return ModeBasis(

@@ -5,7 +5,8 @@ Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA J
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from functools import partial
 
 import numpy as np
 import scipy.linalg as la
@@ -16,13 +17,16 @@ from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
+from exudyn_rotor.solvers.choice import coordinates
 from exudyn_rotor.solvers.constrained import ConstrainedInverse
-from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
 from exudyn_rotor.solvers.inertia_relief import (
     free_rigid_motions,
+    held_inverse,
     inertia_relief,
     relative_rounding,
 )
+from exudyn_rotor.solvers.modes import Inverse, lowest_modes
+from exudyn_rotor.solvers.rounding import rounding
 from exudyn_rotor.theory.nodal import rotations, translations
 
 # static modes, eigenvalues and eigenmodes
@@ -134,18 +138,20 @@ def _rigid_coupling(
     """Return static modes, eigenvalues and eigenmodes with rigid interfaces (RBE2)."""
     _refuse_shared_nodes(chosen)
     static = _rigid_interfaces(chosen, rotor.mass.shape[0])
-    inner = np.setdiff1d(np.arange(rotor.mass.shape[0]), _coordinates(chosen))
+    held = np.concatenate([interface.nodes for interface in chosen])
+    nodes = np.setdiff1d(np.arange(len(rotor.nodes)), held)
+    inner = coordinates(nodes)
     stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
     check_count(count, len(inner), smallest=0)
     try:
-        factor = SparseCholesky(stiffness)
-    except NotPositiveDefiniteError as error:
+        inverse = held_inverse(rotor, nodes)
+    except ValueError as error:
         raise ValueError(
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
-    static[inner] = -factor.solve((rotor.stiffness @ static)[inner])
-    _check_equilibrium((rotor.stiffness @ static)[inner], lanczos.rounding(rotor.stiffness, static))
-    values, inner_modes = _eigenmodes(stiffness, mass, factor.solve, count, tolerance)
+    static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
+    _check_equilibrium((rotor.stiffness @ static)[inner], rounding(rotor.stiffness, static))
+    values, inner_modes = _eigenmodes(stiffness, mass, inverse, count, tolerance)
     lanczos.check_modes(stiffness, mass, values, inner_modes)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
     eigenmodes[inner] = inner_modes
@@ -168,8 +174,8 @@ def _mean_coupling(
     _check_mean_motion(constraints, static)
     precision = relative_rounding(stiffness, rigid)
     force = lanczos.without_reactions(stiffness @ static, constraints)
-    _check_equilibrium(force, lanczos.rounding(stiffness, static, precision))
-    values, modes = _eigenmodes(stiffness, mass, inverse.solve, count, tolerance, constraints)
+    _check_equilibrium(force, rounding(stiffness, static, precision))
+    values, modes = _eigenmodes(stiffness, mass, inverse, count, tolerance, constraints)
     lanczos.check_modes(
         stiffness, mass, values, modes, precision=precision, constraints=constraints
     )
@@ -182,7 +188,7 @@ _COUPLINGS = {"RBE2": _rigid_coupling, "RBE3": _mean_coupling}
 def _eigenmodes(
     stiffness: sp.csr_array,
     mass: sp.csr_array,
-    inverse: Callable[[np.ndarray], np.ndarray],
+    inverse: Inverse,
     count: int,
     tolerance: float,
     constraints: sp.csr_array | None = None,
@@ -192,7 +198,10 @@ def _eigenmodes(
     if count == 0:
         return np.zeros(0), np.zeros((size, 0))
     if not lanczos.is_small(size, count):
-        return lanczos.lanczos_modes(stiffness, mass, inverse, count, tolerance)
+        balanced = None
+        if constraints is not None:
+            balanced = partial(lanczos.without_reactions, constraints=constraints)
+        return lowest_modes(stiffness, mass, inverse, count, tolerance, balanced)
     if constraints is None:
         return lanczos.dense_modes(stiffness.toarray(), mass.toarray(), count)
     allowed = la.null_space(constraints.toarray())
@@ -202,11 +211,6 @@ def _eigenmodes(
     return values, allowed @ modes
 
 
-def _coordinates(chosen: list[Interface]) -> np.ndarray:
-    nodes = np.concatenate([interface.nodes for interface in chosen])
-    return (3 * nodes[:, None] + np.arange(3)).ravel()
-
-
 def _rigid_interfaces(chosen: list[Interface], size: int) -> np.ndarray:
     """Return unit rigid motions of the interface nodes (size, modes), zero elsewhere."""
     blocks = []
@@ -214,7 +218,7 @@ def _rigid_interfaces(chosen: list[Interface], size: int) -> np.ndarray:
         block = np.zeros((size, _motion_count(interface)))
         turns = rotations(interface.positions, interface.reference)
         motions = np.hstack([translations(len(interface.nodes)), turns])
-        block[_coordinates([interface])] = motions[:, : block.shape[1]]
+        block[coordinates(interface.nodes)] = motions[:, : block.shape[1]]
         blocks.append(block)
     return np.hstack(blocks)
 

@@ -11,7 +11,9 @@ from exudyn_rotor import checks
 from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, free_modes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
-from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers.choice import way_of
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief
+from exudyn_rotor.solvers.modes import lowest_modes
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import block_diagonal
 from exudyn_rotor.theory.spin_terms import SpinTerms
@@ -118,8 +120,9 @@ def _modes_at(
     # softening takes at most Ω² from any eigenvalue, so that this is definite unless K_G buckles
     shifted = sp.csr_array(stiffness + 2.0 * speed**2 * rotor.mass)
     try:
-        solve = SparseCholesky(shifted).solve
-    except NotPositiveDefiniteError as error:
+        held = np.zeros((shifted.shape[0], 0))
+        inverse = InertiaRelief(shifted, rotor.mass, held, way_of(rotor))
+    except ValueError as error:
         raise ValueError(
             f"at {speed:.6g} rad/s the compression by the static stress makes the rotor buckle "
             f"({error}); leave this speed out"
@@ -127,10 +130,10 @@ def _modes_at(
     if lanczos.is_small(shifted.shape[0], wanted):
         _, modes = lanczos.dense_modes(shifted.toarray(), rotor.mass.toarray(), wanted)
     else:
-        _, modes = lanczos.lanczos_modes(shifted, rotor.mass, solve, wanted, tolerance)
+        _, modes = lowest_modes(shifted, rotor.mass, inverse, wanted, tolerance)
     modes = lanczos.with_fixed_sign(modes)
     forces = terms.G @ modes
     # (ẽφ)ᵀMẽφ, the share of a mode's energy that moves across e
     turned = block_diagonal(rotor.axis.skew, rotor.node_count) @ modes
     share = np.einsum("ik,ik->k", turned, forces)
-    return modes, solve(forces[:, share > _ACROSS])
+    return modes, inverse.solve(forces[:, share > _ACROSS])

@@ -10,6 +10,8 @@ import scipy.sparse as sp
 
 from exudyn_rotor.solid import matrices
 
+# Mid nodes of a 10-node tetrahedron: between which corners they lie (Netgen's order).
+EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 # Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor, row by row.
 _TENSOR = (0, 5, 4, 5, 1, 3, 4, 3, 2)
 
@@ -112,6 +114,24 @@ class NgsolveElements:
     def holding_directions(self, free: sp.csr_array) -> NgsolveElements:
         """Return the elements with more directions held, which the projection `free` takes out."""
         return replace(self, free=free if self.free is None else sp.csr_array(self.free @ free))
+
+    def interpolation(self) -> sp.csr_array | None:
+        """Return what gives all displacements (3n,) that are linear in every element.
+
+        From those of the vertices, which are the first nodes; a mid node takes the mean of its
+        edge. None for elements of first order, all of whose nodes are vertices.
+        """
+        if self.order == 1:
+            return None
+        tetrahedra = self.mesh.ngmesh.Elements3D().NumPy()["nodes"].astype(np.int64) - 1
+        ends = np.repeat(np.arange(len(self.nodes))[:, None], 2, axis=1)
+        for mid, edge in zip(tetrahedra.T[4:], EDGES, strict=True):
+            ends[mid] = tetrahedra[:, edge]
+        every = np.repeat(np.arange(len(ends)), 2)
+        shape = (len(ends), int(ends.max()) + 1)
+        means = sp.csr_array((np.full(every.size, 0.5), (every, ends.ravel())), shape=shape)
+        linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
+        return linear if self.free is None else sp.csr_array(self.free @ linear)
 
     def described(self) -> list[tuple[str, float, float, float, float]]:
         """Return name, mass [kg], Young's modulus [Pa], Poisson's ratio and density by region."""

@@ -22,6 +22,7 @@ from exudyn_rotor.solid.point_mass import PointMass, add_nodal_mass
 from exudyn_rotor.solid.rigid import count_rigid_motions, rigid_basis
 from exudyn_rotor.solid.rigid_disc import RigidDisc, disc_on
 from exudyn_rotor.solid.section import outer_section
+from exudyn_rotor.solvers.choice import SOLVERS
 from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
 from exudyn_rotor.theory.axis import SpinAxis
 
@@ -52,6 +53,7 @@ class FiniteElementRotor:
     mass_damping: sp.csr_array | None = None
     structural_damping: sp.csr_array | None = None
     discs: tuple[RigidDisc, ...] = ()
+    solver: str = "auto"
 
     def __post_init__(self) -> None:
         nodes = matrices.as_nodes(self.nodes)
@@ -64,6 +66,7 @@ class FiniteElementRotor:
             "triangles": matrices.as_triangles(self.triangles, len(nodes)),
             "point_masses": checks.instances(self.point_masses, "point_masses", PointMass),
             "rigid_motions": checks.count(self.rigid_motions, "rigid_motions", most=6),
+            "solver": checks.choice(self.solver, "solver", SOLVERS),
             "discs": checks.instances(self.discs, "discs", RigidDisc),
         }
         for name in ("damping", "mass_damping", "structural_damping"):
@@ -140,6 +143,21 @@ class FiniteElementRotor:
     def mass_kind(self) -> str:
         """'lumped' if the mass matrix is diagonal, else 'consistent'."""
         return "lumped" if self.mass.nnz == np.count_nonzero(self.mass.diagonal()) else "consistent"
+
+    def with_solver(self: Rotor, solver: str) -> Rotor:
+        """Return the rotor with another solver, 'auto', 'direct' or 'iterative'.
+
+        'direct' factorises the stiffness matrix, if the factor fits into memory. 'iterative' is for
+        second-order elements of ``from_ngsolve``: a few kilobytes a node, the same steps on any
+        mesh, but many where elements are flat or nearly incompressible. 'auto', the default, takes
+        the quicker one that fits. Both leave the same residuals.
+
+        Raises
+        ------
+        ValueError
+            If there is no such solver.
+        """
+        return replace(self, solver=solver)
 
     def nearest_node(self, position: ArrayLike) -> int:
         """Return the number of the node next to `position` (3,), mesh coordinates [m]."""

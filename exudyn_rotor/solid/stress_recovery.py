@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-# Mid nodes of a 10-node tetrahedron: between which corners they lie (Netgen's order).
-_EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
+from exudyn_rotor.solid.elements import EDGES
+
 # Derivatives of the barycentric coordinates by the three reference coordinates.
 _CORNER_SLOPES = np.vstack([np.eye(3), -np.ones(3)])
 
@@ -18,12 +18,12 @@ def _nodal_slopes(nodes_per_element: int) -> np.ndarray:
     if nodes_per_element == 4:
         return np.broadcast_to(_CORNER_SLOPES, (4, 4, 3))
     corners = np.eye(4)
-    mids = np.array([(corners[a] + corners[b]) / 2 for a, b in _EDGES])
+    mids = np.array([(corners[a] + corners[b]) / 2 for a, b in EDGES])
     slopes = []
     for point in np.vstack([corners, mids]):
         at_corners = (4 * point - 1)[:, None] * _CORNER_SLOPES
         at_mids = [
-            4 * (point[a] * _CORNER_SLOPES[b] + point[b] * _CORNER_SLOPES[a]) for a, b in _EDGES
+            4 * (point[a] * _CORNER_SLOPES[b] + point[b] * _CORNER_SLOPES[a]) for a, b in EDGES
         ]
         slopes.append(np.vstack([at_corners, at_mids]))
     return np.array(slopes)

@@ -42,9 +42,26 @@ class ConstrainedInverse:
 
     def solve(self, load: np.ndarray) -> np.ndarray:
         """Return the displacement (3n,) of a load (3n,) with ``C u = 0``."""
-        elastic = self._relief.solve(load)
+        elastic, resultant = self._relief.solve(load), self._relief.rigid.T @ load
+        return elastic + self._correction(self._constraints @ elastic, resultant)
+
+    @property
+    def iterative(self) -> bool:
+        """Whether there is no factor, and modes are to be found by :meth:`precondition`."""
+        return self._relief.iterative
+
+    def precondition(self, load: np.ndarray) -> np.ndarray:
+        """Return roughly what :meth:`solve` does, for shape (3n, k), with ``C u = 0``."""
+        # the reactions are those of the exact solution, by CG = (GCᵀ)ᵀ
+        _, reaction = self._balance(self._flexibility.T @ load, self._relief.rigid.T @ load)
+        load = load - self._constraints.T @ reaction
+        elastic = self._relief.precondition(load)
         gap = self._constraints @ elastic
         return elastic + self._correction(gap, self._relief.rigid.T @ load)
+
+    def start(self, count: int) -> np.ndarray:
+        """Return `count` motions (3n, count) near the lowest modes without constraints."""
+        return self._relief.start(count)
 
     def prescribe(self, values: np.ndarray) -> np.ndarray:
         """Return the unloaded displacement (3n, k) with ``C u = d`` for `values` (c, k)."""
@@ -52,10 +69,15 @@ class ConstrainedInverse:
 
     def _correction(self, gap: np.ndarray, resultant: np.ndarray) -> np.ndarray:
         """Return ``R q − G Cᵀ λ`` that closes the gap and balances the resultant."""
+        rigid, reaction = self._balance(gap, resultant)
+        return self._relief.rigid @ rigid - self._flexibility @ reaction
+
+    def _balance(self, gap: np.ndarray, resultant: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return q and λ."""
         right = np.concatenate([gap, resultant])
         scaled = la.lu_solve(self._factor, (right.T * self._scale).T)
         reaction, rigid = np.split((scaled.T * self._scale).T, [len(gap)])
-        return self._relief.rigid @ rigid - self._flexibility @ reaction
+        return rigid, reaction
 
     def _factor_small_system(self, flexibility: np.ndarray) -> None:
         held = self._held

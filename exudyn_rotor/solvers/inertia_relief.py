@@ -9,20 +9,33 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers import conjugate_gradients
+from exudyn_rotor.solvers.choice import (
+    DIRECT,
+    Model,
+    Way,
+    coordinates,
+    fits_directly,
+    is_iterative,
+    way_of,
+)
+from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, Solve, SparseCholesky
+from exudyn_rotor.solvers.rounding import rounding_unit, row_norm
+from exudyn_rotor.solvers.two_level import TwoLevel
 from exudyn_rotor.theory.nodal import rotations, translations
 
 # Largest |K r| of a free motion r, as a share of ‖K‖∞ ‖r‖∞. Full precision leaves 1e-16, rounding
 # to d digits in an export 0.2·10⁻ᵈ (8 digits moved the lowest frequencies by 1e-4); a support of
 # k N/m leaves about k / ‖K‖∞
 _STRAIN_LIMIT = 1e-8
+# share of an error that a step of conjugate gradients leaves, from which a factor is quicker: 0.35
+# for compact solids, 0.7 for Poisson's ratio 0.49 or flat elements, 0.96 for thin blades
+_SLOW = 0.75
 
 
-class ElasticBody(Protocol):
-    """What inertia relief needs of a rotor: positions, matrices, number of free rigid motions."""
+class ElasticBody(Model, Protocol):
+    """What inertia relief needs of a rotor: matrices, number of free rigid motions."""
 
-    @property
-    def nodes(self) -> np.ndarray: ...
     @property
     def mass(self) -> sp.csr_array: ...
     @property
@@ -79,11 +92,6 @@ def relative_rounding(stiffness: sp.csr_array, rigid: np.ndarray) -> float:
     return max(np.finfo(float).eps, strains.max(initial=0.0))
 
 
-def row_norm(matrix: sp.csr_array) -> float:
-    """Return the largest row sum of absolute values, ``‖A‖∞``."""
-    return float(abs(matrix).sum(axis=1).max(initial=0.0))
-
-
 def _mass_orthonormal(motions: np.ndarray, mass: sp.csr_array) -> np.ndarray:
     values, vectors = np.linalg.eigh(motions.T @ (mass @ motions))
     # nodes on one line have no moment of inertia about it
@@ -97,40 +105,104 @@ class InertiaRelief:
     For a load ``f`` it gives the ``u`` with ``K u = f − M R Rᵀ f`` and ``RᵀM u = 0``: the load is
     balanced by the inertia forces of the rigid acceleration, and the answer has no rigid part.
     This is exact with one factorisation: as many coordinates as there are free rigid motions are
-    pinned; a balanced load causes no reactions there, so where the pins are does not matter.
+    pinned; a balanced load causes no reactions there, so where the pins are does not matter. Or
+    conjugate gradients find it, which a balanced load never leads into a rigid motion.
 
     Parameters
     ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (3n, 3n)
-    rigid : ndarray, shape (3n, r)
+    stiffness, mass : scipy.sparse.csr_array, shape (m, m)
+    rigid : ndarray, shape (m, r)
         Mass-orthonormal free rigid motions ``R`` of :func:`free_rigid_motions`; with ``r = 0``
         this is the ordinary inverse.
+    way : Way
+        Direct or iterative, see :mod:`exudyn_rotor.solvers.choice`.
+
+    Attributes
+    ----------
+    iterative : bool
+        Whether there is no factor, and modes are to be found by :meth:`precondition`.
 
     Raises
     ------
     ValueError
         If the stiffness is singular even with the rigid motions pinned.
+    TooLittleMemoryError
+        If neither way fits into the memory that is available.
     """
 
-    def __init__(self, stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray) -> None:
+    def __init__(
+        self, stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray, way: Way = DIRECT
+    ) -> None:
         self.rigid = rigid
         self._momentum = mass @ rigid
-        self._kept = np.delete(np.arange(stiffness.shape[0]), _pins(rigid))
+        self.iterative = is_iterative(way, stiffness)
         try:
-            self._factor = SparseCholesky(stiffness[self._kept][:, self._kept])
+            if self.iterative:
+                self._prepare_iteration(stiffness, mass, way)
+            if not self.iterative:
+                self._kept = np.delete(np.arange(stiffness.shape[0]), _pins(rigid))
+                kept = stiffness if rigid.shape[1] == 0 else stiffness[self._kept][:, self._kept]
+                self._factor = SparseCholesky(kept)
         except NotPositiveDefiniteError as error:
             raise ValueError(
                 f"the stiffness leaves more motions free than the {rigid.shape[1]} rigid ones "
                 f"({error}); look for loose parts, nodes without elements, or negative moduli"
             ) from error
 
-    def solve(self, load: np.ndarray) -> np.ndarray:
-        """Return the elastic displacement [m] of `load` [N], shape (3n,) or (3n, k)."""
+    def solve(self, load: np.ndarray, tolerance: float = conjugate_gradients.PRECISE) -> np.ndarray:
+        """Return the elastic displacement [m] of `load` [N], shape (m,) or (m, k).
+
+        `tolerance` is what iteration may leave of the load, beside the rounding of a factor.
+        """
         load = np.asarray(load, dtype=float)
-        balanced = load - self._momentum @ (self.rigid.T @ load)
-        displacement = np.zeros_like(balanced)
-        displacement[self._kept] = self._factor.solve(balanced[self._kept])
+        balanced = self._balanced(load)
+        if self.iterative:
+            columns = balanced.reshape(len(load), -1)
+            solved = conjugate_gradients.solved(
+                self._stiffness, self.precondition, columns, self._unit, tolerance
+            )
+            displacement = solved.reshape(load.shape)
+        else:
+            displacement = np.zeros_like(balanced)
+            displacement[self._kept] = self._factor.solve(balanced[self._kept])
+        return self._elastic(displacement)
+
+    def precondition(self, load: np.ndarray) -> np.ndarray:
+        """Return roughly what :meth:`solve` does, for shape (m, k); symmetric and definite."""
+        return self._elastic(self._two_level(self._balanced(load)))
+
+    def start(self, count: int) -> np.ndarray:
+        """Return `count` motions (m, count) near the lowest modes."""
+        return self._two_level.start(count)
+
+    def _prepare_iteration(self, stiffness: sp.csr_array, mass: sp.csr_array, way: Way) -> None:
+        self._two_level = TwoLevel(stiffness, mass, self.rigid, way.interpolation, _coarse_solve)
+        # not the matrix itself, whose end is the end of what inertia_relief knows
+        arrays = stiffness.data, stiffness.indices, stiffness.indptr
+        self._stiffness = sp.csr_array(arrays, shape=stiffness.shape)
+        self._unit = rounding_unit(stiffness)
+        if way.solver == "auto":
+            load = self._balanced(mass @ _quadratic(way.nodes))
+            rate = conjugate_gradients.rate(self._stiffness, self.precondition, load)
+            if rate > _SLOW and fits_directly(way, stiffness):
+                self.iterative, self._two_level = False, None
+
+    def _balanced(self, load: np.ndarray) -> np.ndarray:
+        return load - self._momentum @ (self.rigid.T @ load)
+
+    def _elastic(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self.rigid @ (self._momentum.T @ displacement)
+
+
+def _quadratic(nodes: np.ndarray) -> np.ndarray:
+    """Return a displacement (3n,) that bends a body in all directions."""
+    positions = nodes - nodes.mean(axis=0)
+    squares = np.sum(positions, axis=1) ** 2 + positions[:, 0] * positions[:, 1]
+    return np.repeat(squares, 3)
+
+
+def _coarse_solve(stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray) -> Solve:
+    return InertiaRelief(stiffness, mass, rigid).solve
 
 
 def _pins(rigid: np.ndarray) -> np.ndarray:
@@ -142,8 +214,25 @@ def _pins(rigid: np.ndarray) -> np.ndarray:
     return order[: rigid.shape[1]]
 
 
+def held_inverse(rotor: ElasticBody, nodes: np.ndarray) -> InertiaRelief:
+    """Return the inverse of the stiffness of `nodes` with all others held.
+
+    Raises
+    ------
+    ValueError
+        If that leaves motions free.
+    TooLittleMemoryError
+        If neither way fits into the memory that is available.
+    """
+    inner = coordinates(nodes)
+    stiffness, mass = (matrix[inner][:, inner] for matrix in (rotor.stiffness, rotor.mass))
+    return InertiaRelief(
+        stiffness, mass, np.zeros((inner.size, 0)), way_of(rotor).restricted(nodes)
+    )
+
+
 # by the id of a living stiffness matrix: modes, attachment modes and prestress share the factor
-_known: dict[int, tuple[weakref.ref[sp.csr_array], int, InertiaRelief]] = {}
+_known: dict[int, tuple[weakref.ref[sp.csr_array], tuple, InertiaRelief]] = {}
 
 
 def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
@@ -153,14 +242,17 @@ def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
     ------
     ValueError
         If the stiffness resists a motion that should be free, or leaves others free.
+    TooLittleMemoryError
+        If neither way fits into the memory that is available.
     """
     stiffness, mass = rotor.stiffness, rotor.mass
     earlier = _known.get(id(stiffness))
-    if earlier is not None and earlier[0]() is mass and earlier[1] == rotor.rigid_motions:
+    kind = rotor.rigid_motions, rotor.solver
+    if earlier is not None and earlier[0]() is mass and earlier[1] == kind:
         return earlier[2]
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
-    relief = InertiaRelief(stiffness, mass, rigid)
+    relief = InertiaRelief(stiffness, mass, rigid, way_of(rotor))
     if earlier is None:
         weakref.finalize(stiffness, _known.pop, id(stiffness), None)
-    _known[id(stiffness)] = weakref.ref(mass), rotor.rigid_motions, relief
+    _known[id(stiffness)] = weakref.ref(mass), kind, relief
     return relief

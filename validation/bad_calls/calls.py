@@ -306,6 +306,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "loss": 0.01,
         "materials": {"steel": {"mass": 0.1, "loss": 0.02}},
     },
+    "SolidRotor.with_solver": lambda w: {"solver": "direct"},
     "SolidRotor.with_interface": lambda w: {
         "name": "middle",
         "nodes": [0, 1, 2, 3],

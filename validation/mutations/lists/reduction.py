@@ -103,8 +103,8 @@ REDUCTION = [
         "test_component_modes.py",
         (
             "static modes pushed the wrong way",
-            "static[inner] = -factor.solve",
-            "static[inner] = factor.solve",
+            "static[inner] = -inverse.solve",
+            "static[inner] = inverse.solve",
         ),
         (
             "interfaces turn about their centre",

@@ -8,8 +8,8 @@ SOLVERS = [
         "test_prestress.py::test_displacement_is_in_equilibrium_with_the_balanced_load",
         (
             "load not balanced by inertia",
-            "balanced = load - self._momentum @ (self.rigid.T @ load)",
-            "balanced = 1.0 * load",
+            "return load - self._momentum @ (self.rigid.T @ load)",
+            "return 1.0 * load",
         ),
         (
             "rigid part left in the answer",
@@ -41,8 +41,8 @@ SOLVERS = [
         ),
         (
             "resultant of the load forgotten",
-            "self._correction(gap, self._relief.rigid.T @ load)",
-            "self._correction(gap, 0.0 * self._relief.rigid.T @ load)",
+            "self._correction(self._constraints @ elastic, resultant)",
+            "self._correction(self._constraints @ elastic, 0.0 * resultant)",
         ),
     ),
     *mutations(
@@ -68,5 +68,73 @@ SOLVERS = [
             "sp.coo_array(sp.tril(matrix))",
             "sp.coo_array(sp.tril(matrix, -1) + sp.eye_array(*matrix.shape))",
         ),
+    ),
+    *mutations(
+        "solvers/constrained.py",
+        "test_iterative.py::test_craig_bampton_modes_are_those_of_the_factor",
+        (
+            "reactions left in the load of the cycle",
+            "load = load - self._constraints.T @ reaction",
+            "load = 1.0 * load",
+        ),
+    ),
+    *mutations(
+        "solvers/two_level.py",
+        "test_iterative.py::test_cycle_is_symmetric_definite_and_near_the_inverse",
+        (
+            "no smoothing after the linear elements",
+            "+ linear + after[0] + after[1])",
+            "+ linear)",
+        ),
+        (
+            "linear elements see the whole load, not the rest",
+            "self._restriction @ rest.astype(float)",
+            "self._restriction @ load.astype(float)",
+        ),
+        (
+            "second Chebyshev step forgets the first",
+            "return first, again * first + new",
+            "return first, 0.0 * first + new",
+        ),
+        (
+            "one stiffness for all directions of a node",
+            "blocks[:, row, column] = blocks[:, column, row] = diagonals[column - row][:, row]",
+            "blocks[:, row, column] = blocks[:, column, row] = "
+            "(row == column) * diagonals[0].max(axis=1)",
+        ),
+    ),
+    *mutations(
+        "solvers/conjugate_gradients.py",
+        "test_iterative.py::test_static_solutions_are_those_of_the_factor",
+        (
+            "directions that are not conjugate",
+            "step += (work / earlier[open_]) * change[:, open_]",
+            "step += 0.3 * (work / earlier[open_]) * change[:, open_]",
+        ),
+        (
+            "stops at three digits",
+            "limit = tolerance * sizes[left] + allowed",
+            "limit = 1e-3 * sizes[left] + allowed",
+        ),
+    ),
+    *mutations(
+        "solvers/davidson.py",
+        "test_iterative.py::test_modes_are_those_of_the_factor",
+        (
+            "orthogonal without the mass",
+            "weighted = self._mass @ columns",
+            "weighted = 1.0 * columns",
+        ),
+        (
+            "stops at a residual of some per cent",
+            "share = min(_RESIDUAL, np.sqrt(tolerance))",
+            "share = 0.03",
+        ),
+    ),
+    *mutations(
+        "solvers/fill.py",
+        "test_iterative.py::test_fill_is_estimated",
+        ("separators without the earlier ones", "own * (own + 2 * border)", "own * own"),
+        ("operations of the separators alone", "own**2 * border + own * border**2", "0 * own"),
     ),
 ]
