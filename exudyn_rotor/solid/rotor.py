@@ -150,12 +150,7 @@ class FiniteElementRotor:
         'direct' factorises the stiffness matrix, if the factor fits into memory. 'iterative' is for
         second-order elements of ``from_ngsolve``: a few kilobytes a node, the same steps on any
         mesh, but many where elements are flat or nearly incompressible. 'auto', the default, takes
-        the quicker one that fits. Both leave the same residuals.
-
-        Raises
-        ------
-        ValueError
-            If there is no such solver.
+        the quicker one that fits. Both leave the same residuals. ValueError for any other.
         """
         return replace(self, solver=solver)
 

@@ -146,6 +146,7 @@ BY_NAME: dict[str, Kind] = {
     "load_frequencies": v.NOT_NEGATIVE.but("range", "three numbers", three=[1.0, math.nan]),
     "loads": v.OBJECTS,
     "locking": v.WORD.but(another_word="springs"),
+    "solver": v.WORD.but(another_word="quick"),
     "frame_node": v.WORD.but(another_word="shaft"),
     "log_decrement": v.ANY_VALUES,
     "log": v.FLAG,
