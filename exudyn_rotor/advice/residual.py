@@ -2,7 +2,8 @@
 
 The loads F of the interfaces follow from the equations of motion, ``(U T)ᵀ F = f``, in the sense of
 least squares. With R, the flexibility of the attachment modes beyond that of the modes, they deform
-the rotor at its interfaces by ``R F`` more than the run shows.
+the rotor at its interfaces by ``R F`` more than the run shows. The rotor's own centrifugal load
+stretches it likewise, by Ω² times what its static response has beyond the modes.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ _SEEN = 1e-3  # singular values below this share of the largest tell nothing abo
 def residual_deflection(body: RotorBody, record: Record, size: float) -> float | None:
     """Return the deflection at interfaces that the modes leave out, over their displacement.
 
-    Stiff supports let the interfaces move less than the rotor bends; then over its bending there.
-    Loads elsewhere, and on the spin of the frame, do not count. `size` [m] makes forces and
-    moments comparable. None where it is not known what the modes leave out.
+    Against the rotor's mean motion. Stiff supports let the interfaces move less than the rotor
+    bends; then over its bending there. Other loads elsewhere, and on the spin of the frame, do not
+    count. `size` [m] makes forces and moments comparable. None where it is not known what the modes
+    leave out.
     """
     rotor = body.selection.source
     if rotor.with_attachments is None or not rotor.interfaces or "marker_body" not in body.objects:
@@ -35,6 +37,7 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     rest = (_flexibility(rotor.with_attachments) - _flexibility(rotor)) * scale
     equations = _equations(body, motion) * scale
     solve = np.linalg.pinv(equations, rcond=_SEEN)
+    stretch = _stretch(rotor.with_attachments, body) - _stretch(rotor, body)
     missing, largest = 0.0, 0.0
     shown = np.tile([True] * 3 + [False] * 3, count)
     for index in instants(record):
@@ -42,7 +45,8 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
         columns = body.selection.T @ zeta
         bent = motion @ np.where(flexible, columns, 0.0)
         moved = motion @ columns + np.tile(np.append(frame, [0.0] * 3), count)
-        missing = max(missing, np.linalg.norm((rest @ (solve @ loads))[shown]))
+        left_out = rest @ (solve @ loads) + record.speed[index] ** 2 * stretch
+        missing = max(missing, np.linalg.norm(left_out[shown]))
         largest = max(largest, np.linalg.norm(moved[shown]), np.linalg.norm(bent[shown]))
     return float(missing / largest) if largest else 0.0
 
@@ -58,6 +62,13 @@ def _flexibility(rotor: ReducedRotor) -> np.ndarray:
     motion, flexible = _motion(rotor)
     scaled = motion[:, flexible] / rotor.frequencies[flexible]
     return scaled @ scaled.T
+
+
+def _stretch(rotor: ReducedRotor, body: RotorBody) -> np.ndarray:
+    """Return the static motion of the interfaces by the centrifugal load per ω², (6n,)."""
+    motion, flexible = _motion(rotor)
+    h = rotor.invariants.moved(body.selection.origin - rotor.center_of_mass).h
+    return motion[:, flexible] @ (h[flexible] / rotor.frequencies[flexible] ** 2)
 
 
 def _equations(body: RotorBody, motion: np.ndarray) -> np.ndarray:

@@ -110,8 +110,10 @@ def check_run(
                                   no equation resists, over the largest load
     ``top modes``        0.01     elastic energy in the highest fifth of the flexible modes over the
                                   energy of the motion: how much the modes beyond may hold
-    ``residual``         a        static deflection at interfaces that the modes leave out (residual
-                                  flexibility) over their displacement; not for loads elsewhere
+    ``residual``         a        static deflection of interfaces against the mean motion of the
+                                  rotor, by loads at interfaces and the centrifugal load, that the
+                                  modes leave out, over their displacement; stiff supports let the
+                                  interfaces themselves err by less; not for other loads elsewhere
     ``strain``           a        mean centrifugal strain as the modes show it; the relative error
                                   of linear elasticity
     ``stiffening``       a        stiffening that the level leaves out, as relative change of

@@ -152,6 +152,12 @@ ADVICE = [
             "scaled = motion[:, flexible] / np.sqrt(rotor.frequencies[flexible])",
         ),
         (
+            "centrifugal stretch left out",
+            "+ record.speed[index] ** 2 * stretch",
+            "",
+        ),
+        ("stretch of the modes added", ", body) - _stretch(", ", body) + _stretch("),
+        (
             "force on the frame left out",
             "np.concatenate([on_modes, on_frame / np.sqrt(mass)])",
             "np.concatenate([on_modes, 0.0 * on_frame])",
