@@ -25,6 +25,7 @@ SCRIPTS = {
     "linear": Script("speed.linear", "time of linear analyses"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
+    "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
