@@ -20,12 +20,17 @@ extensions = [
     "examples",
     "sphinx-mathjax-offline",
 ]
-exclude_patterns = ["_build", "extensions", "spelling.txt"]
+exclude_patterns = ["_build", "extensions", "*.txt"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
 templates_path = ["_templates"]
 
 autosummary_generate = True
+autosummary_filename_map = {  # where the case of letters does not tell campbell from Campbell
+    f"{project}.{name}": f"{project}.function-{name}"
+    for name in exudyn_rotor.__all__
+    if name.islower() and name.title() in exudyn_rotor.__all__
+}
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 napoleon_google_docstring = True  # of what Exudyn installs
@@ -33,8 +38,11 @@ napoleon_use_ivar = True
 napoleon_use_rtype = False
 napoleon_preprocess_types = False
 
+smartquotes = False  # the search compares letter by letter
+
 html_theme = "pydata_sphinx_theme"
 html_title = f"exudyn_rotor {release}"
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_show_sourcelink = False
