@@ -23,6 +23,7 @@ extensions = [
 exclude_patterns = ["_build", "extensions", "*.txt"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
+suppress_warnings = ["ref.python"]  # attributes of one name in two classes
 templates_path = ["_templates"]
 
 autosummary_generate = True
