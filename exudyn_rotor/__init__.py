@@ -9,10 +9,12 @@ from exudyn_rotor.advice.energy_balance import EnergyBalance, energy_balance
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
 from exudyn_rotor.bearings.film.picture import plot_pressure
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
+from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
@@ -76,6 +78,7 @@ __all__ = [
     "AssumptionWarning",
     "BaseAcceleration",
     "Campbell",
+    "ClearanceStop",
     "ConnectionWarning",
     "ConstantSpeed",
     "CriticalSpeedMap",
@@ -109,6 +112,7 @@ __all__ = [
     "SolidRotor",
     "Spectra",
     "SpinAxis",
+    "SqueezeFilmDamper",
     "Stability",
     "StabilityLevelOne",
     "StabilityMap",

@@ -1,32 +1,19 @@
-"""Plain journal bearing that is short: Ocvirk's solution of Reynolds' equation, film of 180°.
+"""Plain journal bearing that is short: Ocvirk's film of 180°, equilibrium and coefficients.
 
-With the journal at c (x, y), the film ``h = c (1 − x cos φ − y sin φ)`` and a length L well below
-the diameter, Reynolds' equation keeps its axial derivative alone:
-
-    p = 6 μ/h³ (Ω/2 h' + ḣ) (z² − L²/4),
-
-above zero where ``a cos φ + b sin φ > 0``, ``a = ẋ + Ω y/2``, ``b = ẏ − Ω x/2``: always on half
-of the bearing, and there alone the film carries (half-Sommerfeld, by Gümbel). Over that half, with
-``w² = a² + b²``, ``u = (x a + y b)/w``, ``v = (y a − x b)/w``, ``s² = 1 − x² − y²`` and
-``β = π/2 + arctan(u/s)``, the force on the journal is in closed form
-
-    F = −(μ R L³/c²) [ I_cc (a, b) + I_cs (−b, a) ]                                      (1)
-    I_cc = 3 u/s⁴ + β (s² + 3 u²)/s⁵
-    I_cs = 2 v/s⁴ + u² v/((1 − v²) s⁴) + 3 β u v/s⁵.
-
-At rest it is Ocvirk's, and about it the eight coefficients are the known ones:
+The film is that of :mod:`exudyn_rotor.bearings.short_film`. At rest, along the line of centres and
+across it, its force is
 
     F_r = −(μ Ω R L³/c²) ε²/(1 − ε²)²,   F_t = (μ Ω R L³/c²) π ε/(4 (1 − ε²)^{3/2}).     (2)
 
-F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991); M. I. Friswell et al.,
-*Dynamics of Rotating Machines* (2010), Sect. 5.5. Error of the short bearing: below 5 % of the
-force for L/D ≤ 0.25, and about 20 to 30 % at L/D = 0.5; none of the oil's heating and inertia.
+F. W. Ocvirk, NACA TN 2808 (1952); M. I. Friswell et al., *Dynamics of Rotating Machines* (2010),
+Sect. 5.5. Error of the short bearing: below 5 % of the force for L/D ≤ 0.25, and about 20 to 30 %
+at L/D = 0.5; the oil's heating and inertia are left out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, hypot, pi, sqrt
+from math import hypot, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,9 +21,8 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.short_film import film_force, force_anywhere
 
-_THINNEST = 0.01  # of the clearance: a thinner film goes on by its tangent
-_STEP = 1e-6  # of the clearance, of that tangent
 _LEAST, _MOST = 1e-12, 1.0 - 1e-9  # eccentricity ratios of an equilibrium
 
 
@@ -104,7 +90,7 @@ class ShortJournalBearing(Bearing):
         return self.viscosity * self.radius * self.length**3 / self.clearance**2
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
-        """Return the force on the journal (1) [N], shape (2,).
+        """Return the force of the film on the journal [N], shape (2,).
 
         Parameters
         ----------
@@ -126,41 +112,13 @@ class ShortJournalBearing(Bearing):
                 f"displacement: needs less than the clearance of {self.clearance:g} m, got "
                 f"{hypot(*place):g} m: the journal would touch"
             )
-        return np.array(self._film(*(place / self.clearance), *(rate / self.clearance), speed))
+        c = self.clearance
+        return self._size * np.array(film_force(*(place / c), *(rate / c), speed))
 
     def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Return the force on the journal [N] at any place.
-
-        A film thinner than a hundredth of the clearance goes on by its tangent, so that Newton's
-        method comes back from beyond.
-        """
-        c = self.clearance
-        x, y, vx, vy = x / c, y / c, vx / c, vy / c
-        eccentricity, most = hypot(x, y), 1.0 - _THINNEST
-        if eccentricity <= most:
-            return self._film(x, y, vx, vy, speed)
-        ex, ey = x / eccentricity, y / eccentricity
-        fx, fy = self._film(most * ex, most * ey, vx, vy, speed)
-        inside = most - _STEP
-        gx, gy = self._film(inside * ex, inside * ey, vx, vy, speed)
-        beyond = (eccentricity - most) / _STEP
-        return fx + beyond * (fx - gx), fy + beyond * (fy - gy)
-
-    def _film(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Return the force (1) for a place and velocity over the clearance."""
-        a, b = vx + 0.5 * speed * y, vy - 0.5 * speed * x
-        w = hypot(a, b)
-        if w == 0.0:
-            return 0.0, 0.0
-        u, v = (x * a + y * b) / w, (y * a - x * b) / w
-        s2 = 1.0 - x * x - y * y
-        s = sqrt(s2)
-        beta = 0.5 * pi + atan(u / s)
-        s4, s5 = s2 * s2, s2 * s2 * s
-        along = 3.0 * u / s4 + beta * (s2 + 3.0 * u * u) / s5
-        across = 2.0 * v / s4 + u * u * v / ((1.0 - v * v) * s4) + 3.0 * beta * u * v / s5
-        size = -self._size
-        return size * (along * a - across * b), size * (along * b + across * a)
+        c, size = self.clearance, self._size
+        fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, speed)
+        return size * fx, size * fy
 
     def eccentricity_ratio(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the eccentricity over the clearance under a static load [N] at a speed [rad/s].

@@ -68,7 +68,9 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "SteadyState": lambda w: w.steady,
     "StressField": lambda w: w.stress,
     "StressHistory": lambda w: w.history,
+    "ClearanceStop": lambda w: w.stop,
     "ShortJournalBearing": lambda w: w.journal,
+    "SqueezeFilmDamper": lambda w: w.damper,
     "Support": lambda w: w.supports[0],
     "Unbalance": lambda w: er.Unbalance("left", 1e-4),
     "UnbalanceResponse": lambda w: w.unbalance,
@@ -344,6 +346,15 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "*.equilibrium": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.power_loss": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.with_load": lambda w: {"load": [0.0, -500.0]},
+    "SqueezeFilmDamper.force": lambda w: {
+        "displacement": [1e-5, 2e-5],
+        "velocity": [0.0, 1e-3],
+    },
+    "ClearanceStop.force": lambda w: {
+        "displacement": [1e-5, 2e-5],
+        "velocity": [0.0, 1e-3],
+        "speed": 100.0,
+    },
     "ShortJournalBearing.force": lambda w: {
         "displacement": [1e-5, 2e-5],
         "velocity": [0.0, 1e-3],

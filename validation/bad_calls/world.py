@@ -108,6 +108,17 @@ class World:
         return er.ShortJournalBearing(interface="left", load=[0.0, -500.0], **size)
 
     @cached_property
+    def damper(self) -> er.SqueezeFilmDamper:
+        """A squeeze-film damper with a spring that carries the loads of the calls."""
+        size = {"radius": 0.06, "length": 0.02, "clearance": 1e-3, "viscosity": 0.01}
+        return er.SqueezeFilmDamper(interface="left", centring_stiffness=5e6, **size)
+
+    @cached_property
+    def stop(self) -> er.ClearanceStop:
+        """A stop behind a clearance."""
+        return er.ClearanceStop(interface="left", radius=0.05, clearance=1e-4, stiffness=1e7)
+
+    @cached_property
     def isotropic(self) -> tuple[er.Support, ...]:
         """Bearings whose damper turns with the rotor, too: unstable above some speed."""
         return (

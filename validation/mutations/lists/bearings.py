@@ -93,14 +93,14 @@ BEARINGS = [
         ("preload opens the film", "-preload * clearance", "preload * clearance"),
     ),
     *mutations(
-        "bearings/short_journal.py",
+        "bearings/short_film.py",
         "test_journal_bearing.py::test_film_is_the_integral_of_its_pressure",
         ("oil carried around at the journal's speed", "vx + 0.5 * speed * y", "vx + speed * y"),
         ("film on the wrong half", "beta = 0.5 * pi + atan", "beta = 0.5 * pi - atan"),
         (
             "force across with the wrong sign",
-            "return size * (along * a - across * b)",
-            "return size * (along * a + across * b)",
+            "return across * b - along * a",
+            "return -across * b - along * a",
         ),
     ),
     *mutations(
@@ -113,5 +113,23 @@ BEARINGS = [
             "c, s = radial / size, tangential / size",
         ),
         ("a slow film carries all", "size = self._size * abs(speed)\n", "size = self._size\n"),
+    ),
+    *mutations(
+        "bearings/squeeze_film.py",
+        "test_dampers_and_stops.py",
+        ("journal turns in the damper", "vx / c, vy / c, 0.0)", "vx / c, vy / c, speed)"),
+        ("film's stiffness halved", "film = 2.0 * size", "film = size"),
+        (
+            "spring pushes away",
+            "- self.centring_stiffness * place",
+            "+ self.centring_stiffness * place",
+        ),
+    ),
+    *mutations(
+        "bearings/clearance_stop.py",
+        "test_dampers_and_stops.py::test_stop_pushes_back_and_rubs",
+        ("friction drives", "return drag * ny - normal * nx", "return -drag * ny - normal * nx"),
+        ("contact holds the journal back", "normal = max(0.0, ", "normal = max(-1e9, "),
+        ("sliding without the orbit", "speed + vy * nx - vx * ny", "speed"),
     ),
 ]

@@ -1,0 +1,179 @@
+"""Squeeze-film damper: a short film around a journal that does not rotate, and a centring spring.
+
+The film is that of :mod:`exudyn_rotor.bearings.short_film` at Ω = 0: open ends, carrying where its
+pressure is above the ambient. On a circular centred orbit of the radius ε c with the whirl speed ω
+its force is, along the line of centres and against the motion,
+
+    F_r = −(μ R L³/c²) 2 ω ε²/(1 − ε²)²,   F_t = −(μ R L³/c²) ω π ε/(2 (1 − ε²)^{3/2}),    (1)
+
+which in linear analyses, about an orbit that is given, is a spring and a damper. L. San Andrés,
+*Modern Lubrication Theory*, Notes 13 (Texas A&M, 2010); J. Vance, *Rotordynamics of Turbomachinery*
+(1988), Sect. 6. Inertia of the oil and air in it are left out: for squeeze Reynolds numbers
+``ρ ω c²/μ`` well below 10.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, pi, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.short_film import film_force, force_anywhere
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SqueezeFilmDamper(Bearing):
+    """Squeeze-film damper with open ends, with or without a centring spring.
+
+    Parameters
+    ----------
+    interface : str
+        Interface that moves in the damper: that of the bearing's outer ring, or of the shaft where
+        the bearing is taken for rigid.
+    radius, length : float
+        Of the film [m].
+    clearance : float
+        Radial clearance [m].
+    viscosity : float
+        Dynamic viscosity of the oil [Pa s].
+    centring_stiffness : float, optional
+        Of the spring [N/m], relaxed in the centre; 0 for a damper without one.
+    orbit : float, optional
+        Radius over the clearance of the circular centred orbit about which linear analyses take the
+        film (1), at the spin speed; 0 by default.
+    load : array_like, shape (2,), optional
+        Static load on the journal along (n1, n2) [N], which the spring carries; none by default.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For sizes that are not above zero, a clearance as large as the radius, an orbit that is not
+        inside the clearance.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SqueezeFilmDamper
+    >>> damper = SqueezeFilmDamper(
+    ...     interface="left", radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.01,
+    ...     centring_stiffness=5e6, orbit=0.4,
+    ... )
+    >>> stiffness, damping = damper.coefficients(speed=500.0)
+    >>> print(stiffness[0, 0].round(), damping[0, 0].round(1))
+    5806248.0 2901.8
+    """
+
+    radius: float
+    length: float
+    clearance: float
+    viscosity: float
+    centring_stiffness: float = 0.0
+    orbit: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
+        for name, unit in units.items():
+            value = checks.number(getattr(self, name), name, unit, above=0.0)
+            object.__setattr__(self, name, value)
+        spring = checks.number(self.centring_stiffness, "centring_stiffness", "N/m", least=0.0)
+        object.__setattr__(self, "centring_stiffness", spring)
+        orbit = checks.number(self.orbit, "orbit", least=0.0, below=1.0)
+        object.__setattr__(self, "orbit", orbit)
+        if self.clearance >= self.radius:
+            raise ValueError(
+                "clearance: needs the radial clearance, far below the radius of "
+                f"{self.radius:g} m, got {self.clearance:g} m"
+            )
+
+    @property
+    def _size(self) -> float:
+        """``μ R L³/c²`` [N s]."""
+        return self.viscosity * self.radius * self.length**3 / self.clearance**2
+
+    def force(self, displacement: ArrayLike, velocity: ArrayLike) -> np.ndarray:
+        """Return the force of film and spring on the journal [N], shape (2,).
+
+        Parameters
+        ----------
+        displacement, velocity : array_like, shape (2,)
+            Of the journal's centre from that of the damper [m], [m/s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and a displacement as large as the clearance.
+        """
+        place = checks.vector(displacement, "displacement", "m", size=2)
+        rate = checks.vector(velocity, "velocity", "m/s", size=2)
+        c = self.clearance
+        if hypot(*place) >= c:
+            raise ValueError(
+                f"displacement: needs less than the clearance of {c:g} m, got "
+                f"{hypot(*place):g} m: the journal would touch"
+            )
+        film = self._size * np.array(film_force(*(place / c), *(rate / c), 0.0))
+        return film - self.centring_stiffness * place
+
+    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+        c, size, k = self.clearance, self._size, self.centring_stiffness
+        fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, 0.0)
+        return size * fx - k * x, size * fy - k * y
+
+    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return where the spring holds the journal under a static load [m], shape (2,).
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s], which plays no part.
+        load : array_like, shape (2,), optional
+            On the journal [N]; that of the damper, or none, by default.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and a load that the spring does not carry within the clearance.
+        """
+        checks.number(speed, "speed", "rad/s")
+        load = self._static_load(load)
+        if hypot(*load) >= self.centring_stiffness * self.clearance and np.any(load):
+            raise ValueError(
+                f"load: damper at {self.interface!r}: {hypot(*load):g} N presses the journal "
+                f"through the clearance of {self.clearance:g} m; a film carries no static load, "
+                "give a larger centring_stiffness"
+            )
+        return load / self.centring_stiffness if np.any(load) else np.zeros(2)
+
+    def coefficients(
+        self, speed: float, load: ArrayLike | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness [N/m] and damping [N s/m] on the orbit (1), each (2, 2).
+
+        Parameters
+        ----------
+        speed : float
+            Of the whirl, which is the spin speed [rad/s].
+        load : array_like, shape (2,), optional
+            Refused where the spring does not carry it; else of no influence.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As :meth:`equilibrium`.
+        """
+        self.equilibrium(speed, load)
+        s2 = 1.0 - self.orbit**2
+        size = self._size / self.clearance
+        film = 2.0 * size * abs(speed) * self.orbit / s2**2
+        damping = 0.5 * pi * size / (s2 * sqrt(s2))
+        return (self.centring_stiffness + film) * np.eye(2), damping * np.eye(2)
+
+    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
+        if load is None and self.load is None:
+            return np.zeros(2)
+        return super()._static_load(load)

@@ -1,0 +1,136 @@
+"""Squeeze-film dampers and stops: closed forms, and the balance of energy in scenes."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    ClearanceStop,
+    SqueezeFilmDamper,
+    add_rotor,
+    add_supports,
+    recommended_settings,
+    stability,
+)
+
+FILM = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.01}
+STOP = {"radius": 0.05, "clearance": 1e-4, "stiffness": 4e6, "friction": 0.2}
+
+
+def damper(interface="left", **changes):
+    return SqueezeFilmDamper(interface=interface, **(FILM | changes))
+
+
+def stop(interface="left", **changes):
+    return ClearanceStop(interface=interface, **(STOP | changes))
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_force_on_a_circular_centred_orbit(ratio):
+    """L. San Andrés, Modern Lubrication Theory, Notes 13: short damper, film of 180°."""
+    whirl, c = 300.0, FILM["clearance"]
+    size = FILM["viscosity"] * FILM["radius"] * FILM["length"] ** 3 / c**2
+    expected = -size * whirl * np.array(
+        [2.0 * ratio**2 / (1.0 - ratio**2) ** 2, 0.5 * np.pi * ratio / (1.0 - ratio**2) ** 1.5]
+    )  # fmt: skip
+    one = damper(orbit=ratio)
+    found = one.force([ratio * c, 0.0], [0.0, whirl * ratio * c])
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    K, D = one.coefficients(whirl)
+    np.testing.assert_allclose(K * ratio * c, -expected[0] * np.eye(2), rtol=1e-12)
+    np.testing.assert_allclose(D * whirl * ratio * c, -expected[1] * np.eye(2), rtol=1e-12)
+
+
+def test_spring_carries_and_the_film_does_not():
+    held = damper(centring_stiffness=5e6)
+    np.testing.assert_allclose(held.equilibrium(100.0, [0.0, -250.0]), [0.0, -5e-5])
+    np.testing.assert_allclose(held.force([1e-5, 0.0], [0.0, 0.0]), [-50.0, 0.0])
+    with pytest.raises(ValueError, match="a film carries no static load"):
+        damper().equilibrium(100.0, [0.0, -1.0])
+
+
+def test_stop_pushes_back_and_rubs():
+    """k δ inwards, μ N against the sliding R Ω + v_t, either way round; nothing when open."""
+    normal = 4e6 * 5e-5
+    for speed, tangential in ((100.0, -1.0), (-100.0, 1.0), (0.0, 0.0)):
+        found = stop().force([0.0, 1.5e-4], [0.0, 0.0], speed)
+        np.testing.assert_allclose(found, [-0.2 * normal * tangential, -normal], atol=1e-9)
+    backward = stop().force([1.5e-4, 0.0], [0.0, -6.0], 100.0)  # rolls faster than it spins
+    np.testing.assert_allclose(backward, [-normal, 0.2 * normal], rtol=1e-9)
+    damped = stop(damping=1e4, friction=0.0)
+    np.testing.assert_allclose(damped.force([1.5e-4, 0.0], [0.01, 0.0], 0.0)[0], -normal - 50.0)
+    assert not np.any(damped.force([1.5e-4, 0.0], [-1.0, 0.0], 0.0))
+    assert not np.any(stop().force([0.9e-4, 0.0], [1.0, 1.0], 100.0))
+
+
+@pytest.mark.parametrize("kind", ["squeeze film", "stop"])
+def test_energy_lost_is_the_work_of_the_element(kind):
+    """Of a rotor that swings: kinetic energy and what springs hold, against ∫ F·v dt."""
+    make, spring = {
+        "squeeze film": (damper, 2e6),
+        "stop": (lambda name: stop(name, damping=2e3), 0.0),
+    }[kind]
+    mbs = exu.SystemContainer().AddSystem()
+    rotor = ring_rotor(0.1, 0.15, 20.0)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    body = add_rotor(mbs, rotor, spin=0.0, initial_velocity=[0.05, 0.02, 0.0])
+    options = {"centring_stiffness": spring} if spring else {}
+    elements = [make(name, **options) if options else make(name) for name in ("left", "right")]
+    added = add_supports(body, elements)
+    kinds = exu.OutputVariableType
+    sensors = [
+        [
+            mbs.AddSensor(
+                exu.itemInterface.SensorObject(
+                    objectNumber=each.objects[0],
+                    outputVariableType=what,
+                    storeInternal=True,
+                    writeToFile=False,
+                )
+            )
+            for what in (kinds.Displacement, kinds.Velocity, kinds.Force)
+        ]
+        for each in added
+    ]
+    energy = body.add_energy_sensor()
+    mbs.Assemble()
+    settings = recommended_settings(end_time=0.03, step=1e-5)
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-5
+    mbs.SolveDynamic(settings)
+    total = mbs.GetSensorStoredData(energy)[:, 1:].sum(axis=1)
+    work = 0.0
+    for group in sensors:
+        u, v, force = (mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in group)
+        power = np.einsum("tk,tk->t", force, v)
+        work += np.trapezoid(power, dx=1e-5)
+        assert np.hypot(*u.T[:2]).max() > 0.3 * FILM["clearance"]
+    lost = total[0] - total[-1]
+    assert work == pytest.approx(lost, rel=2e-3)
+    assert lost > 1e-3
+
+
+def test_linear_analyses_take_them():
+    rotor = ring_rotor(0.1, 0.15, 20.0)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    held = [damper(name, centring_stiffness=5e6) for name in ("left", "right")]
+    speeds = [50.0]
+    alone, with_stop = (stability(rotor, speeds, supports=s) for s in (held, [*held, stop()]))
+    assert alone.growth_of("lateral")[0] < -1.0
+    np.testing.assert_allclose(alone.growth, with_stop.growth, rtol=1e-9)
+
+
+def test_refused_input():
+    for make, changes, match in (
+        (damper, {"clearance": -1e-4}, "clearance: needs a finite number"),
+        (damper, {"clearance": 0.1}, "far below the radius"),
+        (damper, {"orbit": 1.0}, "orbit: needs"),
+        (damper, {"centring_stiffness": -1.0}, "centring_stiffness: needs"),
+        (stop, {"clearance": -1e-4}, "clearance: needs a finite number"),
+        (stop, {"friction": -0.1}, "friction: needs"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            make(**changes)
+    with pytest.raises(ValueError, match="the journal would touch"):
+        damper().force([1.5e-4, 0.0], [0.0, 0.0])
