@@ -22,6 +22,7 @@ SCRIPTS = {
     "frozen_spin": Script("speed.frozen_spin", "error and cost of a frozen spin"),
     "ablation": Script("speed.ablation", "cost of each ingredient of a scene"),
     "set_up": Script("speed.set_up", "time of the set-up"),
+    "growth": Script("speed.growth", "time and memory of the set-up over the size of the mesh"),
     "linear": Script("speed.linear", "time of linear analyses"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),

@@ -10,8 +10,6 @@ import scipy.sparse as sp
 
 from exudyn_rotor.solid import matrices
 
-# Mid nodes of a 10-node tetrahedron: between which corners they lie (Netgen's order).
-EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 # Components xx, yy, zz, yz, xz, xy as entries of the 3 × 3 tensor, row by row.
 _TENSOR = (0, 5, 4, 5, 1, 3, 4, 3, 2)
 
@@ -26,15 +24,22 @@ def assembled(form: ngs.BilinearForm) -> sp.csr_array:
     with ngs.TaskManager():
         form.Assemble()
     # the arrays belong to the form, which ends here
-    return sp.csr_array(form.mat.CSR(), copy=True)
+    data, columns, ends = (array.NumPy() for array in form.mat.CSR())
+    # half the memory of long ones
+    indices = (array.astype(np.int32) for array in (columns, ends))
+    return sp.csr_array((data.copy(), *indices), shape=form.mat.shape)
 
 
 def node_by_node(matrix: sp.csr_array) -> sp.csr_array:
     """Return `matrix` reordered from x0 x1 … y0 y1 … z0 z1 … to x0 y0 z0 x1 …."""
     count = matrix.shape[0] // 3
-    entries = matrix.tocoo()
-    rows, columns = (3 * (index % count) + index // count for index in entries.coords)
-    return sp.csr_array((entries.data, (rows, columns)), shape=matrix.shape)
+    order = np.arange(3 * count, dtype=np.int32).reshape(3, count).T.ravel()
+    place = np.empty_like(order)
+    place[order] = np.arange(3 * count, dtype=np.int32)
+    rows = matrix[order]
+    reordered = sp.csr_array((rows.data, place[rows.indices], rows.indptr), shape=matrix.shape)
+    reordered.sort_indices()
+    return reordered
 
 
 def assemble_mass(space: ngs.FESpace, densities: np.ndarray) -> sp.csr_array:
@@ -74,6 +79,8 @@ class NgsolveElements:
         Lamé parameters λ, μ of every region [Pa].
     densities : ndarray, shape (regions,)
         [kg/m³].
+    edges : ndarray of int, shape (n, 2)
+        Ends of the edge in whose middle a node is; itself twice for a vertex. Vertices come first.
     held : ndarray of int, optional
         Nodes that are clamped: their rows and columns are zero in every matrix.
     free : scipy.sparse.csr_array, optional
@@ -85,6 +92,7 @@ class NgsolveElements:
     nodes: np.ndarray
     lame: np.ndarray
     densities: np.ndarray
+    edges: np.ndarray
     held: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     free: sp.csr_array | None = None
 
@@ -118,18 +126,14 @@ class NgsolveElements:
     def interpolation(self) -> sp.csr_array | None:
         """Return what gives all displacements (3n,) that are linear in every element.
 
-        From those of the vertices, which are the first nodes; a mid node takes the mean of its
-        edge. None for elements of first order, all of whose nodes are vertices.
+        From those of the vertices; a mid node takes the mean of its edge. None for elements of
+        first order, all of whose nodes are vertices.
         """
         if self.order == 1:
             return None
-        tetrahedra = self.mesh.ngmesh.Elements3D().NumPy()["nodes"].astype(np.int64) - 1
-        ends = np.repeat(np.arange(len(self.nodes))[:, None], 2, axis=1)
-        for mid, edge in zip(tetrahedra.T[4:], EDGES, strict=True):
-            ends[mid] = tetrahedra[:, edge]
-        every = np.repeat(np.arange(len(ends)), 2)
-        shape = (len(ends), int(ends.max()) + 1)
-        means = sp.csr_array((np.full(every.size, 0.5), (every, ends.ravel())), shape=shape)
+        every = np.repeat(np.arange(len(self.edges)), 2)
+        shape = (len(self.edges), int(self.edges.max()) + 1)
+        means = sp.csr_array((np.full(every.size, 0.5), (every, self.edges.ravel())), shape=shape)
         linear = sp.csr_array(sp.kron(means, sp.eye_array(3), format="csr"))
         return linear if self.free is None else sp.csr_array(self.free @ linear)
 

@@ -254,7 +254,10 @@ def _to_csr(label: str, matrix: Any) -> sp.csr_array:
     rows = sp.csr_array(matrix, copy=True)
     rows.sum_duplicates()  # now, for entries that are read-only cannot be put in order
     entries = checks.array(rows.data, f"{label}: its entries", finite=False)
-    return sp.csr_array((entries, rows.indices, rows.indptr), shape=rows.shape)
+    indices = rows.indices, rows.indptr
+    if rows.nnz <= np.iinfo(np.int32).max:
+        indices = tuple(array.astype(np.int32) for array in indices)
+    return sp.csr_array((entries, *indices), shape=rows.shape)
 
 
 def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
@@ -276,14 +279,24 @@ def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
 def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
     transposed = sp.csr_array(matrix.T)
     largest = _largest(matrix)
-    difference = _largest(matrix - transposed)
+    alike = np.array_equal(matrix.indptr, transposed.indptr)
+    alike = alike and np.array_equal(matrix.indices, transposed.indices)
+    if alike:
+        difference = float(np.abs(matrix.data - transposed.data).max(initial=0.0))
+    else:
+        difference = _largest(matrix - transposed)
     if difference > SYMMETRY_TOLERANCE * largest:
         raise ValueError(
             f"{label}: is not symmetric, entries differ by {difference:.3g} with a largest entry "
             f"of {largest:.3g}; many exports write one triangle only: then pass "
             "A + A.T - diag(A)"
         )
-    return sp.csr_array(0.5 * matrix + 0.5 * transposed)
+    if not alike:
+        return sp.csr_array(0.5 * matrix + 0.5 * transposed)
+    mean = transposed.data
+    mean += matrix.data
+    mean *= 0.5
+    return transposed
 
 
 def _has_identity_blocks(mass: sp.csr_array) -> bool:
@@ -316,7 +329,7 @@ def _explain_blocks(mass: sp.csr_array) -> str:
 
 
 def _largest(matrix: sp.csr_array) -> float:
-    return float(abs(matrix).max()) if matrix.nnz else 0.0
+    return float(np.abs(matrix.data).max(initial=0.0))
 
 
 def _some(nodes: np.ndarray) -> str:

@@ -19,7 +19,7 @@ from exudyn_rotor.solid.elements import (
     nodal_space,
 )
 from exudyn_rotor.solid.model import FiniteElementModel, NodeSet
-from exudyn_rotor.solid.stress_recovery import TetrahedronStress
+from exudyn_rotor.solid.stress_recovery import EDGES, TetrahedronStress
 from exudyn_rotor.solid.surface import area_weights
 
 # Face names that Netgen invents for faces without a name.
@@ -56,6 +56,7 @@ def assemble_model(
     densities = np.array([by_region[name]["density"] for name in regions])
     space = nodal_space(mesh, order)
     triangles, faces = _triangles(mesh, order)
+    edges = _edges(tetrahedra, len(nodes))
     return FiniteElementModel(
         nodes=nodes,
         mass=assemble_mass(space, densities),
@@ -63,7 +64,7 @@ def assemble_model(
         node_sets=_node_sets(nodes, triangles, faces, interfaces),
         triangles=triangles,
         stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),
-        elements=NgsolveElements(mesh, order, nodes, lame, densities),
+        elements=NgsolveElements(mesh, order, nodes, lame, densities, edges),
     )
 
 
@@ -100,6 +101,14 @@ def _tetrahedra(mesh: ngs.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return node numbers (t, 4) or (t, 10) and region numbers (t,), counted from zero."""
     elements = mesh.ngmesh.Elements3D().NumPy()
     return elements["nodes"].astype(np.int64) - 1, elements["index"].astype(np.int64) - 1
+
+
+def _edges(tetrahedra: np.ndarray, node_count: int) -> np.ndarray:
+    """Return the ends (n, 2) of the edge of each mid node; a vertex is both ends."""
+    ends = np.repeat(np.arange(node_count)[:, None], 2, axis=1)
+    for mid, edge in zip(tetrahedra.T[4:], EDGES, strict=False):  # linear ones have no mid nodes
+        ends[mid] = tetrahedra[:, edge]
+    return ends
 
 
 def _check_used(tetrahedra: np.ndarray, node_count: int) -> None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.solid.elements import EDGES
-
+# Mid nodes of a 10-node tetrahedron: between which corners they lie (Netgen's order).
+EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 # Derivatives of the barycentric coordinates by the three reference coordinates.
 _CORNER_SLOPES = np.vstack([np.eye(3), -np.ones(3)])
 
