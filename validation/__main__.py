@@ -27,6 +27,8 @@ SCRIPTS = {
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
+    "reduction": Script("reduction", "what reduction costs in accuracy"),
+    "family": Script("family", "costs of the family, full and reduced"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
     "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
