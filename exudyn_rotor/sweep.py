@@ -73,8 +73,7 @@ def sweep(
     checks.flag(progress, "progress")
     checks.instance(label, "label", str)
     values = list(values)
-    bar = tqdm(total=len(values), desc=label or None, disable=not progress)
-    with bar:
+    with tqdm(total=len(values), desc=label or None) if progress else _NoBar() as bar:
         if executor is None:
             results = []
             for value in values:
@@ -84,8 +83,21 @@ def sweep(
         return _submitted(function, values, executor, bar, label)
 
 
+class _NoBar:
+    """In the place of a progress bar, which makes a lock for processes even if it is not shown."""
+
+    def __enter__(self) -> _NoBar:
+        return self
+
+    def __exit__(self, *_) -> None:
+        pass
+
+    def update(self, count: int = 1) -> None:
+        pass
+
+
 def _submitted(
-    function: Callable, values: list, executor: Executor, bar: tqdm, label: str
+    function: Callable, values: list, executor: Executor, bar: tqdm | _NoBar, label: str
 ) -> list[Result]:
     """Compute in chunks on the executor; the first error cancels what has not begun."""
     length = -(-len(values) // _MOST_TASKS) or 1

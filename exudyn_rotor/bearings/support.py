@@ -17,6 +17,7 @@ COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
 _TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))  # ẽ of displacement and rotation
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
+Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
@@ -94,23 +95,31 @@ class Support:
         damping[3:, 3:] = self._matrix("tilt_damping", speed)
         return stiffness, damping
 
-    def terms(self, speed: float) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+    def terms(self, speed: float) -> tuple[Harmonics, Harmonics]:
         """Return Fourier terms in θ of damping and stiffness seen from the rotor, each (6, 6).
-
-        A support that stands still damps the inertial velocity: the rotor sees u_inertial =
-        R(θ) u, whose rate is R(u̇ + Ω ẽ u), so part of the damping becomes a stiffness.
 
         Raises
         ------
         ValueError
             If the speed is beyond a table that may not be extrapolated.
         """
+        damping, stiffness, carried = self.parts(speed)
+        both = {n: speed * X for n, X in carried.items()}
+        for n, X in stiffness.items():
+            both[n] = both[n] + X if n in both else X
+        return damping, both
+
+    def parts(self, speed: float) -> tuple[Harmonics, Harmonics, Harmonics]:
+        """Return what :meth:`terms` does, without Ω: of damping, stiffness, and stiffness per Ω.
+
+        A support that stands still damps the inertial velocity: the rotor sees u_inertial =
+        R(θ) u, whose rate is R(u̇ + Ω ẽ u), so part of the damping becomes a stiffness.
+        """
         self.check_range(speed)
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
-            return {0: damping}, {0: stiffness}
-        carried = stiffness + speed * damping @ _TURN
-        return turned_harmonics(damping), turned_harmonics(carried)
+            return {0: damping}, {0: stiffness}, {}
+        return tuple(turned_harmonics(X) for X in (damping, stiffness, damping @ _TURN))
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""
@@ -121,6 +130,11 @@ class Support:
     def stiffness_varies(self) -> bool:
         """True when a stiffness depends on the spin speed."""
         return varies(self.stiffness) or varies(self.tilt_stiffness)
+
+    @property
+    def varies(self) -> bool:
+        """True when any coefficient depends on the spin speed."""
+        return any(varies(getattr(self, name)) for name in COEFFICIENTS)
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed [rad/s] beyond the end of a table; rounding at the end is none.

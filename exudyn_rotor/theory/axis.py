@@ -92,7 +92,7 @@ class SpinAxis:
         """``I − e eᵀ``."""
         return np.eye(3) - self._along
 
-    @property
+    @cached_property
     def plane(self) -> np.ndarray:
         """``N = null(eᵀ)`` (89), shape (3, 2): unit vectors with n1 × n2 = e.
 
@@ -105,7 +105,7 @@ class SpinAxis:
             first = np.eye(3)[np.argmin(np.abs(e))]
             first = first - e * (e @ first)
             first = first / np.linalg.norm(first)
-        return np.column_stack([first, np.cross(e, first)])
+        return checks.read_only(np.column_stack([first, np.cross(e, first)]))
 
     def rotation(self, angle: float) -> np.ndarray:
         """``A(θ) = I cos θ + ẽ sin θ + (1 − cos θ) e eᵀ`` (55), shape (3, 3); θ in rad."""

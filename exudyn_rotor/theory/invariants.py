@@ -214,21 +214,22 @@ class Invariants:
         ``I⁻¹ Σ M y × ψ`` with y from the centre of mass and I the tensor of inertia about it. What
         has no inertia does not turn.
         """
-        central = self.moved(self.center)
-        inertia = np.trace(central.J) * np.eye(3) - central.J
-        momentum = np.einsum("aib,abk->ik", _EPSILON, central.P)
+        J, P = self.moments(self.center)
+        inertia = np.trace(J) * np.eye(3) - J
+        momentum = np.einsum("aib,abk->ik", _EPSILON, P)
         return checks.read_only(np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum)
 
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""
         shift = checks.vector(origin, "origin", "m")
+        J, P = self.moments(shift)
+        return replace(self, center=self.center - shift, J=J, P=P)
+
+    def moments(self, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return J and P about another origin, given from the present one [m]."""
         cross = self.mass * np.outer(self.center, shift)
-        return replace(
-            self,
-            center=self.center - shift,
-            J=self.J - cross - cross.T + self.mass * np.outer(shift, shift),
-            P=self.P - shift[:, None, None] * self.S[None, :, :],
-        )
+        J = self.J - cross - cross.T + self.mass * np.outer(shift, shift)
+        return J, self.P - shift[:, None, None] * self.S[None, :, :]
 
     def reversed(self) -> Invariants:
         """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""

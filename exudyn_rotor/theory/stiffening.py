@@ -258,9 +258,9 @@ class _RigidSplit:
 
 def _rigid_split(invariants: Invariants) -> _RigidSplit:
     """Split every column by mass-orthogonality (Tisserand)."""
-    central, rotation = invariants.moved(invariants.center), invariants.mean_rotation
-    P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, central.J)
-    return _RigidSplit(rotation, central.P - P_rigid, central.J)
+    (J, P), rotation = invariants.moments(invariants.center), invariants.mean_rotation
+    P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, J)
+    return _RigidSplit(rotation, P - P_rigid, J)
 
 
 def _work_hessian(split: _RigidSplit, field: np.ndarray) -> np.ndarray:

@@ -30,6 +30,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
+from exudyn_rotor.threads import one_thread
 
 _FULL_MODES = 10
 _SLOW = 1.0  # rad/s
@@ -93,7 +94,8 @@ def campbell(
         for by `modes`; without, at those up to twice the highest speed and at the lowest six. None
         for no estimate.
     executor : concurrent.futures.Executor, optional
-        Computes the speeds. A large SolidRotor does not use it: its speeds share one subspace.
+        Computes the modes at the speeds. A large SolidRotor does not use it: its speeds share one
+        subspace.
     progress : bool, optional
         Show a progress bar.
 
@@ -157,9 +159,8 @@ def campbell(
     if not model.gives_all:
         fastest = values[np.argmax(np.abs(values))]
         computed = count if not seen else _computed(space, count, fastest, tolerance, content)
-    task = _Task(space, computed, tolerance, content, seen)
-    workers = None if space.is_shared else executor
-    solved = sweep(task, values, executor=workers, progress=progress, label="Campbell")
+    modes_at = _modes_at(space, values, tolerance, executor, progress)
+    solved = _classified(modes_at, values, content, computed, seen)
     tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count, seen)
     inertial = np.array([entry.inertial for entry in solved])
@@ -171,19 +172,32 @@ def campbell(
     return result
 
 
+@one_thread()
+def _modes_at(
+    space: Space, speeds: np.ndarray, tolerance: float, executor: Executor | None, progress: bool
+) -> list[FloquetModes]:
+    """Return the modes at all speeds; at once where nothing changes in time."""
+    if executor is None and not progress:
+        try:
+            modes = space.constant_modes(speeds)
+        except ValueError:
+            modes = None  # one by one below, so that the error names its speed
+        if modes is not None:
+            return modes
+    task = _Task(space, tolerance)
+    workers = None if space.is_shared else executor
+    return sweep(task, speeds, executor=workers, progress=progress, label="Campbell")
+
+
 @dataclass(frozen=True, eq=False)
 class _Task:
     """Solves one speed; picklable where the space is, so that processes can do it."""
 
     space: Space
-    count: int
     tolerance: float
-    content: WhirlContent
-    seen: bool
 
-    def __call__(self, speed: float) -> _Solved:
-        modes = self.space.modes(speed, self.tolerance)
-        return _classified(modes, speed, self.content, self.count, self.seen)
+    def __call__(self, speed: float) -> FloquetModes:
+        return self.space.modes(speed, self.tolerance)
 
 
 class _Solved(NamedTuple):
@@ -199,22 +213,29 @@ class _Solved(NamedTuple):
         return _Solved(self.modes.columns(chosen), *(array[chosen] for array in self[1:]))
 
 
+@one_thread()
 def _classified(
-    modes: FloquetModes, speed: float, content: WhirlContent, count: int, seen: bool
-) -> _Solved:
+    modes: Sequence[FloquetModes],
+    speeds: Sequence[float],
+    content: WhirlContent,
+    count: int,
+    seen: bool,
+) -> list[_Solved]:
     """Return the modes ascending as they are `seen` from outside, or in the rotor frame.
 
     Overdamped ones, which have the inertial frequency 0, stand behind the others.
     """
-    vectors, *classified = content.named(modes, speed)
-    lowest = replace(modes, vectors=vectors).columns(np.arange(count))
-    inertial, codes, diameters = (array[:count] for array in classified)
-    growth, resolution = lowest.values.real, lowest.resolution
-    moves = oscillates(growth, inertial, resolution)
-    inertial = np.where(moves, inertial, 0.0)
-    key = _ranks(inertial) if seen else np.arange(count)
-    order = np.lexsort((key, ~moves & (growth < -resolution)))
-    return _Solved(lowest, inertial, codes, diameters).columns(order)
+    solved = []
+    for entry, (vectors, *named) in zip(modes, content.named_at(modes, speeds), strict=True):
+        lowest = replace(entry, vectors=vectors).columns(np.arange(count))
+        inertial, codes, diameters = (array[:count] for array in named)
+        growth, resolution = lowest.values.real, lowest.resolution
+        moves = oscillates(growth, inertial, resolution)
+        inertial = np.where(moves, inertial, 0.0)
+        key = _ranks(inertial) if seen else np.arange(count)
+        order = np.lexsort((key, ~moves & (growth < -resolution)))
+        solved.append(_Solved(lowest, inertial, codes, diameters).columns(order))
+    return solved
 
 
 def _ranks(frequencies: np.ndarray) -> np.ndarray:
@@ -235,7 +256,7 @@ def _computed(
     """
     while True:
         modes = space.modes(speed, tolerance)
-        lowest = _classified(modes, speed, content, space.count, True).inertial[:count]
+        lowest = _classified([modes], [speed], content, space.count, True)[0].inertial[:count]
         if modes.values.imag.max() >= lowest.max() + abs(speed) or not space.ask_for_more():
             return space.count
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.periodic.eigenvalues import groups
+from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -64,25 +64,25 @@ def track(
     columns[0] = np.arange(count)
     continued = np.ones((len(modes), count), dtype=bool)
     signed = modes[0].values.imag.copy()
-    last = _stack(modes[0])
+    last = _Motions.of(modes[0], weigh)
     for step in range(1, len(modes)):
         change = abs(speeds[step] - speeds[step - 1])
         cost = np.full((count, count), np.inf)
         choice = np.zeros((count, count), dtype=np.int64)
         same = np.zeros((count, count), dtype=bool)
-        copies = list(_copies(modes[step], speeds[step]))
+        copies = list(_copies(modes[step], speeds[step], weigh))
         together = _of_one_value(modes[step])
         at_rest = 0.0 in (speeds[step - 1], speeds[step])
-        for number, (frequency, stack) in enumerate(copies):
-            # at rest nothing turns, and all harmonics are one motion
-            pair = (_together(last), _together(stack)) if at_rest else (last, stack)
-            likeness = _mac(*pair, weigh)
+        # at rest nothing turns, and all harmonics are one motion
+        before = last.together() if at_rest else last
+        for number, (frequency, motions) in enumerate(copies):
+            likeness = before.likeness(motions.together() if at_rest else motions)
             jump = np.abs(frequency[None, :] - signed[:, None])
             allowed = _STEEPEST * change + 1e-3 * np.abs(signed[:, None]) + modes[step].resolution
             entry = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
             better = entry < cost
             cost[better], choice[better] = entry[better], number
-            alike = likeness @ together >= _LEAST_LIKENESS
+            alike = (likeness if together is None else likeness @ together) >= _LEAST_LIKENESS
             alike &= jump <= _MOST_CHANGES * allowed
             alike |= _both_at_rest(signed, frequency)
             same[better] = alike[better]
@@ -90,64 +90,98 @@ def track(
         columns[step, rows] = matched
         continued[step, rows] = same[rows, matched]
         used = choice[rows, matched]
-        signed = np.array([copies[c][0][j] for c, j in zip(used, matched, strict=True)])
-        orders = sorted({m for c in used for m in copies[c][1]})
-        last = {
-            m: np.column_stack(
-                [
-                    copies[c][1][m][:, j] if m in copies[c][1] else 0.0 * modes[step].central[:, j]
-                    for c, j in zip(used, matched, strict=True)
-                ]
-            )
-            for m in orders
-        }
+        signed = np.array([copy[0] for copy in copies])[used, matched]
+        last = _Motions.chosen([copy[1] for copy in copies], used, matched)
     return Tracks(columns, continued)
 
 
 def _both_at_rest(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     """Return True for pairs of free motions, whose shapes are arbitrary, shape (k, k)."""
     rest = [np.abs(values) <= _NO_FREQUENCY * np.abs(values).max() for values in (before, after)]
-    return np.outer(*rest)
+    return rest[0][:, None] & rest[1]
 
 
-def _of_one_value(modes: FloquetModes) -> np.ndarray:
-    """Return 1 where two modes have one eigenvalue, so that their shapes are arbitrary, (k, k)."""
+def _of_one_value(modes: FloquetModes) -> np.ndarray | None:
+    """Return 1 where two modes have one eigenvalue, so that their shapes are arbitrary, (k, k).
+
+    None where all differ.
+    """
+    groups = repeated(modes.values, modes.resolution)
+    if not groups:
+        return None
     result = np.eye(modes.values.size)
-    for group in groups(modes.values, modes.resolution):
+    for group in groups:
         result[np.ix_(group, group)] = 1.0
     return result
 
 
-Stack = dict[int, np.ndarray]
+@dataclass(frozen=True, eq=False)
+class _Motions:
+    """Harmonics of motions by their number: X (c, k), M X, and ``Σ XᴴMX`` (k,)."""
+
+    vectors: dict[int, np.ndarray]
+    weighed: dict[int, np.ndarray]
+    norms: np.ndarray
+
+    @classmethod
+    def of(cls, modes: FloquetModes, weigh: Callable[[np.ndarray], np.ndarray]) -> _Motions:
+        vectors = {int(m): X for m, X in zip(modes.orders, modes.vectors, strict=True)}
+        return cls._of(vectors, {m: weigh(X) for m, X in vectors.items()})
+
+    @classmethod
+    def _of(cls, vectors: dict[int, np.ndarray], weighed: dict[int, np.ndarray]) -> _Motions:
+        return cls(vectors, weighed, sum(_products(X, weighed[m]) for m, X in vectors.items()))
+
+    @classmethod
+    def chosen(cls, copies: Sequence[_Motions], used: np.ndarray, columns: np.ndarray) -> _Motions:
+        """Return motions of which number i is column ``columns[i]`` of copy ``used[i]``."""
+        parts = []
+        for name in ("vectors", "weighed"):
+            part: dict[int, np.ndarray] = {}
+            for number in np.unique(used):
+                places = np.flatnonzero(used == number)
+                for m, X in getattr(copies[number], name).items():
+                    part.setdefault(m, np.zeros_like(X))[:, places] = X[:, columns[places]]
+            parts.append(part)
+        return cls(*parts, copies[0].norms[columns])
+
+    def moved(self, shift: int) -> _Motions:
+        """Return the same motions with a frequency ``shift·Ω`` higher."""
+        parts = ({m - shift: X for m, X in part.items()} for part in (self.vectors, self.weighed))
+        return _Motions(*parts, self.norms)
+
+    def conjugate(self) -> _Motions:
+        """Return the conjugate motions."""
+        parts = ({-m: X.conj() for m, X in part.items()} for part in (self.vectors, self.weighed))
+        return _Motions(*parts, self.norms)
+
+    def together(self) -> _Motions:
+        """Return the sum of all harmonics as one."""
+        return _Motions._of({0: sum(self.vectors.values())}, {0: sum(self.weighed.values())})
+
+    def likeness(self, other: _Motions) -> np.ndarray:
+        """Return the modal assurance criterion of all pairs, shape (k, k)."""
+        product = np.zeros((len(self.norms), len(other.norms)), dtype=complex)
+        for m, X in self.vectors.items():
+            if m in other.weighed:
+                product += X.conj().T @ other.weighed[m]
+        sizes = np.maximum(self.norms[:, None] * other.norms, 1e-300)
+        return (product.real**2 + product.imag**2) / sizes
 
 
-def _stack(modes: FloquetModes) -> Stack:
-    return {int(m): X for m, X in zip(modes.orders, modes.vectors, strict=True)}
-
-
-def _together(stack: Stack) -> Stack:
-    return {0: sum(stack.values())}
-
-
-def _copies(modes: FloquetModes, speed: float) -> Iterator[tuple[np.ndarray, Stack]]:
+def _copies(
+    modes: FloquetModes, speed: float, weigh: Callable[[np.ndarray], np.ndarray]
+) -> Iterator[tuple[np.ndarray, _Motions]]:
     """Yield signed frequencies and harmonics of the same motions in their other forms."""
-    stack = _stack(modes)
+    motions = _Motions.of(modes, weigh)
     step = int(modes.orders[1] - modes.orders[0]) if len(modes.orders) > 1 else 0
     for shift in (-step, 0, step) if step else (0,):
-        moved = {m - shift: X for m, X in stack.items()}
+        moved = motions.moved(shift)
         frequency = modes.values.imag + shift * speed
         yield frequency, moved
-        yield -frequency, {-m: X.conj() for m, X in moved.items()}
+        yield -frequency, moved.conjugate()
 
 
-def _mac(first: Stack, second: Stack, weigh: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Return the modal assurance criterion of all pairs, shape (k, k)."""
-    product = sum(X.conj().T @ weigh(second[m]) for m, X in first.items() if m in second)
-    if np.ndim(product) == 0:
-        return np.zeros((next(iter(first.values())).shape[1],) * 2)
-    norms = [_norms(stack, weigh) for stack in (first, second)]
-    return np.abs(product) ** 2 / np.maximum(np.outer(*norms), 1e-300)
-
-
-def _norms(stack: Stack, weigh: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    return sum(np.einsum("ck,ck->k", X.conj(), weigh(X)).real for X in stack.values())
+def _products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return ``Re Σ X̄Y`` of each column."""
+    return np.sum(first.real * second.real + first.imag * second.imag, axis=0)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
-from exudyn_rotor.linear.periodic.eigenvalues import groups
+from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -42,6 +42,10 @@ _AXIAL_TERMS = 6
 _RADIAL_TERMS = 2
 # share of a field that others must leave over to count as new
 _NEW_SHARE = 1e-2
+_MANY = 100_000  # entries of vectors
+
+
+Named = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,22 +133,51 @@ class WhirlContent:
         combined = span @ np.linalg.solve(lower.conj().T, directions)
         return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
 
-    def named(
-        self, modes: FloquetModes, speed: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def named(self, modes: FloquetModes, speed: float) -> Named:
         """Return vectors, repeated modes as waves of one sense, and what :meth:`classify` does.
 
         Modes with Im λ < 0 are looked at as their conjugates.
         """
-        vectors = modes.vectors.astype(complex)
-        negative = modes.values.imag < 0.0
-        vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
-        for half in (np.flatnonzero(~negative), np.flatnonzero(negative)):
-            for group in groups(modes.values[half], modes.resolution):
-                if len(group) > 1:
+        return self.named_at([modes], [speed])[0]
+
+    def named_at(self, modes: Sequence[FloquetModes], speeds: Sequence[float]) -> list[Named]:
+        """Return what :meth:`named` does, for several speeds at once."""
+        vectors = self._as_waves(modes)
+        alike: dict[tuple, list[int]] = {}
+        for index, entry in enumerate(modes):
+            alone = index if entry.vectors.size > _MANY else None  # saves time for small ones only
+            alike.setdefault((entry.orders.tobytes(), alone), []).append(index)
+        result: dict[int, Named] = {}
+        for rows in alike.values():
+            counts = [modes[row].values.size for row in rows]
+            nu = np.abs(np.concatenate([modes[row].values.imag for row in rows]))
+            classified = self.classify(
+                np.concatenate([vectors[row] for row in rows], axis=2),
+                modes[rows[0]].orders,
+                nu,
+                np.repeat([speeds[row] for row in rows], counts),
+            )
+            parts = (np.split(array, np.cumsum(counts)[:-1]) for array in classified)
+            for row, *entries in zip(rows, *parts, strict=True):
+                result[row] = (vectors[row], *entries)
+        return [result[row] for row in range(len(modes))]
+
+    def _as_waves(self, modes: Sequence[FloquetModes]) -> list[np.ndarray]:
+        """Return vectors (h, c, k) with Im λ ≥ 0, repeated modes as waves of one sense."""
+        result, last = [], (None, None)
+        for entry in modes:
+            vectors = entry.vectors.astype(complex)
+            negative = entry.values.imag < 0.0
+            vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
+            for half in (np.flatnonzero(~negative), np.flatnonzero(negative)):
+                for group in repeated(entry.values[half], entry.resolution):
                     copies = vectors[:, :, half[group]]
-                    vectors[:, :, half[group]] = self.polarised(copies, modes.orders)
-        return vectors, *self.classify(vectors, modes.orders, np.abs(modes.values.imag), speed)
+                    # free motions are the same at all speeds
+                    if not np.array_equal(copies, last[0]):
+                        last = copies, self.polarised(copies, entry.orders)
+                    vectors[:, :, half[group]] = last[1]
+            result.append(vectors)
+        return result
 
     def classify(
         self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float | np.ndarray
@@ -310,18 +343,23 @@ def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
     )
     direction = scaled * np.exp(1j * np.arctan2(y, x))
     fields = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
-    known = np.zeros((len(points), 0), dtype=complex)
-    spaces: dict[int, np.ndarray] = {}
+    spaces, known = [], np.zeros((len(points), 0))
     for count in range(highest + 1):
         forward = _new_fields(direction[:, None] ** count * fields, known)
         # both senses at once, so that neither is preferred: one has the conjugate fields
-        spaces |= {count: forward, -count: forward.conj()}
-        added = [forward, forward.conj()] if count else [forward]
+        both = np.hstack([forward.real, forward.imag]) * np.sqrt(2.0) if count else forward.real
+        spaces.append(both)
         if count < highest:
-            known = np.linalg.qr(np.hstack([known, *added]))[0]
-    fit = np.linalg.pinv(np.hstack(list(spaces.values())), rcond=1e-6)
-    ends = np.cumsum([space.shape[1] for space in spaces.values()])
-    return dict(zip(spaces, np.split(fit, ends[:-1]), strict=True))
+            known = np.linalg.qr(np.hstack([known, both]))[0]
+    ends = np.cumsum([space.shape[1] for space in spaces])
+    # in cosines and sines, which is real; exp(±ilα) is a unitary combination of them
+    fits = np.split(np.linalg.pinv(np.hstack(spaces), rcond=1e-6), ends[:-1])
+    result = {0: fits[0].astype(complex)}
+    for count, fit in enumerate(fits[1:], start=1):
+        cosine, sine = np.split(fit, 2)
+        forward = np.sqrt(0.5) * (cosine - 1j * sine)
+        result |= {count: forward, -count: forward.conj()}
+    return result
 
 
 def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:

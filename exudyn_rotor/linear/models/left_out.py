@@ -144,25 +144,32 @@ class LeftOut:
 
         Free rigid motions, λ = 0, are in every basis; theirs is zero.
         """
-        system, lacking = self.at(speed)
-        pencil = hill_matrices(system, modes.orders)
-        central = np.repeat(np.abs(modes.orders) <= system.step, len(lacking))
-        left_out = np.tile(lacking, len(modes.orders))
-        sizes = np.linalg.norm(modes.vectors, axis=1) > _SMALL
         shifts = np.zeros(len(modes.values), dtype=complex)
         if self.finer.size == self.kept:
             return shifts
+        system, lacking = self.at(speed)
         vectors = modes.vectors
         if self.held:
             vectors = self.finer.given.spin.rest().T @ vectors
+        start = np.zeros((len(modes.orders), len(lacking), len(shifts)), dtype=complex)
+        start[:, ~lacking] = vectors
+        start = start.reshape(-1, len(shifts))
+        pencil, used = hill_matrices(system, modes.orders), self._used(system, modes, lacking)
         for column in np.flatnonzero(modes.values):
-            used = np.where(left_out, central, np.repeat(sizes[:, column], len(lacking)))
-            start = np.zeros((len(modes.orders), len(lacking)), dtype=complex)
-            start[:, ~lacking] = vectors[:, :, column]
-            used = np.flatnonzero(used)
-            M, D, K = (X[np.ix_(used, used)] for X in pencil)
-            shifts[column] = _shift(M, D, K, modes.values[column], start.ravel()[used])
+            rows = np.flatnonzero(used[:, column])
+            parts = pencil
+            if len(rows) < len(start):
+                parts = tuple(X[np.ix_(rows, rows)] for X in pencil)
+            shifts[column] = _shift(*parts, modes.values[column], start[rows, column])
         return shifts
+
+    @staticmethod
+    def _used(system: PeriodicSystem, modes: FloquetModes, lacking: np.ndarray) -> np.ndarray:
+        """Return which unknowns count for each mode: those that move, and of others the central."""
+        central = np.abs(modes.orders) <= system.step
+        moving = np.linalg.norm(modes.vectors, axis=1) > _SMALL
+        used = np.where(lacking[:, None], central[:, None, None], moving[:, None])
+        return used.reshape(-1, len(modes.values))
 
     def _undamped_at(self, speed: float) -> PeriodicSystem:
         """Return undamped equations; D is linear and K quadratic in Ω where supports are not."""

@@ -87,6 +87,9 @@ class Space(Protocol):
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return at least the modes asked for; `tolerance` is that of :func:`floquet_modes`."""
 
+    def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
+        """Return all modes of equations that do not change in time; None where that cannot be."""
+
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
     ) -> tuple[FloquetModes, PeriodicSystem]:

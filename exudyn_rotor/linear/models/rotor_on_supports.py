@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
@@ -132,8 +133,16 @@ class LinearRotor(SupportedRotor):
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return the interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
-        turn = np.kron(np.eye(2), axes_of(self.rotor.axis).T)
-        return turn @ self.rotor.interfaces[name].motion
+        if name not in self._interface_motions:
+            motion = self.rotor.interfaces[name].motion.reshape(2, 3, -1)
+            turned = axes_of(self.rotor.axis).T @ motion
+            self._interface_motions[name] = checks.read_only(turned.reshape(6, -1))
+        return self._interface_motions[name]
+
+    @cached_property
+    def _interface_motions(self) -> dict[str, np.ndarray]:
+        """Those asked for so far."""
+        return {}
 
     @cached_property
     def _spin_terms(self) -> SpinTerms:
@@ -150,28 +159,43 @@ class LinearRotor(SupportedRotor):
             },
         )
 
-    def _supported_motion(self, index: int) -> np.ndarray:
-        """Return the motion (6, k) at a support, which a free spin does not displace."""
-        motion = self.interface_motion(self.supports[index].interface)
+    @cached_property
+    def _supported_motions(self) -> list[np.ndarray]:
+        """The motions (6, k) at the supports, which a free spin does not displace."""
+        motions = [self.interface_motion(support.interface) for support in self.supports]
         if self.spin is None:
-            return motion
-        return motion + np.outer(self.spin.shifts[index], self.spin.momentum)
+            return motions
+        shifts = zip(motions, self.spin.shifts, strict=True)
+        return [U + np.outer(shift, self.spin.momentum) for U, shift in shifts]
+
+    @cached_property
+    def _constant(self) -> tuple[Terms, Terms, Terms]:
+        """Damping, stiffness and stiffness per Ω of the supports that do not vary with the speed.
+
+        With those of the rotor itself, but for its gyroscopic and centrifugal terms.
+        """
+        D, K, carried = {0: self.invariants.D}, {0: self.invariants.K}, {}
+        for support, U in zip(self.supports, self._supported_motions, strict=True):
+            if not support.varies:
+                for terms, harmonics in zip((D, K, carried), support.parts(0.0), strict=True):
+                    _add(terms, harmonics, U)
+        return D, K, carried
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
-        inv = self.invariants
-        M = {0: inv.M}
-        D = {0: inv.D + self.terms.damping(speed)}
-        K = {0: inv.K + self._spin_terms.stiffness(speed)}
-        for index, support in enumerate(self.supports):
-            U = self._supported_motion(index)
-            damping, stiffness = support.terms(speed)
-            _add(D, damping, U)
-            _add(K, stiffness, U)
+        D, K, carried = (dict(terms) for terms in self._constant)
+        for n, X in carried.items():
+            K[n] = K.get(n, 0.0) + speed * X
+        D[0] = D[0] + self.terms.damping(speed)
+        K[0] = K[0] + self._spin_terms.stiffness(speed)
+        for support, U in zip(self.supports, self._supported_motions, strict=True):
+            if support.varies:
+                for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
+                    _add(terms, harmonics, U)
         if self.spin is not None and self.spin.coupled:
             torsion = self.steady_torsion(speed)
             K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)
-        return PeriodicSystem(float(speed), M, D, K, inv.H)
+        return PeriodicSystem(float(speed), {0: self.invariants.M}, D, K, self.invariants.H)
 
     def steady_torsion(self, speed: float) -> float:
         """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].
@@ -179,7 +203,7 @@ class LinearRotor(SupportedRotor):
         ``F·ρ``, see :mod:`exudyn_rotor.linear.models.spin`; F is the mean over a revolution of
         what the rotor's own unbalance causes.
         """
-        motions = [self._supported_motion(index) for index in range(len(self.supports))]
+        motions = self._supported_motions
         pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
         K = self.invariants.K + self._spin_terms.stiffness(speed)
         for U, pull in zip(motions, pulls, strict=True):

@@ -121,6 +121,9 @@ class Subspace:
         """
         return self._converged(speed, lambda modes: np.arange(self.count), tolerance)
 
+    def constant_modes(self, speeds: Sequence[float]) -> None:
+        """Return None: the subspace grows from speed to speed."""
+
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
     ) -> tuple[FloquetModes, PeriodicSystem]:

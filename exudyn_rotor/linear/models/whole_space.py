@@ -9,7 +9,12 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from exudyn_rotor.linear.periodic.exponents import motions
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, floquet_modes
+from exudyn_rotor.linear.periodic.floquet_modes import (
+    FloquetModes,
+    constant_modes,
+    floquet_modes,
+    stands_still,
+)
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
@@ -58,6 +63,18 @@ class WholeSpace:
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return all modes."""
         return floquet_modes(self.at(speed), tolerance=tolerance)
+
+    def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
+        """Return all modes at all speeds at once, which is faster; None where they are periodic."""
+        systems = [self.at(speed) for speed in speeds]
+        first = systems[0]
+        alike = all(
+            system.rounding == first.rounding and np.array_equal(system.M[0], first.M[0])
+            for system in systems[1:]
+        )
+        if not alike or not all(map(stands_still, systems)):
+            return None
+        return constant_modes(systems)
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True

@@ -13,12 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import (
-    Companion,
-    inverse_iterated,
-    resolution_of,
-    resolved,
-)
+from exudyn_rotor.linear.periodic.companion import Companion
+from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill

@@ -7,12 +7,13 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import groups, merged, quadratic_modes
+from exudyn_rotor.linear.periodic.eigenvalues import merged, quadratic_modes, repeated
 from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
@@ -71,16 +72,29 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     ValueError
         If modes are lost, or the harmonics do not die away.
     """
-    if system.is_constant or system.speed == 0.0:
-        given = *system.matrices(0.0), system.rounding
-        values, vectors, resolution, bounds = quadratic_modes(*given)
-        return FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
-
+    if stands_still(system):
+        return constant_modes([system])[0]
     chosen, solution, _ = solve_hill(
         system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance
     )
     rest = solution.orders, solution.resolution, chosen.bounds
     return FloquetModes(chosen.values, chosen.shapes, *rest)
+
+
+def stands_still(system: PeriodicSystem) -> bool:
+    """Return True where the coefficients of a system do not change in time."""
+    return system.is_constant or system.speed == 0.0
+
+
+def constant_modes(systems: Sequence[PeriodicSystem]) -> list[FloquetModes]:
+    """Return the motions of systems that do not change in time; they share mass and rounding."""
+    M, D, K = zip(*(system.matrices(0.0) for system in systems), strict=True)
+    return [
+        FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
+        for values, vectors, resolution, bounds in quadratic_modes(
+            M[0], np.array(D), np.array(K), systems[0].rounding
+        )
+    ]
 
 
 def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
@@ -89,9 +103,8 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     values = merged(solution.values, solution.states, resolution)
     lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
     shapes = solution.shapes / lengths
-    for group in groups(values, resolution):
-        if len(group) > 1:
-            shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
+    for group in repeated(values, resolution):
+        shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
     base = int(orders[1] - orders[0]) * speed
     columns = _families(values, shapes, orders, base)
     if columns is None:

@@ -19,7 +19,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import Companion, resolution_of, resolved
+from exudyn_rotor.linear.periodic.companion import Companion
+from exudyn_rotor.linear.periodic.eigenvalues import resolution_of, resolved
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 
 MOST_UNKNOWNS = 1600  # in first-order form
@@ -30,8 +31,10 @@ def hill_matrices(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (M, D, K) of ``(λ²M + λD + K) X = F`` for the harmonics `orders`.
 
-    Shape (h k, h k), complex, harmonic by harmonic in the order given.
+    Shape (h k, h k), harmonic by harmonic in the order given; real for the harmonic 0 alone.
     """
+    if len(orders) == 1 and orders[0] == 0:
+        return system.M[0], system.D[0], system.K[0]
     M, D, K = (_blocks(terms, orders, system.size) for terms in (system.M, system.D, system.K))
     rate = np.repeat(1j * orders * system.speed, system.size)
     return M, D + 2.0 * M * rate, K + D * rate + M * rate**2

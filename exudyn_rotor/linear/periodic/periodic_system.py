@@ -102,4 +102,6 @@ def fold(exponents: np.ndarray, base: float) -> np.ndarray:
 
 
 def _sum(terms: Terms, theta: float) -> np.ndarray:
+    if len(terms) == 1:
+        return terms[0].real
     return sum(term * np.exp(1j * n * theta) for n, term in terms.items()).real

@@ -9,8 +9,8 @@ BEARINGS = [
         "test_stability.py::test_a_symmetric_rotor_does_not_depend_on_the_frame",
         (
             "circulatory part of a damper reversed",
-            "carried = stiffness + speed * damping",
-            "carried = stiffness - speed * damping",
+            "both = {n: speed * X for n, X in carried.items()}",
+            "both = {n: -speed * X for n, X in carried.items()}",
         ),
     ),
     *mutations(

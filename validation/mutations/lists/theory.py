@@ -206,8 +206,8 @@ THEORY = [
         "test_stiffening.py",
         (
             "second moments for the tensor of inertia",
-            "np.trace(central.J) * np.eye(3) - central.J",
-            "central.J",
+            "np.trace(J) * np.eye(3) - J",
+            "J",
         ),
     ),
     *mutations(

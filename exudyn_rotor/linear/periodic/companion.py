@@ -1,0 +1,216 @@
+"""First-order form of ``M ẍ + D ẋ + K x = 0``: its eigenvalues and how rounding changes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+
+# so large a left vector is that of a defective eigenvalue
+_LARGE = 1e100
+# asymmetry of a mass matrix, relative to its largest entry, that rounding may leave
+_ASYMMETRY = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Companion:
+    """First-order form ``ż = A z`` in which the length of z is its energy.
+
+    With ``M = LLᵀ`` and the symmetric part of the stiffness ``L⁻¹K₊L⁻ᵀ = VΛVᵀ``, ``x = L⁻ᵀV q``
+    and ``z = (S q, q̇)``, ``S² = |Λ|``: without damping and circulatory forces and with Λ > 0, A is
+    skew-symmetric, its eigenvectors are orthogonal, and rounding of A shifts no eigenvalue by more
+    than its own size, however stiff some springs are. Of one system, or of several that have the
+    mass matrix in common: then everything has one more axis in front.
+
+    Attributes
+    ----------
+    A : ndarray, shape (…, 2k, 2k)
+    axes : ndarray, shape (…, k, k)
+        ``L⁻ᵀV``: displacements of q.
+    sizes : ndarray, shape (…, k)
+        Diagonal of S [1/s].
+    noises : ndarray, shape (3, …)
+        Rounding of ``L⁻¹K₊L⁻ᵀ`` [1/s²] and ``L⁻¹DL⁻ᵀ`` [1/s], and of the skew part of the stiffness
+        by storing it in one matrix with K₊ [1/s²]; Frobenius norms.
+    scale : ndarray, shape (…)
+        Largest frequency [1/s].
+    rounding : float
+        Relative error of the entries of D and K.
+    """
+
+    A: np.ndarray
+    axes: np.ndarray
+    sizes: np.ndarray
+    noises: np.ndarray
+    scale: np.ndarray
+    rounding: float
+
+    @classmethod
+    def of(
+        cls, M: np.ndarray, D: np.ndarray, K: np.ndarray, rounding: float = EPSILON
+    ) -> Companion:
+        """Return the form of ``M ẍ + D ẋ + K x = 0``.
+
+        `rounding` is the relative error of the entries of D and K; larger than that of one
+        operation, it is taken for an error without symmetry.
+
+        Raises
+        ------
+        ValueError
+            If the mass matrix is not symmetric positive definite, or entries are not finite.
+        """
+        if not all(np.all(np.isfinite(X)) for X in (M, D, K)):
+            raise ValueError("the system matrices have entries that are not finite")
+        if np.abs(M - M.T).max(initial=0.0) > _ASYMMETRY * np.abs(M).max(initial=0.0):
+            raise ValueError("the mass matrix is not symmetric")
+        try:
+            lower = la.cholesky(M, lower=True)
+        except la.LinAlgError as error:
+            raise ValueError(f"the mass matrix is not positive definite ({error})") from error
+        inverse = la.solve_triangular(lower, np.eye(len(M)), lower=True)
+        noise = _rounding(0.5 * (K + _transposed(K)), inverse.T, rounding)
+        stiffness = _congruent(0.5 * (K + _transposed(K)), inverse.T)
+        if not np.all(np.isfinite(stiffness)):
+            raise ValueError("the system matrices have entries that are not finite")
+        squares, turn = np.linalg.eigh(stiffness)
+        axes = inverse.T @ turn
+        circulatory, damping = _congruent(0.5 * (K - _transposed(K)), axes), _congruent(D, axes)
+        sides = np.linalg.norm(circulatory, axis=-2)
+        squared = np.maximum(np.abs(squares), np.maximum(sides, noise[..., None]))
+        fastest = np.sqrt(squared.max(axis=-1, initial=0.0))
+        scale = np.maximum(fastest, np.abs(damping).max(axis=(-2, -1), initial=0.0))
+        scale = np.where(scale > 0.0, scale, 1.0)
+        sizes = np.sqrt(np.where(squared > 0.0, squared, scale[..., None] ** 2))
+        one, size = np.eye(len(M)), len(M)
+        A = np.zeros((*K.shape[:-2], 2 * size, 2 * size))
+        A[..., :size, size:] = one * sizes[..., None]
+        A[..., size:, :size] = -(one * squares[..., None] + circulatory) / sizes[..., None, :]
+        A[..., size:, size:] = -damping
+        if not np.all(np.isfinite(A)):
+            raise ValueError("the system matrices have entries that are not finite")
+        # in one matrix with K₊
+        stored = np.where(np.any(circulatory, axis=(-2, -1)), noise, 0.0) / (4.0 * size)
+        noises = np.stack([noise, _rounding(D, inverse.T, rounding), stored])
+        return cls(A, axes, sizes, noises, scale, rounding)
+
+    @cached_property
+    def _solved(self) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues, and vectors z as columns of unit length."""
+        return np.linalg.eig(self.A)
+
+    @cached_property
+    def _left(self) -> np.ndarray:
+        """Left eigenvectors as rows."""
+        return _inverse(self._solved[1])
+
+    @cached_property
+    def _amounts(self) -> np.ndarray:
+        """Coordinates q of the vectors, from both halves by least squares, shape (…, k, 2k)."""
+        values, z = self._solved
+        values, sizes, count = values[..., None, :], self.sizes[..., None], self.sizes.shape[-1]
+        squared = sizes**2 + np.abs(values) ** 2
+        return (sizes * z[..., :count, :] + values.conj() * z[..., count:, :]) / squared
+
+    def values(self) -> np.ndarray:
+        """Return all 2k eigenvalues."""
+        return self._solved[0]
+
+    def modes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return all 2k eigenvalues, and vectors (x, λx/s) of unit length, s the scale."""
+        return self.values(), self._states[0]
+
+    @cached_property
+    def _states(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (x, λx/s), and the length of those that belong to unit vectors z."""
+        displacement = self.axes @ self._amounts
+        rates = (self.values() / self.scale[..., None])[..., None, :]
+        states = np.concatenate([displacement, displacement * rates], axis=-2)
+        lengths = np.linalg.norm(states, axis=-2)
+        return states / lengths[..., None, :], lengths
+
+    @cached_property
+    def errors(self) -> tuple[np.ndarray, np.ndarray]:
+        """By how much rounding can change eigenvalues and their real parts, each (…, 2k) [1/s].
+
+        To first order, with the left eigenvectors w of unit product with z: the eigensolver's own
+        error is that of a matrix ``A + E``, ``‖E‖ ≤ 2kε‖A‖``, and counts by the condition
+        ``‖w‖‖z‖``; source: LAPACK Users' Guide, Sect. 4.8. Rounding of K₊, ``w ΔK q``, is
+        symmetric but for its last digit: it changes no real part of an undamped motion. No error is
+        larger than ``‖A‖``.
+        """
+        z, left, count = self._solved[1], self._left, self.sizes.shape[-1]
+        most, amounts = np.linalg.norm(self.A, axis=(-2, -1))[..., None], self._amounts
+        stiff, damped, stored = self.noises[..., None]
+        with np.errstate(over="ignore"):  # of left vectors of a defective eigenvalue
+            left = np.clip(left.real, -_LARGE, _LARGE) + 1j * np.clip(left.imag, -_LARGE, _LARGE)
+            forced = _transposed(left[..., count:])
+            condition = np.linalg.norm(left, axis=-1) * np.linalg.norm(z, axis=-2)
+            whole = np.linalg.norm(forced, axis=-2) * np.linalg.norm(amounts, axis=-2)
+            real = _symmetric_norm(forced, amounts) if self.rounding == EPSILON else whole
+            solver = 2.0 * count * self.rounding * most * condition
+            solver += (damped * np.abs(self.values()) + stored) * whole
+            whole, real = (np.minimum(solver + stiff * each, most) for each in (whole, real))
+        # of what may be zero, the first order in the error says nothing about the sign of λ²
+        return whole, np.where(np.abs(self.values()) <= whole, whole, real)
+
+    def shifts(self, loads: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Return by how much forces on the left-hand side shift eigenvalues, to first order.
+
+        Parameters
+        ----------
+        loads : ndarray, shape (k, j)
+            What is added to ``(λ²M + λD + K) x`` of each mode of :meth:`modes`.
+        columns : ndarray of int, shape (j,)
+            Which modes these are.
+        """
+        left = self._left[columns, len(self.sizes) :]
+        accelerations = (self.axes.T @ loads) * self._states[1][columns]
+        return -np.einsum("jr,rj->j", left, accelerations)
+
+
+def _inverse(vectors: np.ndarray) -> np.ndarray:
+    """Return the inverse; rigid motions can make eigenvectors dependent."""
+    try:
+        return np.linalg.inv(vectors)
+    except np.linalg.LinAlgError:
+        if vectors.ndim == 2:
+            return np.linalg.pinv(vectors)
+        return np.stack([_inverse(each) for each in vectors])
+
+
+def _transposed(X: np.ndarray) -> np.ndarray:
+    """Return the transpose of each matrix."""
+    return X.swapaxes(-1, -2)
+
+
+def _rounding(X: np.ndarray, axes: np.ndarray, relative: float) -> np.ndarray:
+    """Return by how much rounding of the entries changes ``AᵀXA``, Frobenius norm."""
+    size = np.abs(axes)
+    changed = np.linalg.norm(size.T @ np.abs(X) @ size, axis=(-2, -1))
+    return 2.0 * X.shape[-1] * relative * changed
+
+
+def _symmetric_norm(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return the largest ``Re(wᵀEx)`` of real symmetric E of unit Frobenius norm, column by column.
+
+    That is the norm of the symmetric part of ``Re(w xᵀ) = p uᵀ − q vᵀ``.
+    """
+    p, q, u, v = left.real, left.imag, right.real, right.imag
+
+    def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.sum(a * b, axis=-2)
+
+    whole = dot(p, p) * dot(u, u) + dot(q, q) * dot(v, v) - 2.0 * dot(p, q) * dot(u, v)
+    crossed = dot(p, u) ** 2 + dot(q, v) ** 2 - 2.0 * dot(p, v) * dot(q, u)
+    return np.sqrt(np.maximum(0.5 * (whole + crossed), 0.0))
+
+
+def _congruent(X: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Return ``AᵀXA`` with exactly symmetric and skew parts."""
+    parts = [_transposed(axes) @ (0.5 * (X + sign * _transposed(X))) @ axes for sign in (1.0, -1.0)]
+    signed = zip(parts, (1.0, -1.0), strict=True)
+    return sum(0.5 * (Y + sign * _transposed(Y)) for Y, sign in signed)
