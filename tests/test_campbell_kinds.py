@@ -7,6 +7,7 @@ from test_campbell_frames import SHAFT, point_mass, rings
 
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speed_map, critical_speeds
 from exudyn_rotor.linear.modal.whirl import FORWARD
+from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 
 
 def test_overdamped_motions_stand_behind_the_others():
@@ -102,3 +103,15 @@ def test_other_critical_speeds_are_not_joined(axis):
         found = critical_speeds(rotor, supports=supports, nodal_diameters=[1])
         assert sorted(found.whirl) == ["backward", "backward", "forward", "forward"]
     np.testing.assert_array_equal(found.splits, 0.0)
+
+
+def test_systems_solved_at_once_have_their_own_free_motions():
+    """Springs 1 and 4 on other coordinates of four unit masses: λ = i, 2i and twice 0 each time."""
+    held = np.array([[0, 0, 1.0, 4.0], [1.0, 4.0, 0, 0], [1.0, 0, 4.0, 0]])
+    stiffnesses = held[:, :, None] * np.eye(4)
+    solved = quadratic_modes(np.eye(4), 0.0 * stiffnesses, stiffnesses)
+    for springs, (values, vectors, *_) in zip(held, solved, strict=True):
+        np.testing.assert_allclose(values, [0, 0, 1j, 2j], atol=1e-12)
+        share = np.sum(np.abs(vectors[springs == 0.0]) ** 2, axis=0)
+        np.testing.assert_allclose(share, [1, 1, 0, 0], atol=1e-12)
+        assert abs(np.vdot(*vectors[:, :2].T)) < 1e-12
