@@ -214,7 +214,7 @@ class Invariants:
         ``I⁻¹ Σ M y × ψ`` with y from the centre of mass and I the tensor of inertia about it. What
         has no inertia does not turn.
         """
-        J, P = self.moments(self.center)
+        J, P = moments_about(self, self.center)
         inertia = np.trace(J) * np.eye(3) - J
         momentum = np.einsum("aib,abk->ik", _EPSILON, P)
         return checks.read_only(np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum)
@@ -222,14 +222,8 @@ class Invariants:
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""
         shift = checks.vector(origin, "origin", "m")
-        J, P = self.moments(shift)
+        J, P = moments_about(self, shift)
         return replace(self, center=self.center - shift, J=J, P=P)
-
-    def moments(self, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return J and P about another origin, given from the present one [m]."""
-        cross = self.mass * np.outer(self.center, shift)
-        J = self.J - cross - cross.T + self.mass * np.outer(shift, shift)
-        return J, self.P - shift[:, None, None] * self.S[None, :, :]
 
     def reversed(self) -> Invariants:
         """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""
@@ -244,6 +238,14 @@ class Invariants:
             if getattr(self, name) is not None:
                 projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)
+
+
+def moments_about(invariants: Invariants, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return J and P about another origin, given from the present one [m]."""
+    mass, S = invariants.mass, invariants.S
+    cross = mass * np.outer(invariants.center, shift)
+    J = invariants.J - cross - cross.T + mass * np.outer(shift, shift)
+    return J, invariants.P - shift[:, None, None] * S[None, :, :]
 
 
 def _mean(matrix: Matrix, sign: int = 1) -> Matrix:

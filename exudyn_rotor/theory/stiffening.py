@@ -34,7 +34,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.invariants import Invariants, moments_about
 from exudyn_rotor.theory.nodal import skew
 
 LEVELS = ("none", "tilt", "full")
@@ -258,7 +258,7 @@ class _RigidSplit:
 
 def _rigid_split(invariants: Invariants) -> _RigidSplit:
     """Split every column by mass-orthogonality (Tisserand)."""
-    (J, P), rotation = invariants.moments(invariants.center), invariants.mean_rotation
+    (J, P), rotation = moments_about(invariants, invariants.center), invariants.mean_rotation
     P_rigid = np.einsum("cbd,ck,ad->abk", _EPSILON, rotation, J)
     return _RigidSplit(rotation, P - P_rigid, J)
 
