@@ -31,10 +31,10 @@ def hill_matrices(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (M, D, K) of ``(λ²M + λD + K) X = F`` for the harmonics `orders`.
 
-    Shape (h k, h k), harmonic by harmonic in the order given; real for the harmonic 0 alone.
+    Shape (h k, h k), complex, harmonic by harmonic in the order given.
     """
     if len(orders) == 1 and orders[0] == 0:
-        return system.M[0], system.D[0], system.K[0]
+        return tuple(terms[0].astype(complex) for terms in (system.M, system.D, system.K))
     M, D, K = (_blocks(terms, orders, system.size) for terms in (system.M, system.D, system.K))
     rate = np.repeat(1j * orders * system.speed, system.size)
     return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
