@@ -363,6 +363,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "Support.check_range": lambda w: {"speed": 10.0},
     "Support.matrices": lambda w: {"speed": 10.0},
     "Support.terms": lambda w: {"speed": 10.0},
+    "Support.parts": lambda w: {"speed": 10.0},
     "Unbalance.from_grade": lambda w: {"at": "left", "grade": 2.5, "mass": 5.0, "speed": 300.0},
 }
 
