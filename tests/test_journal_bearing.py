@@ -7,10 +7,13 @@ from point_rotors import ring_rotor
 from scipy.integrate import quad
 
 from exudyn_rotor import (
+    JournalBearing,
+    OilFilm,
     ShortJournalBearing,
     add_rotor,
     add_supports,
     bearing_loads,
+    grooved_pads,
     linear_model,
     recommended_settings,
     stability,
@@ -222,3 +225,40 @@ def test_refused_input():
         stability(rotor, [SPEED], supports=[bearing(load=None)])
     with pytest.raises(ValueError, match="without rotation the film does not carry"):
         stability(rotor, [0.0], supports=journals(rotor))
+
+
+def film_bearing(interface="left", load=(0.0, -525.0), **changes):
+    pads = grooved_pads(SIZE["clearance"], [], 0.0)
+    options = {"cavitation": "half-sommerfeld", "nodes": 240, "axial_nodes": 0}
+    sizes = {name: SIZE[name] for name in ("radius", "length", "viscosity")}
+    return JournalBearing(
+        interface=interface, load=load, film=OilFilm(pads=pads, **(sizes | options | changes))
+    )
+
+
+def test_a_narrow_film_of_finite_length_is_the_short_bearing():
+    """L/D = 0.05; what the short bearing leaves out falls with (L/D)²."""
+    long, short = film_bearing(length=0.005, load=(0.0, -1.0)), bearing((0.0, -1.0), length=0.005)
+    np.testing.assert_allclose(
+        long.equilibrium(SPEED), short.equilibrium(SPEED), atol=5e-3 * SIZE["clearance"]
+    )
+    for found, expected in zip(long.coefficients(SPEED), short.coefficients(SPEED), strict=True):
+        np.testing.assert_allclose(found, expected, atol=0.02 * np.abs(expected).max())
+
+
+def test_a_film_of_finite_length_in_scene_and_linear_rotor():
+    rotor = rigid_rotor()
+    loads = bearing_loads(rotor, ["left", "right"], GRAVITY)
+    pairs = zip(("left", "right"), loads, strict=True)
+    bearings = [film_bearing(n, load, cavitation="reynolds", nodes=36) for n, load in pairs]
+    _, body, _ = scene(rotor, bearings, spin=SPEED)
+    place = steady_state(body, tolerance=1e-6).interface_motion("left")[:2]
+    np.testing.assert_allclose(place, bearings[0].equilibrium(SPEED), rtol=1e-4)
+
+
+def test_a_film_too_thin_goes_on_by_its_tangent():
+    one = film_bearing(nodes=60)
+    edge = one.film.clearance - one.film.thinnest
+    inside, outside = (one.law(edge + d, 0.0, 0.0, 0.0, SPEED)[0] for d in (-1e-12, 1e-12))
+    assert inside == pytest.approx(outside, rel=1e-4)
+    assert one.law(1.5 * SIZE["clearance"], 0.0, 0.0, 0.0, SPEED)[0] < 2.0 * inside < 0.0

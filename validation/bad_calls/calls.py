@@ -69,6 +69,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "StressField": lambda w: w.stress,
     "StressHistory": lambda w: w.history,
     "ClearanceStop": lambda w: w.stop,
+    "JournalBearing": lambda w: w.film_bearing,
     "ShortJournalBearing": lambda w: w.journal,
     "SqueezeFilmDamper": lambda w: w.damper,
     "Support": lambda w: w.supports[0],

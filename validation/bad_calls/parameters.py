@@ -449,6 +449,8 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("ClearanceStop", "slip_speed"): v.POSITIVE,
     ("ClearanceStop.force", "displacement"): _FIELD,
     ("ClearanceStop.force", "velocity"): _FIELD,
+    ("JournalBearing", "interface"): v.NAME,
+    ("JournalBearing", "film"): v.OBJECT,
     ("SqueezeFilmDamper", "interface"): v.NAME,
     ("SqueezeFilmDamper", "radius"): v.POSITIVE,
     ("SqueezeFilmDamper", "clearance"): v.POSITIVE,

@@ -108,6 +108,11 @@ class World:
         return er.ShortJournalBearing(interface="left", load=[0.0, -500.0], **size)
 
     @cached_property
+    def film_bearing(self) -> er.JournalBearing:
+        """A journal bearing with a film of finite length."""
+        return er.JournalBearing(interface="left", film=self.film, load=[0.0, -500.0])
+
+    @cached_property
     def damper(self) -> er.SqueezeFilmDamper:
         """A squeeze-film damper with a spring that carries the loads of the calls."""
         size = {"radius": 0.06, "length": 0.02, "clearance": 1e-3, "viscosity": 0.01}

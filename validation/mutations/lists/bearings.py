@@ -132,4 +132,9 @@ BEARINGS = [
         ("contact holds the journal back", "normal = max(0.0, ", "normal = max(-1e9, "),
         ("sliding without the orbit", "speed + vy * nx - vx * ny", "speed"),
     ),
+    *mutations(
+        "bearings/journal_bearing.py",
+        "test_journal_bearing.py::test_a_film_too_thin_goes_on_by_its_tangent",
+        ("tangent pulls outwards", "/ step * (last - before)", "/ step * (before - last)"),
+    ),
 ]
