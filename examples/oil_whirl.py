@@ -3,7 +3,7 @@
 Two runs start a little beside the equilibrium of the journals: below the limit the whirl dies down,
 above it grows. The speed between them at which it would do neither is that of the linear analysis,
 which takes the same two bearings. A run-up goes on beyond: the whirl begins at half the speed, and
-stays below the shaft's first bending frequency as the speed goes on (whip).
+bends towards the shaft's first bending frequency as the speed goes on (whip).
 """
 
 import exudyn

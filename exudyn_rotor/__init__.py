@@ -14,6 +14,7 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
 from exudyn_rotor.bearings.film.picture import plot_pressure
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
@@ -107,6 +108,7 @@ __all__ = [
     "ReducedRotor",
     "Result",
     "RigidDisc",
+    "RollingBearing",
     "RotorBody",
     "RunCheck",
     "SeparationMargins",

@@ -200,9 +200,11 @@ def test_a_run_begins_in_the_equilibrium_and_stays_there():
 def test_a_journal_beyond_the_film_is_pushed_back():
     """The law goes on by its tangent, without a jump, so that Newton's method comes back."""
     one, c = bearing(), SIZE["clearance"]
-    inside, outside = (one.law(s * c, 0.0, 0.0, 0.0, SPEED)[0] for s in (0.99 - 1e-9, 0.99 + 1e-9))
+    inside, outside = (
+        one.law(s * c, 0.0, 0.0, 0.0, 0.0, SPEED)[0] for s in (0.99 - 1e-9, 0.99 + 1e-9)
+    )
     assert inside == pytest.approx(outside, rel=1e-5)
-    assert one.law(1.5 * c, 0.0, 0.0, 0.0, SPEED)[0] < 20.0 * inside < 0.0
+    assert one.law(1.5 * c, 0.0, 0.0, 0.0, 0.0, SPEED)[0] < 20.0 * inside < 0.0
 
 
 def test_refused_input():
@@ -259,6 +261,6 @@ def test_a_film_of_finite_length_in_scene_and_linear_rotor():
 def test_a_film_too_thin_goes_on_by_its_tangent():
     one = film_bearing(nodes=60)
     edge = one.film.clearance - one.film.thinnest
-    inside, outside = (one.law(edge + d, 0.0, 0.0, 0.0, SPEED)[0] for d in (-1e-12, 1e-12))
+    inside, outside = (one.law(edge + d, 0.0, 0.0, 0.0, 0.0, SPEED)[0] for d in (-1e-12, 1e-12))
     assert inside == pytest.approx(outside, rel=1e-4)
-    assert one.law(1.5 * SIZE["clearance"], 0.0, 0.0, 0.0, SPEED)[0] < 2.0 * inside < 0.0
+    assert one.law(1.5 * SIZE["clearance"], 0.0, 0.0, 0.0, 0.0, SPEED)[0] < 2.0 * inside < 0.0

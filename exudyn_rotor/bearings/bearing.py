@@ -41,12 +41,14 @@ class Bearing(ABC):
             object.__setattr__(self, "load", load)
 
     @property
-    def law(self) -> Callable[[float, float, float, float, float], tuple[float, float]]:
-        """For scenes: the force on the journal [N] by x, y, ẋ, ẏ and Ω, at any place, unchecked."""
+    def law(self) -> Callable[[float, float, float, float, float, float], tuple[float, float]]:
+        """For scenes: the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
         return self._law
 
     @abstractmethod
-    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
         """Return the force on the journal [N]."""
 
     @abstractmethod

@@ -101,9 +101,11 @@ class ClearanceStop(Bearing):
         """
         place = checks.vector(displacement, "displacement", "m", size=2)
         rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        return np.array(self._law(*place, *rate, checks.number(speed, "speed", "rad/s")))
+        return np.array(self._law(*place, *rate, 0.0, checks.number(speed, "speed", "rad/s")))
 
-    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
         e = hypot(x, y)
         depth = e - self.clearance
         if depth <= 0.0:

@@ -59,7 +59,9 @@ class JournalBearing(Bearing):
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
 
-    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
         if self.film.cavitation == "mass-conserving":
             raise ValueError(
                 f"bearing at {self.interface!r}: a film with cavitation='mass-conserving' has no "

@@ -115,7 +115,9 @@ class ShortJournalBearing(Bearing):
         c = self.clearance
         return self._size * np.array(film_force(*(place / c), *(rate / c), speed))
 
-    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
         c, size = self.clearance, self._size
         fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, speed)
         return size * fx, size * fy

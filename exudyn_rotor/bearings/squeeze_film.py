@@ -119,7 +119,9 @@ class SqueezeFilmDamper(Bearing):
         film = self._size * np.array(film_force(*(place / c), *(rate / c), 0.0))
         return film - self.centring_stiffness * place
 
-    def _law(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
         c, size, k = self.clearance, self._size, self.centring_stiffness
         fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, 0.0)
         return size * fx - k * x, size * fy - k * y

@@ -80,7 +80,7 @@ def bearing_connector(
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
         vx, vy = a * v[0] + b * v[1] + c * v[2], d * v[0] + e * v[1] + f * v[2]
-        fx, fy = law(x, y, vx, vy, spin(mbs)[1])
+        fx, fy = law(x, y, vx, vy, *spin(mbs))
         return [-a * fx - d * fy, -b * fx - e * fy, -c * fx - f * fy]
 
     marker = point_marker(body, bearing.interface)

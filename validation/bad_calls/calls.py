@@ -70,6 +70,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "StressHistory": lambda w: w.history,
     "ClearanceStop": lambda w: w.stop,
     "JournalBearing": lambda w: w.film_bearing,
+    "RollingBearing": lambda w: w.rolling,
     "ShortJournalBearing": lambda w: w.journal,
     "SqueezeFilmDamper": lambda w: w.damper,
     "Support": lambda w: w.supports[0],
@@ -356,6 +357,8 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "velocity": [0.0, 1e-3],
         "speed": 100.0,
     },
+    "RollingBearing.element_loads": lambda w: {"displacement": [1e-5, 2e-5]},
+    "RollingBearing.passing_frequency": lambda w: {"speed": 100.0},
     "ShortJournalBearing.force": lambda w: {
         "displacement": [1e-5, 2e-5],
         "velocity": [0.0, 1e-3],

@@ -113,6 +113,12 @@ class World:
         return er.JournalBearing(interface="left", film=self.film, load=[0.0, -500.0])
 
     @cached_property
+    def rolling(self) -> er.RollingBearing:
+        """A ball bearing."""
+        sizes = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
+        return er.RollingBearing(interface="left", load=[0.0, -500.0], **sizes)
+
+    @cached_property
     def damper(self) -> er.SqueezeFilmDamper:
         """A squeeze-film damper with a spring that carries the loads of the calls."""
         size = {"radius": 0.06, "length": 0.02, "clearance": 1e-3, "viscosity": 0.01}

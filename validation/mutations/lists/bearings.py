@@ -137,4 +137,11 @@ BEARINGS = [
         "test_journal_bearing.py::test_a_film_too_thin_goes_on_by_its_tangent",
         ("tangent pulls outwards", "/ step * (last - before)", "/ step * (before - last)"),
     ),
+    *mutations(
+        "bearings/rolling.py",
+        "test_rolling_bearing.py",
+        ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),
+        ("elements pull", "np.maximum(x * c + y * s - self.clearance, 0.0)", "x * c + y * s - 0.0"),
+        ("tangent without its exponent", "(n * (exponent * self", "(n * (self"),
+    ),
 ]

@@ -1,0 +1,221 @@
+"""Rolling bearing: Hertzian balls or rollers, clearance, and a cage that carries them around.
+
+Element j stands at ``φ_j = 2π j/Z + κ θ``; the outer ring stands still, the inner one turns by θ
+with the rotor, and without slip the cage turns by the share
+
+    κ = ½ (1 − r/R cos α)                                                                  (1)
+
+of it (r radius of the elements, R of the pitch circle, α contact angle). The contacts of one
+element with both rings together carry
+
+    Q_j = k max(0, x cos φ_j + y sin φ_j − c)^n,                                           (2)
+
+n = 3/2 for balls, 10/9 for rollers. The sum varies with every element that passes the load: at the
+frequency Z κ Ω (varying compliance). T. A. Harris, *Rolling Bearing Analysis* (2001), Ch. 7, 8;
+C. S. Sunnersjö, J. Sound Vib. 58 (1978). Centrifugal and gyroscopic loads of the elements, slip,
+waviness and the oil film are left out; α counts in (1) alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, hypot, pi, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import root
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing
+
+_EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}
+_CAGE_ANGLES = 16  # over the passage of one element, for mean coefficients
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RollingBearing(Bearing):
+    """Radial bearing with balls or rollers.
+
+    Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
+    passage of one element. A scene with it does not repeat with every revolution, so that it has
+    no steady state.
+
+    Parameters
+    ----------
+    interface : str
+        Interface of the rotor that is the seat of the inner ring.
+    count : int
+        Number of elements Z, 3 or more.
+    pitch_radius, element_radius : float
+        [m].
+    stiffness : float
+        k of (2), of both contacts of an element together [N/m^n].
+    clearance : float, optional
+        Radial clearance c [m].
+    elements : {'balls', 'rollers'}, optional
+    contact_angle : float, optional
+        [rad].
+    damping : float, optional
+        Of the inner ring in all directions across the axis [N s/m].
+    load : array_like, shape (2,), optional
+        Static load on the inner ring along (n1, n2) [N], which linear analyses need.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For sizes that are not above zero, a negative clearance or damping, elements as large as
+        the pitch circle, or more than fit on it.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import RollingBearing
+    >>> bearing = RollingBearing(
+    ...     interface="left", count=8, pitch_radius=0.0326, element_radius=0.006, stiffness=7e9,
+    ...     clearance=5e-6, load=[0.0, -500.0],
+    ... )
+    >>> round(bearing.passing_frequency(speed=100.0), 3)
+    326.38
+    >>> print(bearing.equilibrium(100.0).round(7) + 0.0)
+    [ 0.00e+00 -1.74e-05]
+    """
+
+    count: int
+    pitch_radius: float
+    element_radius: float
+    stiffness: float
+    clearance: float = 0.0
+    elements: str = "balls"
+    contact_angle: float = 0.0
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.count(self.count, "count", least=3)
+        sizes = {"pitch_radius": "m", "element_radius": "m", "stiffness": "N/m^n"}
+        for name, unit in sizes.items():
+            value = checks.number(getattr(self, name), name, unit, above=0.0)
+            object.__setattr__(self, name, value)
+        for name, unit in {"clearance": "m", "damping": "N s/m"}.items():
+            value = checks.number(getattr(self, name), name, unit, least=0.0)
+            object.__setattr__(self, name, value)
+        checks.choice(self.elements, "elements", _EXPONENTS)
+        angle = checks.number(self.contact_angle, "contact_angle", "rad", least=0.0, below=pi / 2)
+        object.__setattr__(self, "contact_angle", angle)
+        if self.element_radius >= self.pitch_radius * sin(pi / self.count):
+            raise ValueError(
+                f"element_radius: {self.count} elements of {self.element_radius:g} m do not fit "
+                f"on a pitch circle of {self.pitch_radius:g} m"
+            )
+
+    @property
+    def cage_ratio(self) -> float:
+        """Turn of the cage over that of the rotor, κ of (1)."""
+        return 0.5 * (1.0 - self.element_radius / self.pitch_radius * cos(self.contact_angle))
+
+    def passing_frequency(self, speed: float) -> float:
+        """Return Z κ Ω, at which elements pass the load [rad/s].
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s].
+        """
+        return self.count * self.cage_ratio * checks.number(speed, "speed", "rad/s")
+
+    def element_loads(self, displacement: ArrayLike, angle: float = 0.0) -> np.ndarray:
+        """Return the loads (2) of the elements [N], shape (Z,).
+
+        Parameters
+        ----------
+        displacement : array_like, shape (2,)
+            Of the inner ring [m].
+        angle : float, optional
+            Spin angle θ [rad].
+        """
+        place = checks.vector(displacement, "displacement", "m", size=2)
+        angles = self._angles(checks.number(angle, "angle", "rad"))
+        return self._loads(*place, np.cos(angles), np.sin(angles))
+
+    def _angles(self, angle: float) -> np.ndarray:
+        return 2.0 * pi / self.count * np.arange(self.count) + self.cage_ratio * angle
+
+    def _loads(self, x: float, y: float, c: np.ndarray, s: np.ndarray) -> np.ndarray:
+        depth = np.maximum(x * c + y * s - self.clearance, 0.0)
+        return self.stiffness * depth ** _EXPONENTS[self.elements]
+
+    def _law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        angles = self._angles(angle)
+        c, s = np.cos(angles), np.sin(angles)
+        loads, d = self._loads(x, y, c, s), self.damping
+        return -float(loads @ c) - d * vx, -float(loads @ s) - d * vy
+
+    def equilibrium(
+        self, speed: float, load: ArrayLike | None = None, angle: float = 0.0
+    ) -> np.ndarray:
+        """Return where the inner ring rests under a static load [m], shape (2,).
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s], which plays no part.
+        load : array_like, shape (2,), optional
+            On the inner ring [N]; that of the bearing by default.
+        angle : float, optional
+            Spin angle θ [rad]; at 0 the first element is on n1.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, a missing load, and no load, for which a ring with clearance has no
+            equilibrium.
+        """
+        checks.number(speed, "speed", "rad/s")
+        checks.number(angle, "angle", "rad")
+        load = self._static_load(load)
+        weight = hypot(*load)
+        if weight == 0.0:
+            raise ValueError("load: needs a force other than 0: without one no element carries")
+        exponent = _EXPONENTS[self.elements]
+        depth = (4.0 * weight / (self.count * self.stiffness)) ** (1.0 / exponent)
+        start = (self.clearance + 1.5 * depth) * load / weight
+
+        def left(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            force = np.array(self._law(*(depth * place), 0.0, 0.0, angle, 0.0))
+            return (force + load) / weight, -self._tangent(depth * place, angle) * depth / weight
+
+        found = root(left, start / depth, jac=True, method="lm", options={"xtol": 1e-14})
+        if np.abs(found.fun).max() > 1e-9:
+            raise ValueError(
+                f"load: bearing at {self.interface!r}: no equilibrium found under {weight:g} N"
+            )
+        return depth * found.x
+
+    def _tangent(self, place: np.ndarray, angle: float) -> np.ndarray:
+        angles, exponent = self._angles(angle), _EXPONENTS[self.elements]
+        n = np.array([np.cos(angles), np.sin(angles)])
+        depth = np.maximum(place @ n - self.clearance, 0.0)
+        return (n * (exponent * self.stiffness * depth ** (exponent - 1.0))) @ n.T
+
+    def coefficients(
+        self, speed: float, load: ArrayLike | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return mean stiffness [N/m] over an element's passage, and damping [N s/m], (2, 2).
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s], which plays no part.
+        load : array_like, shape (2,), optional
+            On the inner ring [N]; that of the bearing by default.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As :meth:`equilibrium`.
+        """
+        passage = 2.0 * pi / (self.count * self.cage_ratio)
+        angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES
+        tangents = [self._tangent(self.equilibrium(speed, load, t), t) for t in angles]
+        return np.mean(tangents, axis=0), self.damping * np.eye(2)
