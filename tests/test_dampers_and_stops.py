@@ -37,6 +37,8 @@ def test_force_on_a_circular_centred_orbit(ratio):
     one = damper(orbit=ratio)
     found = one.force([ratio * c, 0.0], [0.0, whirl * ratio * c])
     np.testing.assert_allclose(found, expected, rtol=1e-12)
+    spinning = one.law(ratio * c, 0.0, 0.0, whirl * ratio * c, 0.0, 900.0)
+    np.testing.assert_allclose(spinning, expected, rtol=1e-12)
     K, D = one.coefficients(whirl)
     np.testing.assert_allclose(K * ratio * c, -expected[0] * np.eye(2), rtol=1e-12)
     np.testing.assert_allclose(D * whirl * ratio * c, -expected[1] * np.eye(2), rtol=1e-12)
