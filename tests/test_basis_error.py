@@ -23,10 +23,13 @@ from exudyn_rotor import (
     keep_modes,
     linear_model,
     stability,
+    stability_map,
     stability_threshold,
     unbalance_response,
     unstable_ranges,
 )
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
+from exudyn_rotor.linear.response.basis_check import looked_at
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 
@@ -295,11 +298,52 @@ def test_errors_of_unstable_ranges_are_in_a_warning():
     np.testing.assert_array_equal(ranges, unchecked)
 
 
-@pytest.mark.filterwarnings("error")
-def test_limits_where_modes_meet_have_no_estimate():
-    """Between two critical speeds, here those of a mesh that is not quite axisymmetric."""
+def test_errors_of_limits_where_modes_meet():
+    """Between two critical speeds, here those of a mesh that is not quite axisymmetric.
+
+    Against the full model; the finer rotor has static responses at the interfaces.
+    """
     given = {"supports": [*supports("stiff"), Support("left", damping=2e4, frame="rotor")]}
     result = stability_threshold(reduced("tilt", "free 4"), 400.0, 2500.0, samples=4, **given)
     assert result.frequencies_inertial == pytest.approx(result.values, rel=1e-4)
-    assert np.all(np.isnan(result.basis_errors))
-    assert result.table().endswith(" -")
+    limits = {"samples": 4, "modes": 4, "residual": 1e-5}
+    near = float(result.values.min() - 60.0), float(result.values.max() + 20.0)
+    full = stability_threshold(solid("tilt"), *near, **limits, **given)
+    errors = full.values - result.values
+    assert np.all(np.abs(errors) > 1e-3 * result.values)
+    np.testing.assert_allclose(result.basis_shifts, errors, rtol=0.1)
+
+
+def test_errors_of_a_map_of_stability_are_those_of_its_points():
+    rotor, speeds, amounts = reduced("tilt", "free 4"), [800.0, 2500.0], [5e3, 2e4]
+
+    def build(inner: float, speed: float) -> tuple:
+        more = Support("left", damping=inner, frame="rotor")
+        return linear_model(rotor, supports=[*supports("stiff"), more]), speed
+
+    with pytest.warns(UserWarning, match=r"the least stable motion at \(.*\) errs by about"):
+        result = stability_map(build, amounts, speeds, accuracy=1e-5)
+    for row, inner in zip(result.basis_errors, amounts, strict=True):
+        single = stability(build(inner, 0.0)[0], speeds, accuracy=0.9)
+        least = single.exponents[[0, 1], single.least_stable]
+        given = single.basis_shifts, least.real, np.abs(least.imag)
+        expected = relative_errors(*(each[:, None] for each in given), np.array(speeds))
+        np.testing.assert_allclose(row, expected[:, 0], rtol=1e-3)
+    assert "basis error up to" in result.table()
+    unchecked = stability_map(build, amounts[:1], speeds[:1], accuracy=None)
+    assert unchecked.basis_errors is None
+    assert NOT_KNOWN in unchecked.table()
+
+
+def test_motions_with_harmonics_are_looked_at_at_all_peaks():
+    """Three peaks of one place, one of another, both ends and the middle."""
+    speeds = np.linspace(0.0, 10.0, 41)
+    curves = [np.sin(speeds) ** 2 + 0.1, np.exp(-((speeds - 6.0) ** 2))]
+    motions = [
+        {1: np.array([[a, 0, 0, 0, 0, 0], [0, b, 0, 0, 0, 0]])}
+        for a, b in zip(*curves, strict=True)
+    ]
+    chosen = looked_at(motions, constant=False)
+    peaks = [np.argmin(np.abs(speeds - at)) for at in (np.pi / 2, 1.5 * np.pi, 2.5 * np.pi, 6.0)]
+    assert set(peaks) | {0, 20, 40} == set(chosen)
+    np.testing.assert_array_equal(looked_at(motions, constant=True), np.arange(41))

@@ -123,7 +123,7 @@ def test_two_peaks_a_valley_and_no_peak():
 
 def test_points_too_far_apart_warn():
     response = sized([90.0, 100.0, 110.0], [0.1, 1.0, 0.1])
-    with pytest.warns(UserWarning, match="a: the speeds around the peak at 100 rad/s are too far"):
+    with pytest.warns(UserWarning, match="a: the points around the peak at 100 rad/s are too far"):
         separation_margins(response, (150.0, 200.0))
 
 

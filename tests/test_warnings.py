@@ -27,8 +27,8 @@ from exudyn_rotor import (
     check_run,
     propose,
     select_modes,
-    separation_margins,
     stability_level_one,
+    stability_threshold,
     stress_history,
     unbalance_response,
 )
@@ -151,13 +151,15 @@ def peak_between_few_speeds(_):
     unbalance_response(rotor, [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
 
 
-def margins_of_few_speeds(_):
-    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
-    supports = [Support("all", 2e4, 1.0, tilt_stiffness=1e4)]
-    response = unbalance_response(
-        rotor, [50.0, 95.0, 150.0], [Unbalance("all", 1e-4)], supports=supports
-    )
-    separation_margins(response, (200.0, 300.0))
+def limit_that_a_finer_rotor_has_elsewhere(_):
+    """``√(k/m)(1 + c/c_i)``, 200 rad/s, by Floquet's method; the elastic limit is 0.1 % lower."""
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("end", list(range(5)))
+    inner = Support("end", damping=1.0, frame="rotor")
+    supports = [Support("end", 2e4, 1.0, tilt_stiffness=1e4), inner]
+    given = {"supports": supports, "method": "floquet", "samples": 2, "stiffening": "tilt"}
+    found = stability_threshold(rotor.reduce(0), 50.0, 400.0, accuracy=None, **given)
+    first = found.values[0]
+    stability_threshold(rotor.reduce(0), first - 1e-3, first + 1e-3, **given)
 
 
 def second_forward_mode_that_is_unstable_first(_):
@@ -210,8 +212,8 @@ PLACES = {
     "evaluation/level_one.py:_warn_of_others": (
         second_forward_mode_that_is_unstable_first, UserWarning, "another mode",
     ),
-    "evaluation/separation.py:_peak": (
-        margins_of_few_speeds, UserWarning, "too far apart to give its amplification",
+    "linear/stability/thresholds.py:_warn_of_basis": (
+        limit_that_a_finer_rotor_has_elsewhere, UserWarning, "is not known",
     ),
     "linear/models/basis_error.py:warn": (
         campbell_with_one_mode, UserWarning, "errs by about",
@@ -219,8 +221,8 @@ PLACES = {
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes",
     ),
-    "linear/response/response.py:peak": (
-        peak_between_few_speeds, UserWarning, "too far apart to give its size",
+    "linear/response/refinement.py:resolved_peak": (
+        peak_between_few_speeds, UserWarning, "too far apart to give its size and width",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",

@@ -6,7 +6,6 @@ SP6.8.2.10 (separation margins); API 617 asks for the same.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,16 +15,14 @@ from numpy.typing import ArrayLike
 from scipy.signal import find_peaks
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
-from exudyn_rotor.linear.response.refinement import peak_between
+from exudyn_rotor.linear.response.refinement import HALF_POWER, resolved_peak
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
 
 _CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
 _RIPPLE = 1e-3  # share of its size by which a peak stands above the valleys beside it
-_HALF_POWER = np.sqrt(0.5)
 
 
 @storable
@@ -140,7 +137,7 @@ class SeparationMargins(Result):
         for peak, size, sides, factor in zip(
             self.peaks, self.sizes, self.half_power, self.amplification, strict=True
         ):
-            ax.plot(shown.speeds(sides), [1e6 * _HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
+            ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
             ax.annotate(f"AF {factor:.1f}", (shown.speeds(peak), 1e6 * size),
                         textcoords="offset points", xytext=(4, 3), fontsize=8)  # fmt: skip
         low, high = self.operating_range
@@ -263,15 +260,7 @@ def _peak(
     speeds: np.ndarray, curve: np.ndarray, row: int, name: str
 ) -> tuple[float, float, tuple[float, float]]:
     """Return place, size and half-power speeds of the maximum at a row."""
-    near = slice(row - 1, row + 2)
-    if curve[near].min() < _HALF_POWER * curve[row]:
-        warnings.warn(
-            f"{name}: the speeds around the peak at {speeds[row]:g} rad/s are too far apart to "
-            "give its amplification; compute the response with refine=True",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    place, size = peak_between(speeds[near], curve[near])
+    place, size = resolved_peak(speeds, curve, row, name)
     lower = _half_power(speeds[: row + 2][::-1], curve[: row + 2][::-1], size)
     upper = _half_power(speeds[row - 1 :], curve[row - 1 :], size)
     return place, size, (lower, upper)
@@ -286,7 +275,7 @@ def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
     for end in range(2, len(curve)):
         if curve[end] > curve[end - 1]:
             return np.nan
-        if curve[end] < _HALF_POWER * size:
+        if curve[end] < HALF_POWER * size:
             at, levels = speeds[end - 2 : end + 1], (size / curve[end - 2 : end + 1]) ** 2
             roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
             between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]

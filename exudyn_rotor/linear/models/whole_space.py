@@ -82,7 +82,7 @@ class WholeSpace:
         """Return all exponents with their motions, and the equations."""
         system = self.at(speed)
         modes = motions(system, method, tolerance, shapes)
-        if shapes and self.others is not None:
+        if self.others is not None:
             modes = replace(modes, vectors=self.others @ modes.vectors)
         return modes, system
 

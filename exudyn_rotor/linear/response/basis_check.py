@@ -17,7 +17,7 @@ from exudyn_rotor.linear.models.basis_error import BasisError
 _LEAST = 0.1
 _AXIAL = 1e-6  # share of a motion across the axis that is rounding
 HARMONICS = 1e-4  # largest relative change of the finer motion by further harmonics
-_FEW = 3  # speeds or frequencies that are looked at beside the largest motion
+_FEW = 3  # speeds or frequencies that are looked at beside the peaks
 
 Motion = Mapping[int, np.ndarray]
 
@@ -26,13 +26,14 @@ def looked_at(motions: Sequence[Motion], constant: bool) -> np.ndarray:
     """Return at which speeds or frequencies errors are estimated.
 
     At all where the equations are constant; solved in harmonics, the finer rotor would take ten
-    times as long as the other: there at the largest motion and at some others.
+    times as long as the other: there at all peaks, the largest motion and some others.
     """
     if constant:
         return np.arange(len(motions))
-    sizes = [max(_size(each).max() for each in motion.values()) for motion in motions]
+    sizes = np.array([sum(_size(each) ** 2 for each in motion.values()) for motion in motions])
+    inner = np.any((sizes[1:-1] > sizes[:-2]) & (sizes[1:-1] >= sizes[2:]), axis=1)
     even = np.linspace(0, len(motions) - 1, min(_FEW, len(motions))).astype(int)
-    return np.unique(np.append(even, np.argmax(sizes)))
+    return np.unique(np.r_[even, np.flatnonzero(inner) + 1, np.argmax(sizes.max(axis=1))])
 
 
 def motion_error(given: Motion, finer: Motion) -> np.ndarray:

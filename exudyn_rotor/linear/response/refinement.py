@@ -6,10 +6,13 @@ phase lies one, or a place without motion, and halving such intervals finds it.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
+
+from exudyn_rotor.callers import user_level
 
 Motion = Mapping[int, np.ndarray]
 
@@ -28,6 +31,7 @@ _SMALL = 1e-3
 _NARROWEST = 1e-7
 _MOST_ROUNDS = 30
 _MOST_ADDED = 4000
+HALF_POWER = np.sqrt(0.5)  # of the size at a peak
 
 
 def refined(
@@ -74,6 +78,22 @@ def _turns(motions: list[Motion]) -> np.ndarray:
     matters &= np.minimum(size[1:], size[:-1]) > 0.0
     turned = np.abs(np.angle(phasors[1:] * phasors[:-1].conj()))
     return np.where(matters, turned, 0.0).max(axis=1, initial=0.0)
+
+
+def resolved_peak(at: np.ndarray, size: np.ndarray, index: int, name: str) -> tuple[float, float]:
+    """Return place and size of the maximum at a point, by its neighbours.
+
+    A warning with the `name` tells where these are beyond half of the power of the maximum.
+    """
+    near = slice(index - 1, index + 2)
+    if size[near].min() < HALF_POWER * size[index]:
+        warnings.warn(
+            f"{name}: the points around the peak at {at[index]:g} rad/s are too far apart to give "
+            "its size and width; compute the response with refine=True",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+    return peak_between(at[near], size[near])
 
 
 def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from matplotlib.axes import Axes
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
-from exudyn_rotor.linear.response.refinement import peak_between
+from exudyn_rotor.linear.response.refinement import resolved_peak
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
@@ -23,8 +22,6 @@ from exudyn_rotor.units import Units
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
-# neighbours of a peak below this share of it: it may be higher between them
-_RESOLVED = 0.7
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
 HERTZ = 1.0 / (2.0 * np.pi)
 
@@ -48,8 +45,8 @@ class Response(RunStart, ABC):
         Estimated relative errors by the basis of a reduced rotor, of the displacement in the
         harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
         at that speed or frequency. NaN where it was not looked at: where supports or rotor are
-        anisotropic, so that the motion has harmonics, it is at the largest motion and at the first,
-        middle and last point only. None where they are not known.
+        anisotropic, so that the motion has harmonics, it is at all peaks and at the first, middle
+        and last point only, which the table names. None where they are not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     """
@@ -145,15 +142,7 @@ class Response(RunStart, ABC):
                 f"{self.abscissa[-1]:g} rad/s; extend the range, or compute with refine=True"
             )
         index = int(inner[major[inner].argmax()])
-        near = slice(index - 1, index + 2)
-        if major[near].min() < _RESOLVED * major[index]:
-            warnings.warn(
-                f"{self._place(place)}: the points around the peak at {self.abscissa[index]:g} "
-                "rad/s are too far apart to give its size; compute with refine=True",
-                UserWarning,
-                stacklevel=2,
-            )
-        return peak_between(self.abscissa[near], major[near])
+        return resolved_peak(self.abscissa, major, index, self._place(place))
 
     def orbit(
         self, value: float, place: str | None = None, order: int | None = None, points: int = 181
@@ -247,6 +236,9 @@ class Response(RunStart, ABC):
             )
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
+        if reduced and np.any(np.isnan(column)):
+            looked = ", ".join(f"{at:.5g}" for at in values[np.isfinite(column)])
+            lines.append(f"basis error estimated at [{unit}]: {looked}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(

@@ -28,7 +28,7 @@ class Growth(NamedTuple):
 
     `bounds` (n,) are real parts that rounding and truncation can feign [1/s]; `names` are inertial
     frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty. `critical` is the
-    least stable motion, None without names and by Floquet's method.
+    least stable motion, None by Floquet's method.
     """
 
     values: np.ndarray
@@ -86,7 +86,7 @@ def growth_of(
     names = tuple(name[order] for name in names)
     growth = Growth(folded[order], bounds[order], abs(system.base), names)
     constant = system.is_constant or speed == 0.0
-    if content is None or not (constant or len(modes.orders) > 1):
+    if not (constant or len(modes.orders) > 1):
         return growth
     return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
 

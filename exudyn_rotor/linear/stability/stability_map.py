@@ -14,10 +14,17 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, relative_errors
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.linear.stability.growth import GrowthAt, check_method, growth_of, held_space
+from exudyn_rotor.linear.stability.growth import (
+    Growth,
+    GrowthAt,
+    check_method,
+    growth_of,
+    held_space,
+)
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.units import Units
@@ -38,6 +45,9 @@ class StabilityMap(Result):
     stable : ndarray of bool, shape (a, b)
     labels : tuple of str
         Names of x and y.
+    basis_errors : ndarray, shape (a, b), or None
+        Estimated relative error of the least stable motion by the basis of a reduced rotor, as
+        :attr:`Stability.basis_errors`; NaN where it is not known, None where it is nowhere.
 
     Examples
     --------
@@ -49,6 +59,7 @@ class StabilityMap(Result):
                            c           10
                            1         -0.5
                            2          0.5*
+    error of the basis: not known
     """
 
     x: np.ndarray = numbers("x")
@@ -56,6 +67,7 @@ class StabilityMap(Result):
     growth: np.ndarray = numbers("x", "y")
     stable: np.ndarray = numbers("x", "y", dtype=bool)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
+    basis_errors: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each point; `units` change nothing."""
@@ -66,7 +78,13 @@ class StabilityMap(Result):
             second: np.tile(self.y, len(self.x)),
             "growth [1/s]": self.growth.ravel(),
             "stable": self.stable.ravel(),
+            "basis error": self._errors.ravel(),
         }
+
+    @property
+    def _errors(self) -> np.ndarray:
+        unknown = np.full(self.growth.shape, np.nan)
+        return unknown if self.basis_errors is None else self.basis_errors
 
     def table(self) -> str:
         """Return the growth [1/s] at every point as lines of text; '*' marks instability."""
@@ -76,6 +94,11 @@ class StabilityMap(Result):
         for value, growth, stable in zip(self.x, self.growth, self.stable, strict=True):
             entries = (f"{g:13.5g}{' ' if s else '*'}" for g, s in zip(growth, stable, strict=True))
             lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
+        worst = np.nanmax(self._errors, initial=0.0)
+        if worst > 0.0:
+            lines.append(f"basis error up to {worst:.1e}")
+        elif np.any(np.isnan(self._errors)):
+            lines.append(NOT_KNOWN)
         return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -103,13 +126,11 @@ def stability_map(
     labels: tuple[str, str] = ("x", "y"),
     method: str = "auto",
     tolerance: float = 1e-9,
+    accuracy: float | None = 1e-2,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> StabilityMap:
     """Compute the growth over a grid of two parameters.
-
-    What the basis of a reduced rotor leaves out is not checked here: :func:`stability` and
-    :func:`stability_threshold` tell at single points how far they are from the full model.
 
     Parameters
     ----------
@@ -121,7 +142,7 @@ def stability_map(
         Ascending.
     labels : tuple of str
         Names of x and y with units, for the plot.
-    method, tolerance, executor, progress
+    method, tolerance, accuracy, executor, progress
         See :func:`stability`.
 
     Examples
@@ -142,24 +163,28 @@ def stability_map(
     """
     checks.function(build, "build")
     check_method(method, tolerance)
+    options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
     names = checks.labels(labels, "labels")
     if len(names) != 2:
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     points = [(a, b) for a in grid[0] for b in grid[1]]
-    point = partial(_map_point, build=build, method=method, tolerance=tolerance)
+    point = partial(_map_point, build=build, given=(method, tolerance, accuracy))
     margins = sweep(point, points, executor=executor, progress=progress, label="stability map")
-    growth, excess = np.array(margins).T.reshape(2, len(grid[0]), len(grid[1]))
-    return StabilityMap(*grid, growth, excess <= 0.0, names)
+    growth, excess, errors = np.array(margins).T.reshape(3, len(grid[0]), len(grid[1]))
+    if np.all(np.isnan(errors)):
+        return StabilityMap(*grid, growth, excess <= 0.0, names)
+    _warn_of_basis(points, errors, build, accuracy)
+    return StabilityMap(*grid, growth, excess <= 0.0, names, basis_errors=errors)
 
 
 def _map_point(
-    point: tuple[float, float], build: Callable, method: str, tolerance: float
-) -> tuple[float, float]:
-    built = build(*point)
+    point: tuple[float, float], build: Callable, given: tuple[str, float, float | None]
+) -> tuple[float, float, float]:
+    built, (method, tolerance, accuracy) = build(*point), given
     if isinstance(built, PeriodicSystem):
-        growth = growth_of(motions(built, method, tolerance, False), built)
+        growth, error = growth_of(motions(built, method, tolerance, False), built), np.nan
     else:
         if not isinstance(built, tuple) or len(built) != 2:
             raise TypeError(
@@ -167,6 +192,27 @@ def _map_point(
                 f"got {checks.shown(built)}"
             )
         speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
-        space = held_space(linear_model(built[0]), speed, None, _RESIDUAL)
+        model = linear_model(built[0])
+        space = held_space(model, speed, None, _RESIDUAL)
         growth = GrowthAt(space, method, tolerance)(speed)
-    return growth.values.real.max(), growth.excess
+        error = _basis_error(BasisError.of(model, accuracy, held=True), growth, speed)
+    return growth.values.real.max(), growth.excess, error
+
+
+def _basis_error(basis: BasisError, growth: Growth, speed: float) -> float:
+    """Return the relative error of the least stable motion; NaN where it is not known."""
+    shifts = basis.shifts_of([speed], [growth.critical])
+    if shifts is None:
+        return np.nan
+    value = growth.values[[growth.least_stable]]
+    given = shifts[None], value.real[None], np.abs(value.imag)[None], np.array([speed])
+    return float(relative_errors(*given)[0, 0])
+
+
+def _warn_of_basis(
+    points: list[tuple[float, float]], errors: np.ndarray, build: Callable, accuracy: float
+) -> None:
+    """Warn where the basis leaves out too much for the worst of the points."""
+    worst = points[int(np.nanargmax(errors))]
+    basis = BasisError.of(linear_model(build(*worst)[0]), accuracy, held=True)
+    basis.warn(errors, f"the least stable motion at ({worst[0]:.5g}, {worst[1]:.5g})")

@@ -43,9 +43,11 @@ class StabilityThresholds(Result):
         Name of the parameter with its unit.
     basis_shifts : ndarray, shape (t,), or None
         Estimated ``p − p_reduced`` with the limit p of the full model, to first order: the growth
-        that the mode gains by what the basis leaves out, over its slope. NaN by Floquet's method
-        and where two modes meet, as at the ends of a range of parametric resonance or between the
-        critical speeds of an asymmetric rotor; None where it is not known at all.
+        that the mode gains by what the basis leaves out, over its slope. By Floquet's
+        method and where two modes meet, as at the ends of a range of parametric resonance or
+        between the critical speeds of an asymmetric rotor, the limit is searched again with the
+        shapes that the basis lacks first; NaN, with a warning, where none is within 5 % of the
+        range. None where it is not known at all.
 
     Examples
     --------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis_error import BasisError
@@ -25,6 +27,8 @@ from exudyn_rotor.sweep import ascending_from_zero
 _ROOT = 1e-8  # of the largest parameter
 # share of λ or Ω: motions so near one another change with the root of what the basis leaves out
 _NEAR = 0.05
+# of the range beside such a limit, and points in it, where it is searched again
+_REACH, _POINTS = 0.05, 9
 Supports = Sequence[Support] | Support
 
 
@@ -90,7 +94,7 @@ def stability_threshold(
     >>> given = {"supports": damped, "speed": 300.0, "samples": 4}
     >>> print(stability_threshold(rotor, 2.0, 20.0, label="inner damping", **given).table())
     inner damping   above      frequency [rad/s]  n  whirl      kind
-         5.000001   unstable                 100  1  forward    lateral
+                5   unstable                 100  1  forward    lateral
     """
     low = checks.number(low, "low")
     high = checks.number(high, "high", above=low)
@@ -194,9 +198,24 @@ def _limit(search: Search, value: float, onset: bool, middle: float) -> _Limit:
     slope = search.rate(beside, step)[which].real
     apart = np.abs(fold(np.delete(growth.values, which) - growth.values[which], growth.base))
     meets = apart.min(initial=np.inf) < _NEAR * max(speed, abs(growth.values[which]))
-    if meets or slope * away <= 0.0:
-        return _Limit(name, np.nan, basis)
+    if np.isnan(shifts[0]) or meets or slope * away <= 0.0:
+        return _Limit(name, _searched_again(search, value, onset), basis)
     return _Limit(name, float(-shifts[0].real / slope), basis)
+
+
+def _searched_again(search: Search, value: float, onset: bool) -> float:
+    """Return the distance to the limit with the shapes that the basis lacks; NaN if none is near.
+
+    The growth of motions that meet changes with the root of the parameter: it has no slope there.
+    """
+    finer = Search(_Finer(search.made), search.span)
+    low, high = min(search.known), max(search.known)
+    reach = np.array([-1.0, 1.0]) * _REACH * search.span + value
+    for point in np.linspace(*np.clip(reach, low, high), _POINTS):
+        finer.at(float(point))
+    finer.refine()
+    found = [at - value for at, on in finer.changes(ASIDE * search.span) if on == onset]
+    return min(found, key=abs, default=np.nan)
 
 
 def _shifts(limits: Sequence[_Limit], accuracy: float | None) -> np.ndarray | None:
@@ -212,7 +231,17 @@ def _warn_of_basis(
     label: str,
 ) -> None:
     """Warn where the basis leaves out too much for the worst of the limits."""
-    if shifts is None or np.all(np.isnan(shifts)):
+    if shifts is None:
+        return
+    unknown = ", ".join(f"{value:.5g}" for value in values[np.isnan(shifts)])
+    if unknown:
+        warnings.warn(
+            f"the error of the limit of stability at {unknown}, {label}, by the basis of the "
+            "reduced rotor is not known; compare it with a rotor of more modes",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+    if np.all(np.isnan(shifts)):
         return
     errors = limit_errors(shifts, values, span)
     worst = int(np.nanargmax(errors))
@@ -246,9 +275,13 @@ class _Options:
 
 
 class _Made:
-    """Growth over a parameter; `accuracy` is that of the basis."""
+    """Growth over a parameter.
+
+    `accuracy` is that of the basis, `solver` method and tolerance of exponents.
+    """
 
     accuracy: float | None
+    solver: tuple[str, float]
 
     def growth(self, value: float, named: bool = False) -> Growth:
         """Return the growth, with the names of the motions if asked for."""
@@ -280,11 +313,28 @@ class _OverSpeed(_Made):
     def accuracy(self) -> float | None:
         return self.checked.accuracy
 
+    @property
+    def solver(self) -> tuple[str, float]:
+        return self.task.method, self.task.tolerance
+
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)
 
     def basis(self, value: float) -> tuple[BasisError, float]:
         return self.checked, value
+
+
+@dataclass(frozen=True, eq=False)
+class _Finer:
+    """Growth with the shapes that the basis of a reduced rotor lacks first."""
+
+    made: _Made
+
+    def growth(self, value: float) -> Growth:
+        """Return the growth at a value of the parameter."""
+        basis, speed = self.made.basis(value)
+        space = basis.left_out.finer.space(0, speed, held=True)
+        return GrowthAt(space, *self.made.solver)(speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,6 +349,10 @@ class _OverParameter(_Made):
     @property
     def accuracy(self) -> float | None:
         return self.options.accuracy
+
+    @property
+    def solver(self) -> tuple[str, float]:
+        return self.options.method, self.options.tolerance
 
     def growth(self, value: float, named: bool = False) -> Growth:
         chosen, model = self.options, self._model(value)

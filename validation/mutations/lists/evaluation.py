@@ -8,8 +8,8 @@ EVALUATION = [
         "test_evaluation.py",
         (
             "half power taken for half the size",
-            "_HALF_POWER = np.sqrt(0.5)",
-            "_HALF_POWER = 0.5",
+            "if curve[end] < HALF_POWER * size:",
+            "if curve[end] < 0.5 * size:",
         ),
         (
             "margin above without its 10 %",

@@ -387,6 +387,33 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/stability/thresholds.py",
+        "test_basis_error.py::test_errors_of_limits_where_modes_meet",
+        (
+            "limits of the other sense are taken",
+            "if on == onset]",
+            "if on != onset]",
+        ),
+    ),
+    *mutations(
+        "linear/stability/stability_map.py",
+        "test_basis_error.py::test_errors_of_a_map_of_stability_are_those_of_its_points",
+        (
+            "error of the most stable motion",
+            "value = growth.values[[growth.least_stable]]",
+            "value = growth.values[[-1]]",
+        ),
+    ),
+    *mutations(
+        "linear/response/basis_check.py",
+        "test_basis_error.py::test_motions_with_harmonics_are_looked_at_at_all_peaks",
+        (
+            "valleys for peaks",
+            "(sizes[1:-1] > sizes[:-2]) & (sizes[1:-1] >= sizes[2:])",
+            "(sizes[1:-1] < sizes[:-2]) & (sizes[1:-1] <= sizes[2:])",
+        ),
+    ),
+    *mutations(
         "linear/modal/mesh_pairs.py",
         "test_mesh_pairs.py",
         ("the upper mode of a pair stands for both", "= split, -split", "= -split, split"),
