@@ -475,8 +475,8 @@ LINEAR = [
         ),
         (
             "limits where modes meet estimated like others",
-            "if meets or slope",
-            "if slope",
+            "or meets or slope",
+            "or slope",
         ),
     ),
     *mutations(
