@@ -263,6 +263,9 @@ def _numbers(values: object, name: str, needed: str, dtype: type) -> np.ndarray:
     except Exception as error:
         raise TypeError(_told(name, needed, values)) from error
     if result.size == 0 and result.dtype.kind in "buif":
+        # an empty list has no type, an empty array of numbers holds no flags
+        if dtype is bool and isinstance(values, np.ndarray) and result.dtype.kind != "b":
+            raise TypeError(_told(name, needed, values))
         return result
     if result.dtype.kind == "c" and dtype is not complex:
         if np.any(result.imag):

@@ -114,6 +114,8 @@ def report(
     checks.label(title, "title")
     Units.of(units)
     messages = [_message(one) for one in checks.items(raised, "raised", "warnings in a sequence")]
+    if isinstance(contents, str) and not contents.strip():
+        raise ValueError(f"contents: is empty text; give {_HOW}")
     sections = _sections(contents)
     if not sections:
         raise ValueError(f"contents: there are none; give {_HOW}")

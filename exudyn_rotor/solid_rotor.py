@@ -81,6 +81,7 @@ class SolidRotor(FiniteElementRotor):
     centre of mass   [0, 0, 0.57143] m
     spin axis        direction [0, 0, 1], point [0, 0, 0] m
     rigid motions    1 of 6 free (grounded)
+    part             1: 3 nodes, 3.5 kg, 0 × 0 × 1 m about (0, 0, 0.5) m
     interface        disc: 1 nodes, centre [0, 0, 0.5] m, on the axis
     point mass       0.5 kg at [0, 0, 0.9] m, on node 2, 0.1 m away
     """

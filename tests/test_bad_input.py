@@ -10,9 +10,14 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     check_run,
+    checks,
     propose,
     recommended_settings,
+    report,
+    stability_threshold,
 )
+from exudyn_rotor.linear.modal.excitation import checked_orders
+from exudyn_rotor.theory.stiffening import Stiffening
 
 
 @pytest.fixture(scope="module")
@@ -116,3 +121,21 @@ SETTINGS = [
 def test_recommended_settings_refuses(given, options, kind, message):
     with pytest.raises(kind, match=message):
         recommended_settings(*given, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: checked_orders([]), "orders: needs positive numbers"),
+        (lambda: Stiffening(np.zeros((2, 2)), None), "B: needs"),
+        (lambda: report("a.html", ""), "contents: is empty text"),
+        (lambda: checks.array(np.zeros(0), "onset", dtype=bool), "onset: needs"),
+        (
+            lambda: stability_threshold(lambda value: None, 0.0, 1.0),
+            "speed: needs the spin speed .* since target: a function",
+        ),
+    ],
+)
+def test_nothing_where_something_belongs_is_refused_by_name(call, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        call()

@@ -33,7 +33,10 @@ def test_loose_parts_are_told_and_taken_if_asked_for(count):
     assert str(told.value).count("7.85 kg, 0.1 × 0.1 × 0.1 m") == count // 2
     assert str(told.value).count("'aluminium'") == count // 2
     rotor = SolidRotor.from_ngsolve(mesh, MATERIALS, "z", order=1, allow_parts=True)
-    assert f"loose parts      {count}: " in rotor.summary()
+    text = rotor.summary()
+    assert f"loose parts      {count}: " in text
+    assert text.count("\npart             ") == count
+    assert f"part             {count}: 'aluminium': " in text or count % 2
     parts = loose_parts(rotor.nodes, rotor.stiffness)
     assert sorted(np.concatenate(parts)) == list(range(rotor.node_count))
     assert all(np.ptp(rotor.nodes[part, 2]) == pytest.approx(0.1) for part in parts)
@@ -44,6 +47,7 @@ def test_parts_that_touch_need_glue():
         SolidRotor.from_ngsolve(boxes(2, 0.0), MATERIALS, "z", order=1)
     rotor = SolidRotor.from_ngsolve(boxes(2, 0.0, Glue), MATERIALS, "z", order=1)
     assert "loose parts" not in rotor.summary()
+    assert "part             1: 'aluminium' and 'steel': " in rotor.summary()
 
 
 def test_springs_between_parts_connect_them():

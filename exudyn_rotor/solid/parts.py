@@ -37,10 +37,20 @@ def describe_parts(
     mass: sp.csr_array,
     elements: NgsolveElements | None,
 ) -> str:
-    """Return materials, number of nodes, mass, size and place of the largest parts as text."""
-    texts = [_described(part, nodes, mass, elements) for part in parts[:_LISTED]]
-    more = len(parts) - len(texts)
-    return "; ".join(texts) + (f"; and {more} more" if more else "")
+    """Return what :func:`described_parts` does of the largest parts, as one text."""
+    more = len(parts) - _LISTED
+    texts = described_parts(parts[:_LISTED], nodes, mass, elements)
+    return "; ".join(texts) + (f"; and {more} more" if more > 0 else "")
+
+
+def described_parts(
+    parts: list[np.ndarray],
+    nodes: np.ndarray,
+    mass: sp.csr_array,
+    elements: NgsolveElements | None,
+) -> list[str]:
+    """Return materials, number of nodes, mass, size and place of each part as text."""
+    return [_described(part, nodes, mass, elements) for part in parts]
 
 
 def check_connected(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.solid.interface import Interface
-from exudyn_rotor.solid.parts import describe_parts, loose_parts
+from exudyn_rotor.solid.parts import described_parts, loose_parts
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc
 from exudyn_rotor.solid.rotor import FiniteElementRotor
@@ -22,16 +22,23 @@ def summary(rotor: FiniteElementRotor) -> str:
         f"spin axis        direction {_vector(axis.direction)}, point {_vector(axis.point)} m",
         f"rigid motions    {rotor.rigid_motions} of 6 free ({support})",
     ]
-    parts = loose_parts(rotor.nodes, rotor.stiffness)
-    if parts:
-        described = describe_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
-        lines.append(f"loose parts      {len(parts)}: {described}")
+    lines += _part_lines(rotor)
     if rotor.elements is not None:
         lines += [_material_line(*region) for region in rotor.elements.described()]
     lines += [_interface_line(rotor, interface) for interface in rotor.interfaces.values()]
     lines += [_point_mass_line(point_mass) for point_mass in rotor.point_masses]
     lines += [_disc_line(rotor, disc) for disc in rotor.discs]
     return "\n".join(lines)
+
+
+def _part_lines(rotor: FiniteElementRotor) -> list[str]:
+    """Return a line for each connected part, with its materials, and one that tells loose ones."""
+    loose = loose_parts(rotor.nodes, rotor.stiffness)
+    parts = loose or [np.arange(rotor.node_count)]
+    described = described_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
+    lines = [f"part             {number}: {text}" for number, text in enumerate(described, 1)]
+    told = [f"loose parts      {len(loose)}: nothing connects them"] if loose else []
+    return told + lines
 
 
 def _interface_line(rotor: FiniteElementRotor, interface: Interface) -> str:

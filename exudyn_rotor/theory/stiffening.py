@@ -93,7 +93,7 @@ class Stiffening:
     def __post_init__(self) -> None:
         K2 = checks.matrix(self.K2, "K2")
         for name in ("K2", "B", "K4"):
-            if getattr(self, name) is not None:
+            if name != "K4" or self.K4 is not None:
                 matrix = checks.symmetric(getattr(self, name), name, size=K2.shape[0])
                 object.__setattr__(self, name, matrix)
 

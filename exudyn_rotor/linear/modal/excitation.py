@@ -23,7 +23,7 @@ def checked_orders(orders: Sequence[float] | float) -> np.ndarray:
     if isinstance(orders, int | float | np.number) and not isinstance(orders, bool):
         orders = [orders]
     values = checks.vector(orders, "orders", size=None)
-    if np.any(values <= 0.0):
+    if values.size == 0 or np.any(values <= 0.0):
         raise ValueError(f"orders: needs positive numbers, got {checks.shown(orders)}")
     return values
 

@@ -110,7 +110,12 @@ def stability_threshold(
         made: _Made = _OverSpeed.of(target, high, given | {"supports": supports})
     else:
         if speed is None:
-            raise ValueError("speed: needs the spin speed [rad/s], since it is not the parameter")
+            given = "target" if callable(target) else "supports"
+            raise ValueError(
+                f"speed: needs the spin speed [rad/s], since {given}: a function, "
+                f"{checks.shown(target if callable(target) else supports)}, says that it is not "
+                "the parameter"
+            )
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
         made = _OverParameter(target, supports, speed, _Options.of(given))
     search = Search(made, high - low)
