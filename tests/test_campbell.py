@@ -10,6 +10,7 @@ from models import STEEL, block_beam
 from point_rotors import SKEW_AXIS, random_arrays, random_rotor
 
 from exudyn_rotor import SolidRotor, campbell, free_modes
+from exudyn_rotor.linear.modal import whirl
 
 HERTZ = 2.0 * np.pi
 
@@ -127,3 +128,13 @@ def test_progress_bar(rotor, capsys):
     assert capsys.readouterr().err == ""
     campbell(rotor, [0.0, 1.0], progress=True)
     assert "Campbell" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("ignore:the centre of mass is")
+def test_what_does_not_depend_on_the_speed_is_computed_once(monkeypatch):
+    calls = []
+    fits = whirl.wave_fits
+    monkeypatch.setattr(whirl, "wave_fits", lambda *given: calls.append(1) or fits(*given))
+    rotor = random_rotor(22).reduce(4)
+    campbell(rotor, np.linspace(0.0, 30.0, 7), stiffening="none", accuracy=None)
+    assert len(calls) == 1

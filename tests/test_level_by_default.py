@@ -82,11 +82,12 @@ def test_level_is_full_where_there_are_elements_and_results_name_it():
     assert "stiffening: tilt" in campbell(plain, [0.0, 100.0]).table()
 
 
-@pytest.mark.parametrize("factor", [1e-6, 1e6])
+@pytest.mark.parametrize("factor", [1e-6, 1e6, 1e12])
 def test_modes_do_not_depend_on_the_scale_of_the_stiffness(factor):
+    """By iteration; rounding of the frequencies is that of the matrices."""
     steel = STEEL | {"youngsModulus": factor * STEEL["youngsModulus"]}
     geometry = OCCGeometry(Cylinder((0, 0, 0), Z, 0.2, 0.1))
-    mesh = Mesh(geometry.GenerateMesh(maxh=0.1))
+    mesh = Mesh(geometry.GenerateMesh(maxh=0.08))
     plain = free_modes(SolidRotor.from_ngsolve(mesh, STEEL, "z"), 4).frequencies
     scaled = SolidRotor.from_ngsolve(mesh, steel, "z", check_units=False)
     found = free_modes(scaled, 4).frequencies

@@ -2,6 +2,7 @@
 
 import inspect
 from dataclasses import dataclass, replace
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -354,3 +355,8 @@ def test_responses_tell_the_level_of_stiffening(ellipses, shaken):
     for response in (ellipses, shaken):
         assert response.stiffening == "tilt"
         assert response.table().splitlines()[-1] == "stiffening: tilt"
+
+
+def test_loading_promises_a_result():
+    """Its methods are those that editors and type checkers offer."""
+    assert get_type_hints(load_result)["return"] is Result

@@ -84,7 +84,13 @@ def lanczos_modes(
     Ruhe, "The spectral transformation Lanczos method", Math. Comp. 35 (1980).
     """
     start = np.random.default_rng(_SEED).standard_normal(stiffness.shape[0])
-    operator = spla.LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
+    # ARPACK takes eigenvalues of K⁻¹M below ε^⅔ for zero, and then stops too early
+    load = mass @ start
+    answer = inverse(load)
+    scale = np.sqrt((start @ load) / max(answer @ (mass @ answer), np.finfo(float).tiny))
+    operator = spla.LinearOperator(
+        stiffness.shape, matvec=lambda force: scale * inverse(force), dtype=float
+    )
     try:
         values, modes = spla.eigsh(
             stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance
@@ -95,7 +101,7 @@ def lanczos_modes(
             "ask for more modes (a cluster may be cut) or give a larger tolerance"
         ) from error
     order = np.argsort(values)
-    return values[order], modes[:, order]
+    return scale * values[order], modes[:, order]
 
 
 def check_modes(
