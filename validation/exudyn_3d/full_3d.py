@@ -205,9 +205,8 @@ def main() -> None:
     print_table(f"full bodies, {rotor.node_count} nodes, deviation over lateral motion", rows)
     if not quick:
         fine = SolidRotor.from_ngsolve(disc_on_shaft(0.1), STEEL, "z", order=1)
-        print_table(
-            "Exudyn's full 3D body", costs({"shaft": shaft, "disc": disc, "fine": fine}, 10)
-        )
+        meshes = {"shaft": balanced(shaft), "disc": rotor, "fine": balanced(fine)}
+        print_table("Exudyn's full 3D body", costs(meshes, 10))
 
 
 if __name__ == "__main__":
