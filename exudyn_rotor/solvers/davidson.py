@@ -88,6 +88,7 @@ def davidson_modes(
             excess = np.linalg.norm(residual, axis=0) / allowed
             checked = excess[: factors.size] <= factors[: excess.size]
             bar.update(int(np.count_nonzero(checked[:count])) - bar.n)
+            bar.set_postfix_str(f"residual {excess[:count].max():.0e} of the limit")
             if np.all(checked):
                 return values[:count], modes[:, :count]
             space.extend(inverse.precondition(residual[:, excess > 1.0]))
