@@ -1,4 +1,4 @@
-"""Imports go one way: the order of folders is that of the listing under 'Structure' in README."""
+"""Imports go one way: the order of folders is that of the listing under 'Structure' in CONTRIBUTING."""
 
 import ast
 import re
@@ -14,9 +14,9 @@ NAME = PACKAGE.name
 
 
 def order() -> list[str]:
-    """Return the entries of the listing in README, 'theory/' or 'checks.py', top down."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    listing = text.split("## Structure", 1)[1].split(f"{NAME}/", 1)[1].split("\n    validation/")[0]
+    """Return the entries of the listing in CONTRIBUTING, 'theory/' or 'checks.py', top down."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    listing = text.split("### Structure", 1)[1].split(f"{NAME}/", 1)[1].split("\n    validation/")[0]
     lines = (re.split(r" {2,}", line.strip())[0] for line in listing.splitlines()[1:])
     return [
         entry for line in lines for entry in line.split(", ") if re.match(r"\w+(/|\.py)$", entry)
@@ -65,7 +65,7 @@ def place(module: str) -> int:
     """Return where the entry of a module stands in the listing."""
     head = module.partition(".")[0] or "__init__"
     entry = f"{head}/" if (PACKAGE / head).is_dir() else f"{head}.py"
-    assert entry in order(), f"{entry} is not listed under 'Structure' in README"
+    assert entry in order(), f"{entry} is not listed under 'Structure' in CONTRIBUTING"
     return order().index(entry)
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Script(NamedTuple):
-    """A script: its module, and which numbers in README it makes."""
+    """A script: its module, and which numbers it makes."""
 
     module: str
     number: str
@@ -55,12 +55,12 @@ def summary(script: Script) -> str:
 
 
 def listing() -> str:
-    """Return the name, the first line and the numbers in README of every script."""
+    """Return the name, the first line and the numbers of every script."""
     lines = ["python -m validation NAME [options]; --help after a name shows its options", ""]
     for name, script in SCRIPTS.items():
         lines.append(f"{name:14} {summary(script)}")
         if script.number:
-            lines.append(f"{'':15}README: {script.number}")
+            lines.append(f"{'':15}numbers: {script.number}")
     return "\n".join(lines)
 
 
