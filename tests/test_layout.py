@@ -1,4 +1,4 @@
-"""Imports go one way: the order of folders is that of the listing under 'Structure' in CONTRIBUTING."""
+"""Imports go one way: the order of folders is that of the listing in CONTRIBUTING, 'Structure'."""
 
 import ast
 import re
@@ -16,7 +16,8 @@ NAME = PACKAGE.name
 def order() -> list[str]:
     """Return the entries of the listing in CONTRIBUTING, 'theory/' or 'checks.py', top down."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    listing = text.split("### Structure", 1)[1].split(f"{NAME}/", 1)[1].split("\n    validation/")[0]
+    listing = text.split("### Structure", 1)[1].split(f"{NAME}/", 1)[1]
+    listing = listing.split("\n    validation/")[0]
     lines = (re.split(r" {2,}", line.strip())[0] for line in listing.splitlines()[1:])
     return [
         entry for line in lines for entry in line.split(", ") if re.match(r"\w+(/|\.py)$", entry)

@@ -24,7 +24,8 @@ from pathlib import Path
 from validation.mutations.lists import ALL
 from validation.mutations.mutation import PACKAGE, ROOT, Mutation
 
-_COPIED = (PACKAGE, "tests", "validation", "examples", "pyproject.toml", "README.md", "CONTRIBUTING.md")
+_FILES = ("pyproject.toml", "README.md", "CONTRIBUTING.md")
+_COPIED = (PACKAGE, "tests", "validation", "examples", *_FILES)
 _NO_CACHE = shutil.ignore_patterns("__pycache__", "*.png")
 _LONGEST = 600.0  # seconds; a mutation that makes a test run on counts as killed
 _QUICK = 10
