@@ -225,6 +225,11 @@ class Invariants:
         J, P = moments_about(self, shift)
         return replace(self, center=self.center - shift, J=J, P=P)
 
+    @cached_property
+    def undamped(self) -> Invariants:
+        """The invariants without viscous and structural damping."""
+        return replace(self, D=0.0 * self.D, H=None)
+
     def reversed(self) -> Invariants:
         """Return the invariants for the opposite axis ``−e``: G, B and g change their sign."""
         B = None if self.B is None else -self.B

@@ -73,6 +73,7 @@ class BasisError:
             row[used] = self.left_out.shifts(speed, entry.columns(np.flatnonzero(used)))
         return shifts
 
+    @one_thread()
     def shifts_of(
         self, speeds: np.ndarray, modes: Sequence[FloquetModes | None]
     ) -> np.ndarray | None:
@@ -86,6 +87,7 @@ class BasisError:
                 shifts[index] = 0.0 if full else self.left_out.shifts(speed, mode)[0]
         return shifts
 
+    @one_thread()
     def critical_errors(
         self, critical: Sequence[tuple[float, np.ndarray, np.ndarray]]
     ) -> np.ndarray:

@@ -110,7 +110,8 @@ class LeftOut:
             finer = FinerRotor.of(finer, model.supports, model.stiffening)
         finer = replace(finer, given=model)
         if not np.any(model.invariants.D):  # of its own or left out, as for critical speeds
-            undamped = replace(finer.invariants, D=0.0 * finer.invariants.D)
+            undamped, H = finer.invariants.undamped, finer.invariants.H
+            undamped = undamped if H is None else replace(undamped, H=H)
             finer = replace(finer, invariants=undamped)
         return cls(finer, model.size, held and model.free_spin is not None)
 

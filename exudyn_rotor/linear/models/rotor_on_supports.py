@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -86,12 +87,7 @@ class LinearRotor(SupportedRotor):
             If a support is at an unknown interface; the message lists the known ones.
         """
         check_interfaces(supports, rotor.interfaces)
-        origin = rotor.axis.project(rotor.center_of_mass)
-        invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
-        level = chosen_level(stiffening, invariants.K2 is not None)
-        terms = SpinTerms.of(invariants, second_order(invariants, level))
-        estimate = invariants.K2_estimated if stiffening == "auto" else None
-        invariants = replace(invariants, K4=terms.K4, K2_estimated=estimate)
+        invariants, terms, level = _without_supports(rotor, stiffening)
         linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
         if ModeKind.SPIN in rotor.kinds:
             spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
@@ -249,6 +245,23 @@ class LinearRotor(SupportedRotor):
         # if the spin were free, a constant torque however small would turn it on and on
         driven = (int(np.argmax(self.spin.momentum)),)
         return WholeSpace(light, can_be_sent=True, driven=driven)
+
+
+_known: WeakKeyDictionary[ReducedRotor, dict[str, tuple[Invariants, SpinTerms, str]]]
+_known = WeakKeyDictionary()
+
+
+def _without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants, SpinTerms, str]:
+    """Return what supports do not change: invariants, terms and level; made once for each level."""
+    known = _known.setdefault(rotor, {})
+    if stiffening not in known:
+        origin = rotor.axis.project(rotor.center_of_mass)
+        invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+        level = chosen_level(stiffening, invariants.K2 is not None)
+        terms = SpinTerms.of(invariants, second_order(invariants, level))
+        estimate = invariants.K2_estimated if stiffening == "auto" else None
+        known[stiffening] = replace(invariants, K4=terms.K4, K2_estimated=estimate), terms, level
+    return known[stiffening]
 
 
 def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:

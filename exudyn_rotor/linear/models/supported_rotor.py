@@ -93,5 +93,4 @@ class SupportedRotor:
     def undamped(self: Kind) -> Kind:
         """Return the model without damping, and without the skew part of supports' stiffness."""
         supports = tuple(support.undamped() for support in self.supports)
-        undamped = replace(self.invariants, D=0.0 * self.invariants.D, H=None)
-        return replace(self, supports=supports, invariants=undamped)
+        return replace(self, supports=supports, invariants=self.invariants.undamped)

@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import brentq, linear_sum_assignment, minimize_scalar
+from scipy.optimize import linear_sum_assignment, minimize_scalar
 
 from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.linear.stability.growth import Growth
@@ -54,9 +54,49 @@ class Search:
         found = []
         for low, high in pairwise(sorted(self.known)):
             if self.unstable(low) != self.unstable(high):
-                root = brentq(lambda value: self.at(value).excess, low, high, xtol=accuracy)
-                found.append((float(root), self.unstable(high)))
+                ends = (low, high) if self.unstable(high) else (high, low)
+                found.append((self._change(*ends, accuracy), self.unstable(high)))
         return found
+
+    def _change(self, stable: float, unstable: float, accuracy: float) -> float:
+        """Return where the verdict changes between two values.
+
+        By secants through the growth on the unstable side, which is that of one motion; on the
+        stable side the largest real part is soon that of another. Every fourth step halves.
+        """
+        last, root, steps = None, None, 0
+        while abs(unstable - stable) > accuracy:
+            steps += 1
+            guess, before = None, root
+            if last is not None and steps % 4:
+                root = self._secant(last, unstable)
+                guess = self._beside(root, before, stable, unstable, accuracy)
+            if guess is None or not min(stable, unstable) < guess < max(stable, unstable):
+                guess = 0.5 * (stable + unstable)
+            if self.unstable(guess):
+                last, unstable = unstable, guess
+            else:
+                stable = guess
+        if root is None:
+            return 0.5 * (stable + unstable)
+        return float(np.clip(root, min(stable, unstable), max(stable, unstable)))
+
+    def _secant(self, far: float, near: float) -> float:
+        """Return where the growth at two unstable values points to; NaN where it does not fall."""
+        rise, height = self.at(far).excess - self.at(near).excess, self.at(near).excess
+        return near - height * (far - near) / rise if rise > 0.0 else np.nan
+
+    @staticmethod
+    def _beside(
+        root: float, before: float | None, stable: float, unstable: float, accuracy: float
+    ) -> float:
+        """Return a value a little to the unstable side of a root, or beyond it for the last."""
+        away = np.sign(stable - unstable)
+        distance = abs(unstable - root)
+        error = 0.5 * distance if before is None else abs(root - before)
+        if distance <= accuracy:
+            return root + away * max(0.4 * accuracy, error)
+        return root - away * min(max(0.4 * accuracy, 0.5 * error), 0.5 * distance)
 
     def rate(self, value: float, step: float) -> np.ndarray:
         """Return the change of all exponents per unit of the parameter."""
