@@ -100,6 +100,10 @@ SOLVERS = [
             "self._restriction @ rest.astype(float)",
             "self._restriction @ load.astype(float)",
         ),
+    ),
+    *mutations(
+        "solvers/two_level.py",
+        "test_iterative.py::test_smoothing_is_two_steps_of_chebyshev_iteration",
         (
             "second Chebyshev step forgets the first",
             "return first, again * first + new",
