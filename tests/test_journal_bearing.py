@@ -264,3 +264,20 @@ def test_a_film_too_thin_goes_on_by_its_tangent():
     inside, outside = (one.law(edge + d, 0.0, 0.0, 0.0, 0.0, SPEED)[0] for d in (-1e-12, 1e-12))
     assert inside == pytest.approx(outside, rel=1e-4)
     assert one.law(1.5 * SIZE["clearance"], 0.0, 0.0, 0.0, 0.0, SPEED)[0] < 2.0 * inside < 0.0
+
+
+def test_a_film_too_thin_at_slow_speeds_still_has_a_linear_model():
+    """The limit of a rigid rotor is where half its mass is that of the film's coefficients."""
+    rotor = rigid_rotor()
+    pads = grooved_pads(1e-4, [0.0, np.pi], 0.3)
+    coarse = OilFilm(0.05, 0.05, 0.02, pads, nodes=60, axial_nodes=0)
+    loads = bearing_loads(rotor, ["left", "right"], GRAVITY)
+    pair = zip(("left", "right"), loads, strict=True)
+    bearings = [JournalBearing(interface=name, film=coarse, load=load) for name, load in pair]
+    with pytest.raises(ValueError, match="presses the film below"):
+        bearings[0].coefficients(1.0)
+    found = stability_threshold(rotor, 200.0, 900.0, supports=bearings, samples=4)
+    state = coarse.equilibrium(found.values[0], loads[0])
+    assert state.critical_mass() == pytest.approx(53.5, rel=1e-4)
+    with pytest.raises(ValueError, match="presses the film below"):
+        stability(rotor, [1.0], supports=bearings)

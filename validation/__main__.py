@@ -34,6 +34,7 @@ SCRIPTS = {
     "mean_axis": Script("exudyn_3d.mean_axis", "Craig–Bampton modes over the speed"),
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
+    "film": Script("references.film", "oil films of finite length"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),
     "blade": Script("stiffening.blade", "rotating beams"),

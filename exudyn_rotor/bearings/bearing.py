@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 
-_SLOW = 1.0  # rad/s, where only the directions that a bearing holds are asked for
+_HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,7 +63,7 @@ class Bearing(ABC):
 
     def with_load(self, load: ArrayLike) -> Bearing:
         """Return the bearing with a static load on the journal [N], shape (2,)."""
-        return replace(self, load=load)
+        return replace(self, load=checks.vector(load, "load", "N", size=2))
 
     def linearised(self) -> Support:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -95,8 +95,17 @@ class Linearised:
     index: int
 
     def __call__(self, speed: float) -> np.ndarray:
-        """Return the coefficient, shape (2, 2); at rest, where films carry nothing, a slow one."""
-        return self.bearing.coefficients(speed or _SLOW)[self.index]
+        """Return the coefficient, shape (2, 2).
+
+        Without an equilibrium, at rest above all, that at the next of some higher speeds: some ask
+        for the directions that a bearing holds. What asks for its size calls `check_range` before.
+        """
+        for tried in (speed, *_HIGHER):
+            try:
+                return self.bearing.coefficients(tried)[self.index]
+            except ValueError as error:
+                refused = error
+        raise refused
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed at which the bearing has no equilibrium, by a ValueError."""
