@@ -11,6 +11,7 @@ from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass
 
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.full_drawing import surface_drawing
 from exudyn_rotor.multibody.full_equations import sparse_object, spin_coupling_object
 from exudyn_rotor.multibody.full_plan import FullPlan
 from exudyn_rotor.multibody.locking import (
@@ -31,7 +32,7 @@ from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.theory.full_motion import principal
 
 
-def add_full(mbs: exudyn.MainSystem, plan: FullPlan, graphics: Callable | None) -> FullRotorBody:
+def add_full(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
     """Add the frame's node, that of the displacements, the equations, ties and markers."""
     if not plan.setup.marker_body:
         return _add_bare(mbs, plan)
@@ -63,7 +64,8 @@ def add_full(mbs: exudyn.MainSystem, plan: FullPlan, graphics: Callable | None) 
     if motion.is_constant:
         guide = None
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
-    objects = _add_equations(mbs, plan, [rigid, fields], guide, graphics)
+    drawing = surface_drawing(plan, rigid, fields)
+    objects = _add_equations(mbs, plan, [rigid, fields], guide, drawing)
     load = None
     if np.any(plan.marker_body_gravity):
         marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))

@@ -311,7 +311,7 @@ def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -
         warnings.warn(LOSS_LEFT_OUT.format("A scene runs"), UserWarning, stacklevel=3)
     if setup.marker_body:
         _warn_of_turned_axes(plan)
-    body = watched(add_full(mbs, plan, None))
+    body = watched(add_full(mbs, plan))
     needs_sparse_solver(mbs)
     if setup.marker_body:
         refuse_markers(body)

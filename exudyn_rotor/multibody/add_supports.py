@@ -17,6 +17,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.support import acts
+from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.seats import Base, Seat
 from exudyn_rotor.multibody.support_connectors import (
@@ -109,7 +110,7 @@ def add_supports(
     >>> print(*add_supports(body, springs), sep=" and ")
     left by Exudyn and right by symbolic function
     """
-    checks.instance(body, "body", RotorBody, "add_rotor returns one")
+    reduced_body(body, how="add_rotor returns one")
     body.check_present()
     supports = given_supports(supports)
     if "marker_body" not in body.objects:

@@ -199,7 +199,7 @@ def reduced_body(body: object, name: str = "body", how: str = "add_rotor returne
     if isinstance(body, FullRotorBody):
         raise TypeError(
             f"{name}: rotor {body.name!r} is a full body, whose displacements of all nodes this "
-            "does not analyse; add the reduced rotor, add_rotor(mbs, rotor.reduce(…)), or give a "
+            "does not take; add the reduced rotor, add_rotor(mbs, rotor.reduce(…)), or give a "
             "linear analysis the SolidRotor and its supports"
         )
     return checks.instance(body, name, RotorBody, how)

@@ -7,6 +7,35 @@ _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_
 
 MULTIBODY = [
     *mutations(
+        "multibody/ties.py",
+        "test_full_bodies.py",
+        ("interfaces move the wrong way", "[[-self.rows, select]", "[[self.rows, select]"),
+        (
+            "stiffness of mean motions on other coordinates",
+            "_shifted(sp.csr_array(ties.stiffness), width, size)",
+            "_shifted(sp.csr_array(ties.stiffness), width - 1, size)",
+        ),
+    ),
+    *mutations(
+        "multibody/add_full.py",
+        "test_full_bodies.py",
+        (
+            "gravity on half of the mass",
+            "plan.motion.invariants.mass * directions",
+            "0.5 * plan.motion.invariants.mass * directions",
+        ),
+        ("low-rank stiffening per Ω", "spin.speed**2 * values", "spin.speed * values"),
+    ),
+    *mutations(
+        "multibody/full_equations.py",
+        "test_full_bodies.py",
+        (
+            "coupling of spin and displacements dropped",
+            "table[count + 1 :, 2] = row",
+            "table[count + 1 :, 2] = 0.0 * row",
+        ),
+    ),
+    *mutations(
         "multibody/spatial_body.py",
         "test_spatial_body.py",
         ("frame in the mesh origin", "place + turn @ rotor.center_of_mass", "place"),

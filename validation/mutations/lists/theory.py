@@ -4,6 +4,35 @@ from validation.mutations.mutation import mutations
 
 THEORY = [
     *mutations(
+        "theory/full_motion.py",
+        "test_full_bodies.py",
+        ("low-rank stiffening reversed", "((V, -W),)", "((V, W),)"),
+        ("low-rank terms dropped", "product += V.T", "product += 0.0 * V.T"),
+        (
+            "Euler field of the opposite axis kept",
+            "euler=(V, -W)",
+            "euler=(V, W)",
+        ),
+        ("one plane direction held", "np.outer(e, e))[0][:, :2]", "np.outer(e, e))[0][:, :1]"),
+        ("spin not held", "rows = np.vstack([rows, turn[None, :]])", "pass"),
+        ("moment of the condition kept twice", "invariants.g - turn /", "invariants.g + turn /"),
+        ("h once in (85)", "(2.0 * terms.h + terms.C_hat @ c)", "(terms.h + terms.C_hat @ c)"),
+        (
+            "Coriolis force reversed",
+            "- (2.0 * omega) * (terms.G @ rate)",
+            "+ (2.0 * omega) * (terms.G @ rate)",
+        ),
+        ("Euler force reversed", "loads -= now.omega_t *", "loads += now.omega_t *"),
+        ("torque of (86) not halved when frozen", "(1.0 if frozen else 2.0)", "2.0"),
+        ("Euler torque dropped", "torque -= rate @", "torque -= 0.0 * rate @"),
+        (
+            "softening of a constant speed reversed",
+            "stiffness - speed**2 * terms.C_hat.sparse",
+            "stiffness + speed**2 * terms.C_hat.sparse",
+        ),
+        ("unbalance without a moment", "if np.any(self.unbalance_momentum):", "if False:"),
+    ),
+    *mutations(
         "theory/energy.py",
         "test_energy.py",
         ("Coriolis part of the energy reversed", "+ omega * (terms.g", "- omega * (terms.g"),
