@@ -103,6 +103,7 @@ CASES = [(name, "z", "tilt") for name in FAMILY] + [
     ("2.2", "x", "none"),
     ("2.3", "skew", "tilt"),
     ("2.4", "off", "tilt"),
+    ("2.4", "down", "tilt"),
     ("2.5", "skew", "none"),
     ("2.5, θ(t)", "off", "tilt"),
     ("2.4", "z", "full"),
@@ -122,6 +123,7 @@ def test_full_and_reduced_with_all_modes_agree(bar, name, axis, level):
         "z": lambda: bar,
         "x": lambda: turned(bar, [1.0, 0.0, 0.0]),
         "skew": lambda: turned(bar, SKEW),
+        "down": lambda: turned(bar, [0.0, 0.0, -1.0]),
         "off": lambda: turned(bar, SKEW, (0.02, 0.01, 0.0)),
     }[axis]()
     options, conditions = FAMILY[name]
@@ -189,3 +191,15 @@ def test_what_the_frame_describes_is_no_displacement(bar):
     with pytest.raises(ValueError, match=r"modal_coordinates: .*mean motion"):
         add_rotor(mbs, bar, translation="free", modal_coordinates=sideways)
     assert mbs.systemData.NumberOfNodes() == 0
+
+
+@pytest.mark.parametrize("options", [{}, {"gravity": GRAVITY}, {"marker_body": False}])
+def test_no_markers_are_needed(bar, options):
+    """Nothing but its spin moves the rotor outwards, whatever else it has."""
+    mbs, body = scene(bar, markers={}, stiffening="tilt", **options)
+    mbs.Assemble()
+    settings = recommended_settings(1e-3, 1e-4, body=body)
+    settings.timeIntegration.verboseMode = 0
+    mbs.SolveDynamic(settings)
+    assert np.isfinite(body.displacement()).all()
+    assert body.displacement()[bar.nearest_node([0.03, -0.025, 0.3])] @ [1.0, -1.0, 0.0] > 0.0

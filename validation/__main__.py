@@ -41,6 +41,7 @@ SCRIPTS = {
     "disc": Script("stiffening.disc", "rotating discs"),
     "overhung": Script("stiffening.overhung", "overhung disc"),
     "basis": Script("basis", ""),
+    "full_bodies": Script("full_bodies", ""),
     "extremes": Script("extremes.table", "the extremes"),
     "savers": Script("savers", "no file lost"),
     "kernels": Script("kernels", ""),

@@ -156,6 +156,9 @@ def _ties_and_mesh(plan: FullPlan) -> tuple[Ties, MarkerBodyMesh, np.ndarray]:
         shown[name] = ReducedInterface(
             interface.reference, interface.center, interface.radius, motion
         )
+    if not shown:  # and a node
+        still = np.zeros((6, ties.count))
+        shown[""] = ReducedInterface(plan.selection.origin, plan.selection.origin, 0.0, still)
     offsets = {name: request.offset for name, request in plan.setup.markers.items()}
     mesh = marker_body_mesh(None, shown, np.eye(ties.count), rotor.axis, plan.frame, offsets)
     directions = _free_directions(plan)

@@ -9,7 +9,11 @@ MULTIBODY = [
     *mutations(
         "multibody/ties.py",
         "test_full_bodies.py",
-        ("interfaces move the wrong way", "[[-self.rows, select]", "[[self.rows, select]"),
+        (
+            "interfaces move the wrong way",
+            "sp.hstack([-self.rows, select])",
+            "sp.hstack([self.rows, select])",
+        ),
         (
             "stiffness of mean motions on other coordinates",
             "_shifted(sp.csr_array(ties.stiffness), width, size)",

@@ -15,7 +15,6 @@ THEORY = [
         ),
         ("one plane direction held", "np.outer(e, e))[0][:, :2]", "np.outer(e, e))[0][:, :1]"),
         ("spin not held", "rows = np.vstack([rows, turn[None, :]])", "pass"),
-        ("moment of the condition kept twice", "invariants.g - turn /", "invariants.g + turn /"),
         ("h once in (85)", "(2.0 * terms.h + terms.C_hat @ c)", "(terms.h + terms.C_hat @ c)"),
         (
             "Coriolis force reversed",
