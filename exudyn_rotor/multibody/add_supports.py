@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import exudyn
 import numpy as np
 
-from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.support import acts
