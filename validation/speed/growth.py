@@ -21,7 +21,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 MODES = 20
-ELEMENT_SIZES, LARGEST = (0.011, 0.0085, 0.0062, 0.0048), 0.0036  # m
+ELEMENT_SIZES, LARGEST = (0.011, 0.0085, 0.0062, 0.0048), 0.0034  # m
 PICTURE = Path("growth.png")
 
 
