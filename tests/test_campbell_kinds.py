@@ -8,6 +8,8 @@ from test_campbell_frames import SHAFT, point_mass, rings
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speed_map, critical_speeds
 from exudyn_rotor.linear.modal.whirl import FORWARD
 from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
+from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 
 def test_overdamped_motions_stand_behind_the_others():
@@ -33,14 +35,31 @@ def test_overdamped_motions_stand_behind_the_others():
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
 
 
-def test_free_motions_keep_their_names():
+@pytest.mark.parametrize("stiffness", [1e6, np.diag([1e6, 2e6, 0.0])], ids=["even", "uneven"])
+def test_free_motions_keep_their_names(stiffness):
     """Lateral springs alone leave the spin and the axial motion free, at rest and at speed."""
     rotor = rings(SHAFT).reduce(2)
-    support = Support("all", 1e6, 10.0, 1e4)
-    result = campbell(rotor, [0.0, 30.0, 90.0], supports=[support])
+    support = Support("all", stiffness, 10.0, 1e4)
+    result = campbell(rotor, [0.0, 30.0, 50.0, 90.0], supports=[support])
     for row, words in enumerate(result.whirl):
         free = words[result.frequencies_inertial[row] == 0.0]
         assert sorted(free) == ["axial", "torsional"]
+
+
+def test_free_motions_of_periodic_equations_are_those_without_force():
+    """Five mixed coordinates, two held, one of them by springs that turn alone; three are free."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(5, 5)))[0]
+    held = turn[:, :2]
+    even, uneven = np.diag([4.0, 0.0]), np.array([[0.3, 0.2j], [0.2j, -0.3]])
+    K = {n: held @ X @ held.T for n, X in ((0, even), (2, uneven), (-2, uneven.conj()))}
+    system = PeriodicSystem(0.7, {0: np.eye(5)}, {0: 0.1 * held @ held.T}, K)
+    modes = floquet_modes(system)
+    free = modes.values == 0.0
+    assert np.count_nonzero(free) == 3
+    vectors = modes.vectors[:, :, free]
+    assert np.all(vectors[modes.orders != 0] == 0.0)
+    np.testing.assert_allclose(held.T @ modes.central[:, free], 0.0, atol=1e-12)
+    assert np.linalg.svd(modes.central[:, free])[1] == pytest.approx(np.ones(3))
 
 
 def test_whirl_frequencies_have_the_sign_of_the_whirl():

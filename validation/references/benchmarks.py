@@ -44,6 +44,8 @@ from validation.references.benchmark_rotors import (
 REFERENCE = Path(__file__).with_name("benchmarks_ross.json")
 ROUND, FLAT = Jeffcott((0.02,), 20.0), Jeffcott((0.024, 0.02), 60.0)
 LEVEL = "full"
+# what a basis leaves out belongs to the deviation here
+GIVEN = {"stiffening": LEVEL, "accuracy": None}
 
 
 class Row(NamedTuple):
@@ -68,8 +70,7 @@ def jeffcott(kind: Jeffcott = ROUND, material_damping: float = 0.0) -> ReducedRo
 
 def lateral(rotor: ReducedRotor, supports: list[Support], speed: float) -> np.ndarray:
     """Return λ of the lateral modes, by inertial frequency: growth + i frequency."""
-    # what a basis leaves out belongs to the deviation here
-    result = campbell(rotor, [speed], supports=supports, stiffening=LEVEL, accuracy=None)
+    result = campbell(rotor, [speed], supports=supports, **GIVEN)
     chosen = np.isin(result.whirl[0], LATERAL)
     values = result.growth[0, chosen] + 1j * result.frequencies_inertial[0, chosen]
     return values[np.argsort(values.imag)]
@@ -99,7 +100,7 @@ def internal_damping() -> Iterator[Row]:
         supports = [*bearings(), seal(outer)]
         speeds = exact * np.array([0.8, 1.2])
         rotor = jeffcott(ROUND, rate)
-        edges = unstable_ranges(rotor, speeds, supports=supports, stiffening=LEVEL)
+        edges = unstable_ranges(rotor, speeds, supports=supports, **GIVEN)
         yield Row(f"threshold, c_e/c_i = {outer / inner:g}", exact, edges[0, 0], MASSLESS)
 
 
@@ -142,7 +143,7 @@ def asymmetric_shaft() -> Iterator[Row]:
     """``√(k_1/m) < Ω < √(k_2/m)``: where a shaft with two stiffnesses is unstable."""
     low, high = np.sort(FLAT.frequencies)
     speeds = [0.8 * low, 0.5 * (low + high), 1.2 * high]
-    found = unstable_ranges(jeffcott(FLAT), speeds, supports=bearings(), stiffening=LEVEL)
+    found = unstable_ranges(jeffcott(FLAT), speeds, supports=bearings(), **GIVEN)
     for name, exact, ours in zip(("from", "to"), (low, high), found[0], strict=True):
         yield Row(f"unstable {name}", exact, ours, MASSLESS)
 
@@ -159,8 +160,7 @@ def asymmetric_on_unequal_bearings() -> Iterator[Row]:
     def growth(speed: float) -> float:
         return parametric_growth(FLAT, bearing, damping, speed)
 
-    given = {"supports": supports, "stiffening": LEVEL}
-    found = unstable_ranges(jeffcott(FLAT), speeds, **given).ravel()
+    found = unstable_ranges(jeffcott(FLAT), speeds, supports=supports, **GIVEN).ravel()
     for low, high, ours in zip(speeds[:-1], speeds[1:], found, strict=True):
         exact = brentq(growth, low, high, rtol=1e-7)
         yield Row("edge of an unstable range", exact, ours, MASSLESS + "; ends that move")

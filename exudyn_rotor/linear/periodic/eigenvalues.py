@@ -68,7 +68,7 @@ def quadratic_modes(
         If the mass matrix is not positive definite, or the eigenvalues are not finite.
     """
     companion, size = Companion.of(M, D, K, rounding), len(M)
-    found, free_motions = [], None
+    found, known = [], None
     every_value, every_state = companion.modes()
     clear = _errors_of_vectors(every_value, every_state[:, :size], M, D, K) <= _CLEAR
     solutions = zip(every_value, every_state, *companion.errors, clear, strict=True)
@@ -83,8 +83,7 @@ def quadratic_modes(
             given = values[chosen[rest]], vectors[:, rest]
             vectors[:, rest] = inverse_iterated(*given, M, D[index], K[index])
         free = values[chosen] == 0.0
-        free_motions = _null_space(M, K[index], vectors[:, free], free_motions)
-        vectors[:, free] = free_motions
+        known = vectors[:, free] = free_motions(M, K[index], vectors[:, free], known)
         found.append((values[chosen], vectors, resolution, bounds[chosen]))
     return found
 
@@ -105,13 +104,14 @@ def _errors_of_vectors(
     return np.linalg.norm(residual, axis=1) / np.maximum(moved, 1e-300)
 
 
-def _null_space(
-    M: np.ndarray, K: np.ndarray, otherwise: np.ndarray, known: np.ndarray | None
+def free_motions(
+    M: np.ndarray, K: np.ndarray, otherwise: np.ndarray, known: np.ndarray | None = None
 ) -> np.ndarray:
     """Return unit vectors of free motions, ``Kx = 0``; as many as, and else, those given.
 
-    Copies of one free motion (a Jordan block at zero) would hide another. Those `known` from
-    another speed are taken where they are free here, too.
+    Copies of one free motion (a Jordan block at zero) would hide another. K is a matrix, or several
+    that all have to vanish, shape (n, k, k). Those `known` from another speed are taken where they
+    are free here, too.
     """
     count = otherwise.shape[1]
     if count < 2:
@@ -121,7 +121,8 @@ def _null_space(
         if left <= _STILL_NULL * np.linalg.norm(K):
             return known
     lower = la.cholesky(M, lower=True)
-    _, lengths, rows = la.svd(_within(lower, K))
+    per_mass = np.vstack([_within(lower, each) for each in np.reshape(K, (-1, *M.shape))])
+    _, lengths, rows = la.svd(per_mass, full_matrices=False)
     if lengths[-count] > _NULL * lengths[0]:
         return otherwise
     vectors = la.solve_triangular(lower.T, rows[-count:].conj().T, lower=False)

@@ -13,7 +13,12 @@ from functools import partial
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.eigenvalues import merged, quadratic_modes, repeated
+from exudyn_rotor.linear.periodic.eigenvalues import (
+    free_motions,
+    merged,
+    quadratic_modes,
+    repeated,
+)
 from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
@@ -77,8 +82,9 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     chosen, solution, _ = solve_hill(
         system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance
     )
+    shapes = _with_free_motions(system, chosen, solution.orders)
     rest = solution.orders, solution.resolution, chosen.bounds
-    return FloquetModes(chosen.values, chosen.shapes, *rest)
+    return FloquetModes(chosen.values, shapes, *rest)
 
 
 def stands_still(system: PeriodicSystem) -> bool:
@@ -113,6 +119,27 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     # what is zero to rounding has no error of truncation that could be told
     sizes = np.where(values[columns] == 0.0, np.inf, sizes)
     return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
+
+
+def _with_free_motions(system: PeriodicSystem, chosen: Chosen, orders: np.ndarray) -> np.ndarray:
+    """Return the harmonics chosen, those of free motions as constant displacements without force.
+
+    ``K_n x = 0`` for all Fourier terms n of K: at λ = 0 Hill's equations hold with x alone.
+    """
+    free = np.flatnonzero(chosen.values == 0.0)
+    if free.size < 2:
+        return chosen.shapes
+    terms = [term for n, term in system.K.items() if n >= 0]
+    K = np.array([part for term in terms for part in (term.real, term.imag)])
+    center = np.flatnonzero(orders == 0)[0]
+    given = chosen.shapes[center][:, free]
+    found = free_motions(system.M[0].real, K, given)
+    if found is given:
+        return chosen.shapes
+    shapes = chosen.shapes.copy()
+    shapes[:, :, free] = 0.0
+    shapes[center][:, free] = found
+    return shapes
 
 
 def _families(

@@ -64,20 +64,20 @@ class Search:
         By secants through the growth on the unstable side, which is that of one motion; on the
         stable side the largest real part is soon that of another. Every fourth step halves.
         """
-        last, root, steps = None, None, 0
+        last, root, steps = None, np.nan, 0
         while abs(unstable - stable) > accuracy:
             steps += 1
-            guess, before = None, root
+            guess, before = np.nan, root
             if last is not None and steps % 4:
                 root = self._secant(last, unstable)
                 guess = self._beside(root, before, stable, unstable, accuracy)
-            if guess is None or not min(stable, unstable) < guess < max(stable, unstable):
+            if not min(stable, unstable) < guess < max(stable, unstable):
                 guess = 0.5 * (stable + unstable)
             if self.unstable(guess):
                 last, unstable = unstable, guess
             else:
                 stable = guess
-        if root is None:
+        if np.isnan(root):
             return 0.5 * (stable + unstable)
         return float(np.clip(root, min(stable, unstable), max(stable, unstable)))
 
@@ -88,12 +88,12 @@ class Search:
 
     @staticmethod
     def _beside(
-        root: float, before: float | None, stable: float, unstable: float, accuracy: float
+        root: float, before: float, stable: float, unstable: float, accuracy: float
     ) -> float:
         """Return a value a little to the unstable side of a root, or beyond it for the last."""
         away = np.sign(stable - unstable)
         distance = abs(unstable - root)
-        error = 0.5 * distance if before is None else abs(root - before)
+        error = 0.5 * distance if np.isnan(before) else abs(root - before)
         if distance <= accuracy:
             return root + away * max(0.4 * accuracy, error)
         return root - away * min(max(0.4 * accuracy, 0.5 * error), 0.5 * distance)

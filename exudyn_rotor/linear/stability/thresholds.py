@@ -27,8 +27,10 @@ from exudyn_rotor.sweep import ascending_from_zero
 _ROOT = 1e-8  # of the largest parameter
 # share of λ or Ω: motions so near one another change with the root of what the basis leaves out
 _NEAR = 0.05
-# of the range beside such a limit, and points in it, where it is searched again
-_REACH, _POINTS = 0.05, 9
+# of the range beside such a limit where it is searched again, in steps that grow, then at points
+_REACH, _STEPS, _POINTS = 0.05, 6, 9
+# of such a step: to which the distance is found
+_SHARE = 0.02
 Supports = Sequence[Support] | Support
 
 
@@ -212,11 +214,17 @@ def _searched_again(search: Search, value: float, onset: bool) -> float:
     """Return the distance to the limit with the shapes that the basis lacks; NaN if none is near.
 
     The growth of motions that meet changes with the root of the parameter: it has no slope there.
+    The verdict at the limit tells on which side the other lies.
     """
-    finer = Search(_Finer(search.made), search.span)
+    finer, reach = Search(_Finer(search.made), search.span), _REACH * search.span
     low, high = min(search.known), max(search.known)
-    reach = np.array([-1.0, 1.0]) * _REACH * search.span + value
-    for point in np.linspace(*np.clip(reach, low, high), _POINTS):
+    side = -1.0 if finer.unstable(value) == onset else 1.0
+    for distance in reach * 4.0 ** np.arange(1.0 - _STEPS, 1.0):
+        finer.at(float(np.clip(value + side * distance, low, high)))
+        found = finer.changes(max(ASIDE * search.span, _SHARE * distance))
+        if found:
+            return found[0][0] - value
+    for point in np.linspace(*np.clip([value - reach, value + reach], low, high), _POINTS):
         finer.at(float(point))
     finer.refine()
     found = [at - value for at, on in finer.changes(ASIDE * search.span) if on == onset]

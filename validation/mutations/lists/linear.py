@@ -388,11 +388,21 @@ LINEAR = [
     ),
     *mutations(
         "linear/stability/thresholds.py",
-        "test_basis_error.py::test_errors_of_limits_where_modes_meet",
+        "test_basis_error.py::test_errors_of_limits_where_modes_meet test_threshold_search.py",
         (
             "limits of the other sense are taken",
             "if on == onset]",
             "if on != onset]",
+        ),
+        (
+            "limit of the finer model on the other side",
+            "return found[0][0] - value",
+            "return value - found[0][0]",
+        ),
+        (
+            "limit of the finer model searched on the wrong side",
+            "== onset else 1.0",
+            "!= onset else 1.0",
         ),
     ),
     *mutations(
@@ -463,6 +473,29 @@ LINEAR = [
             "no gap between two unstable samples",
             "self._search(low, high, lambda growth, _: growth.excess)",
             "self._search(low, high, lambda growth, _: -growth.excess)",
+        ),
+    ),
+    *mutations(
+        "linear/stability/threshold_search.py",
+        "test_threshold_search.py",
+        (
+            "a limit without a secant is no number",
+            "if np.isnan(root):",
+            "if False:",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/floquet_modes.py",
+        "test_campbell_kinds.py",
+        (
+            "free motions of periodic equations by rounding",
+            "if found is given:",
+            "if found is not given:",
+        ),
+        (
+            "free motions without what turns",
+            "if n >= 0]",
+            "if n == 0]",
         ),
     ),
     *mutations(

@@ -1,0 +1,75 @@
+"""The search of limits of stability over growth given as a function."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from exudyn_rotor.linear.stability import thresholds
+from exudyn_rotor.linear.stability.growth import Growth
+from exudyn_rotor.linear.stability.threshold_search import Search
+
+
+class Given:
+    """Growth of one motion, a function of the parameter; counts its calls."""
+
+    def __init__(self, real: Callable[[float], float]) -> None:
+        self.real, self.calls = real, 0
+
+    def growth(self, value: float) -> Growth:
+        self.calls += 1
+        return Growth(np.array([self.real(value) + 3.0j]), np.array([1e-12]), 0.0, ())
+
+
+@pytest.mark.parametrize(
+    ("real", "calls"),
+    [
+        (lambda value: 2.0 * (value - np.pi / 10), 12),
+        (lambda value: 0.3 * np.sinh(value - np.pi / 10), 16),
+        (lambda value: np.sqrt(max(value - np.pi / 10, 0.0)) - 1e-9, 40),
+        (lambda value: 1.0 if value > np.pi / 10 else -1.0, 40),
+        (lambda value: 2.0 - value if value > np.pi / 10 else -1.0, 40),
+    ],
+    ids=["line", "curve", "root", "jump", "falling"],
+)
+@pytest.mark.parametrize("onset", [True, False])
+def test_limits_of_any_growth_are_found(real, calls, onset):
+    """To the accuracy asked for, here 1e-9; halving alone takes 30 calls."""
+    made = Given(real if onset else lambda value: real(1.0 - value))
+    search = Search(made, 1.0)
+    for value in (0.0, 1.0):
+        search.at(value)
+    [(limit, found)] = search.changes(1e-9)
+    assert found == onset
+    assert limit == pytest.approx(np.pi / 10 if onset else 1.0 - np.pi / 10, abs=2e-9)
+    assert made.calls <= calls
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e-4, -3e-3, 0.03])
+@pytest.mark.parametrize("onset", [True, False])
+def test_a_limit_of_a_finer_model_is_searched_beside_the_limit(monkeypatch, shift, onset):
+    """Growth with the root of the parameter: to 2 % of steps up to four times the distance."""
+    sign = 1.0 if onset else -1.0
+
+    def real(value: float) -> float:
+        return float(np.sqrt(complex(sign * (value - 0.5 - shift))).real) - 1e-9
+
+    finer = Given(real)
+    monkeypatch.setattr(thresholds, "_Finer", lambda _: finer)
+    search = Search(finer, 1.0)
+    search.at(0.0), search.at(1.0)
+    finer.calls = 0
+    found = thresholds._searched_again(search, 0.5, onset)
+    assert found == pytest.approx(shift, rel=0.08, abs=1e-6)
+    assert finer.calls <= 16
+
+
+@pytest.mark.parametrize(("onset", "distance"), [(True, 0.02), (False, 0.022)])
+def test_a_narrow_range_of_a_finer_model_is_found(monkeypatch, onset, distance):
+    """Unstable from 0.52 to 0.522, between the steps away from a limit at 0.5."""
+    finer = Given(lambda value: 1e-6 - (value - 0.521) ** 2)
+    monkeypatch.setattr(thresholds, "_Finer", lambda _: finer)
+    search = Search(finer, 1.0)
+    search.at(0.0), search.at(1.0)
+    found = thresholds._searched_again(search, 0.5, onset)
+    assert found == pytest.approx(distance, abs=2e-6)
