@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from models import STEEL
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, stability
-from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.exponents import constant_exponents, motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.growth import growth_of
 
@@ -149,3 +149,14 @@ def test_bar_on_rigid_bearings_is_unstable_between_its_critical_speeds_only():
     np.testing.assert_array_equal(*verdicts)
     assert 5 < np.sum(~verdicts[0]) < 12
     assert np.sum(np.diff(verdicts[0].astype(int)) != 0) == 2
+
+
+def test_soft_directions_are_exact_beside_stiff_ones():
+    """Six coordinates, every second one 1e8 times as stiff: the soft half is a system by itself."""
+    soft = np.array([[3.0, 1.0, 0.5], [1.0, 2.0, 0.7], [0.5, 0.7, 4.0]])
+    both = np.kron(soft, np.diag([1.0, 1e8]))
+    parts = [
+        PeriodicSystem(0.0, *({0: X} for X in (np.eye(len(K)), 0.0 * K, K))) for K in (soft, both)
+    ]
+    alone, beside = (np.sort(np.abs(constant_exponents(part))) for part in parts)
+    np.testing.assert_allclose(beside[:6], alone, rtol=1e-14)

@@ -109,6 +109,11 @@ def scene_of_a_lossy_rotor(_):
     add_rotor(mbs, lossy(), spin=4.0, translation="none")
 
 
+def scene_of_a_full_lossy_rotor(_):
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_damping(loss=0.01)
+    add_rotor(exu.SystemContainer().AddSystem(), rotor, spin=4.0)
+
+
 def frame_held_by_modes(_):
     fem = disc_fem()
     held = FEMinterface()
@@ -128,20 +133,24 @@ def axis_that_no_node_turns_about(beam):
     add_rotor(exu.SystemContainer().AddSystem(), rotor)
 
 
-def torque_on_a_tilt_of_the_node(beam):
+def torque_on_a_tilt_of_the_node(beam, source=None):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, ring_rotor(0.1, 0.1, 2.0).reduce(0))
+    body = add_rotor(mbs, source or ring_rotor(0.1, 0.1, 2.0).reduce(0))
     tilt = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=3)
     mbs.AddLoad(LoadCoordinate(markerNumber=mbs.AddMarker(tilt), load=1.0))
     mbs.Assemble()
     return body
 
 
-def asked_for_connections(beam):
+def asked_for_connections(beam, source=None):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        body = torque_on_a_tilt_of_the_node(beam)
+        body = torque_on_a_tilt_of_the_node(beam, source)
     body.check_connections()
+
+
+def full_body_asked_for_connections(beam):
+    asked_for_connections(beam, ring_rotor(0.1, 0.1, 2.0))
 
 
 def peak_between_few_speeds(_):
@@ -227,8 +236,14 @@ PLACES = {
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",
     ),
-    "multibody/add_rotor.py:add_rotor": (
+    "multibody/add_rotor.py:_add_reduced": (
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it",
+    ),
+    "multibody/add_rotor.py:_add_solid": (
+        scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it",
+    ),
+    "multibody/full_body.py:check_connections": (
+        full_body_asked_for_connections, ConnectionWarning, "does not tilt",
     ),
     "multibody/add_rotor.py:_warn_of_turned_axes": (
         axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about",

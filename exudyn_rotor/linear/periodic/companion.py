@@ -76,7 +76,9 @@ class Companion:
         stiffness = _congruent(0.5 * (K + _transposed(K)), inverse.T)
         if not np.all(np.isfinite(stiffness)):
             raise ValueError("the system matrices have entries that are not finite")
-        squares, turn = np.linalg.eigh(stiffness)
+        _, turn = np.linalg.eigh(stiffness)
+        # Rayleigh quotients: eigh errs by the largest entry, even where that is of other axes
+        squares = np.sum(turn * (stiffness @ turn), axis=-2)
         axes = inverse.T @ turn
         circulatory, damping = _congruent(0.5 * (K - _transposed(K)), axes), _congruent(D, axes)
         sides = np.linalg.norm(circulatory, axis=-2)

@@ -288,6 +288,11 @@ LINEAR = [
             "sizes = np.broadcast_to(scale[..., None], squared.shape)",
         ),
         (
+            "small eigenvalues as eigh finds them beside large ones",
+            "squares = np.sum(turn * (stiffness @ turn), axis=-2)",
+            "squares = np.linalg.eigvalsh(stiffness)",
+        ),
+        (
             "condition of eigenvalues left out",
             "solver = 2.0 * count * self.rounding * most * condition",
             "solver = 1e-3 * self.rounding * most * np.minimum(condition, 1.0)",
