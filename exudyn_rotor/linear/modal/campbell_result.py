@@ -63,7 +63,7 @@ class Campbell(Result):
         Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
         reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
         [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
-        twice the highest speed and the lowest six; None where it is not known, as of a scene.
+        twice the highest speed and the lowest six; None where it is not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     splits : ndarray, shape (s, k), or None

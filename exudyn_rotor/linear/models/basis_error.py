@@ -13,6 +13,7 @@ import numpy as np
 
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.left_out import LeftOut
+from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
@@ -48,7 +49,11 @@ class BasisError:
     @classmethod
     def of(cls, model: LinearModel, accuracy: float | None, held: bool = False) -> BasisError:
         """Prepare the check of a model; `held` where a free spin is no coordinate."""
-        known = isinstance(model, LinearRotor) and not model.is_full and accuracy is not None
+        known = (
+            isinstance(model, LinearRotor | LinearScene)
+            and not model.is_full
+            and accuracy is not None
+        )
         return cls(model, accuracy, LeftOut.of(model, held) if known else None)
 
     @property
@@ -104,7 +109,7 @@ class BasisError:
         worst = np.max(np.nan_to_num(errors), initial=0.0)
         if self.left_out is None or worst <= self.accuracy:
             return
-        rotor = self.model.rotor
+        rotor = self.left_out.rotor
         elastic = rotor.size - len(rotor.rigid_kinds)
         highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
         warnings.warn(

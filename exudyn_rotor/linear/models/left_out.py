@@ -32,6 +32,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.linear.models.finer_scene import FinerScene
+from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
@@ -62,6 +64,11 @@ class FinerRotor(LinearRotor):
     given: LinearRotor | None = None
 
     @property
+    def loaded(self) -> tuple[str, ...]:
+        """Names of the interfaces with supports."""
+        return tuple(support.interface for support in self.supports)
+
+    @property
     def mesh(self) -> Mesh | None:
         """Nodes of the mesh with the motion that the reduced rotor knows of them."""
         mesh = self.given.mesh
@@ -83,25 +90,33 @@ class _WiderMesh(Mesh):
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """A reduced rotor on supports beside the shapes that its basis lacks first.
+    """A reduced rotor, on supports or in a scene, beside the shapes that its basis lacks first.
 
     Attributes
     ----------
-    finer : FinerRotor
-        In the coordinates of the reduced rotor, then those that it lacks.
+    finer : FinerRotor or FinerScene
+        In the coordinates of the model, then those that it lacks.
     kept : int
         Number of the former.
+    rotor : ReducedRotor
+        The rotor whose basis is looked at.
     held : bool
         Whether the spin is no coordinate, as nothing holds it and it follows θ = Ωt.
     """
 
-    finer: FinerRotor
+    finer: FinerRotor | FinerScene
     kept: int
+    rotor: ReducedRotor
     held: bool = False
 
     @classmethod
-    def of(cls, model: LinearRotor, held: bool = False) -> LeftOut | None:
+    def of(cls, model: LinearRotor | LinearScene, held: bool = False) -> LeftOut | None:
         """Return what the basis of a model leaves out; None where that is not known."""
+        if isinstance(model, LinearScene):
+            rotor = model.body.selection.source
+            finer = finer_rotor(rotor)
+            finer = None if finer is None else FinerScene.of(model, finer)
+            return None if finer is None else cls(finer, model.size, rotor)
         finer = finer_rotor(model.rotor)
         if finer is None:
             return None
@@ -113,7 +128,7 @@ class LeftOut:
             undamped, H = finer.invariants.undamped, finer.invariants.H
             undamped = undamped if H is None else replace(undamped, H=H)
             finer = replace(finer, invariants=undamped)
-        return cls(finer, model.size, held and model.free_spin is not None)
+        return cls(finer, model.size, model.rotor, held and model.free_spin is not None)
 
     def at(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
         """Return the finer equations at a speed [rad/s], and which coordinates are left out."""
@@ -128,13 +143,14 @@ class LeftOut:
 
     def lacks_flexibility(self) -> bool:
         """Return True if the basis misses much of the flexibility at interfaces."""
-        if not self.finer.supports:
+        if not self.finer.loaded:
             return False
-        motion = np.vstack([self.finer.interface_motion(s.interface) for s in self.finer.supports])
-        stiffness = self.finer.invariants.K
+        finer = self.finer.rotor
+        motion = np.vstack([finer.interfaces[name].motion for name in self.finer.loaded])
+        stiffness = finer.invariants.K
         parts = []
-        for count in (self.kept, self.finer.size):
-            first = len(self.finer.rotor.rigid_kinds)
+        for count in (self.rotor.size, finer.size):
+            first = len(finer.rigid_kinds)
             flexible = slice(first, count)
             given = motion[:, flexible]
             parts.append(np.trace(given @ np.linalg.solve(stiffness[flexible, flexible], given.T)))
@@ -211,7 +227,8 @@ class LeftOut:
         def dynamic(omega: float) -> tuple[np.ndarray, np.ndarray]:
             M, D, K = hill_matrices(self._undamped_at(omega), orders)
             rate = 1j * middle * omega
-            return rate**2 * M + rate * D + K, M
+            dynamic = rate**2 * M + rate * D + K
+            return 0.5 * (dynamic + dynamic.conj().T), M
 
         lacking = np.arange(self.finer.size) >= self.kept
         x = np.zeros((len(orders), len(lacking)), dtype=complex)
