@@ -1,15 +1,15 @@
 """A scene whose rotor has the shapes, too, that its basis lacks first (coordinates c).
 
-Connectors act on the rotor at its interfaces, by whose motion ``u = U_b y + U_c c`` they see it,
-and on other bodies, with the coordinates ``o = O y``. Where the modes move the interfaces in every
-way, connectors cannot tell c from the motion ``y = Yc`` with
+Connectors act on the rotor at its interfaces, by whose motion ``u = Uy + U_c c`` they see it. Where
+the modes move the interfaces in every way, connectors cannot tell c from the motion ``y = Yc`` with
 
-    U_b Y = U_c,    O Y = 0,    Y = (U_b, O)⁺ (U_c, 0).
+    UY = U_c,    Y = U⁺U_c,
 
-A matrix X of the scene, less the rotor's own, is therefore ``TᵀXT`` in all coordinates, with
-``T = (I, Y)``: stiffness and damping alike, and each of their harmonics. The rotor's own terms are
-those of its finer model. Along the axis and about it the modes may move interfaces in fewer ways:
-where they do not stretch, axial springs count as shared by all places.
+the least one, in which other bodies stand still. A matrix X of the scene, less the rotor's own, is
+therefore ``TᵀXT`` in all coordinates, with ``T = (I, Y)``: stiffness and damping alike, and each of
+their harmonics. The rotor's own terms are those of its finer model. Along the axis and about it the
+modes may move interfaces in fewer ways: where they do not stretch, axial springs count as shared by
+all places.
 """
 
 from __future__ import annotations
@@ -168,10 +168,7 @@ class FinerScene:
     def _alike(self) -> np.ndarray:
         """T: the motions of the scene that connectors take these for, shape (k, size)."""
         k = self.given.size
-        others = scipy.linalg.orth(self.given.N[self.given.modal.stop :].T).T
-        seen = np.vstack(
-            [*map(self._motion, self.places), np.pad(others, ((0, 0), (0, self._more)))]
-        )
+        seen = np.vstack([np.zeros((0, self.size)), *map(self._motion, self.places)])
         seen = _scale(seen[:, :k])[:, None] * seen
         return np.hstack([np.eye(k), np.linalg.pinv(seen[:, :k], rcond=_DEPENDENT) @ seen[:, k:]])
 

@@ -51,15 +51,6 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/models/finer_scene.py",
-        "test_basis_in_scenes.py::test_estimates_with_a_foundation_are_the_errors_against_more_modes",
-        (
-            "foundation moves with the static responses",
-            "scipy.linalg.orth(self.given.N[self.given.modal.stop :].T).T",
-            "np.zeros((0, k))",
-        ),
-    ),
-    *mutations(
         "linear/response/basis_check.py",
         "test_basis_error.py::test_errors_of_unbalance_responses",
         (
