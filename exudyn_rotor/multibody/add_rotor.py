@@ -17,6 +17,7 @@ from exudyn_rotor.multibody.add_reduced import add_bare, add_with_marker_body
 from exudyn_rotor.multibody.assembly import check_at_assembly
 from exudyn_rotor.multibody.frame import CENTRE_OF_MASS, FRAME_NODES
 from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.full_memory import check_memory
 from exudyn_rotor.multibody.full_plan import make_full_plan
 from exudyn_rotor.multibody.locking import (
     LOCKINGS,
@@ -163,6 +164,8 @@ def add_rotor(
     ------
     ValueError, TypeError
         For bad input; nothing has been added then.
+    TooLittleMemoryError
+        Where an implicit run with a full body needs more memory than is available.
 
     Warns
     -----
@@ -303,6 +306,7 @@ def _add_reduced(mbs: exudyn.MainSystem, reduced: ReducedRotor, setup: inputs.Se
 
 
 def _add_solid(mbs: exudyn.MainSystem, rotor: SolidRotor, setup: inputs.Setup) -> FullRotorBody:
+    check_memory(rotor)
     if setup.stiffening in ("auto", "full"):
         rotor = with_chosen_prestress(rotor, None)
     level = chosen_level(setup.stiffening, rotor.carried_prestress is not None)

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import exudyn
 import numpy as np
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.support import acts
-from exudyn_rotor.multibody.full_body import reduced_body
+from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.seats import Base, Seat
 from exudyn_rotor.multibody.support_connectors import (
@@ -55,7 +56,7 @@ class SceneSupport:
 
 
 def add_supports(
-    body: RotorBody,
+    body: RotorBody | FullRotorBody,
     supports: Sequence[Given] | Given,
     base: Base | Mapping[str, Base] | None = None,
 ) -> tuple[SceneSupport, ...]:
@@ -66,7 +67,7 @@ def add_supports(
 
     Parameters
     ----------
-    body : RotorBody
+    body : RotorBody or FullRotorBody
         From :func:`exudyn_rotor.add_rotor`, with its marker body.
     supports : sequence of Support or bearings
         A bearing acts by its law at the rotor's place, velocity and spin; a support, too, where it
@@ -109,7 +110,7 @@ def add_supports(
     >>> print(*add_supports(body, springs), sep=" and ")
     left by Exudyn and right by symbolic function
     """
-    reduced_body(body, how="add_rotor returns one")
+    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_present()
     supports = given_supports(supports)
     if "marker_body" not in body.objects:
@@ -128,7 +129,7 @@ def add_supports(
     return added
 
 
-def _check_about_the_axis(body: RotorBody, support: Given) -> None:
+def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Given) -> None:
     """Refuse what acts against the rotation of a frame whose spin is free."""
     if isinstance(support, Bearing) or not body.formulation.has_spin:
         return
@@ -145,7 +146,7 @@ def _check_about_the_axis(body: RotorBody, support: Given) -> None:
             )
 
 
-def _added(body: RotorBody, support: Given, seat: Seat) -> SceneSupport:
+def _added(body: RotorBody | FullRotorBody, support: Given, seat: Seat) -> SceneSupport:
     mbs, parts = body.mbs, []
     if isinstance(support, Bearing):
         item = bearing_connector(body, support, seat, seat.marker(mbs))

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import full_markers, sensors
+from exudyn_rotor.multibody import full_markers, full_record, sensors
 from exudyn_rotor.multibody.connections import ConnectionWarning, lost_connections
 from exudyn_rotor.multibody.full_plan import FullPlan
+from exudyn_rotor.multibody.full_record import FullRecord
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
@@ -103,6 +104,7 @@ class FullRotorBody(RotorItems):
             f"  conditions     {self.condition_count} of the frame, in mass matrix and stiffness",
             f"  locked         {', '.join(self.locked) or 'none'}",
             f"  constraints    {len(self.constraints)}",
+            f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
             f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
         return "\n".join(lines)
@@ -133,6 +135,34 @@ class FullRotorBody(RotorItems):
                 "it with SolidRotor.from_ngsolve"
             )
         return recover(self.displacement(configuration).reshape(-1, 1))[:, :, 0]
+
+    def start_recording(self, instants: ArrayLike) -> None:
+        """Store the displacements of all nodes at chosen instants of the coming run.
+
+        Adds a sensor, so call it before ``mbs.Assemble()``. Sensors are stored every
+        ``solution.sensors.writePeriod``; the first time at or after an instant serves it.
+
+        Parameters
+        ----------
+        instants : array_like, shape (s,)
+            Ascending, from 0 [s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and if the system is assembled; nothing has been added then.
+        """
+        full_record.start_recording(self, instants)
+
+    def recorded(self) -> FullRecord:
+        """Return displacements and stress at the instants of :meth:`start_recording`.
+
+        Raises
+        ------
+        ValueError
+            If there are no instants, or the run has not stored all.
+        """
+        return full_record.recorded(self)
 
     def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
         """Return what the scene attaches to the rotor that it cannot carry; as of RotorBody."""

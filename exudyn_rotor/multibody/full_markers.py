@@ -73,6 +73,27 @@ def add_node_sensor(
     )
 
 
+def interface_carrier(
+    body: RotorItems, name: str
+) -> tuple[exudyn.ObjectIndex, np.ndarray, np.ndarray, float]:
+    """Add a massless body with the mean motion of an interface, for connectors to it.
+
+    Returns
+    -------
+    ObjectIndex
+    ndarray, shape (3,)
+        The interface's point on the axis, axes of the body [m].
+    ndarray, shape (6, 6)
+        Displacement and rotation by the body's coordinates, its axes.
+    float
+        Radius of the interface [m].
+    """
+    interface = body.selection.source.interfaces[name]
+    carrier, _ = _tied_body(body, interface, np.zeros(3))
+    place = body.frame.points(body.axis.project(interface.reference))
+    return carrier, place, np.kron(np.eye(2), body.frame.B), interface.radius
+
+
 def _check_marker_body(body: RotorItems) -> None:
     body.check_present()
     if "marker_body" not in body.objects:

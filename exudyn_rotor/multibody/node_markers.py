@@ -35,6 +35,7 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 
 _MARKERS = ("NodeRigid", "NodePosition")
+_SUPER_ELEMENT = ("SuperElementPosition", "SuperElementRigid", "SuperElement")
 _KINDS = exudyn.OutputVariableType
 _OF_PLACE = (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity)
 _OF_ROTATION = (_KINDS.Rotation, _KINDS.RotationMatrix, _KINDS.AngularVelocity)
@@ -159,14 +160,19 @@ def place_of(body: RotorItems) -> NodePlace:
 
 def _place_of(mbs: exudyn.MainSystem, entries: dict) -> NodePlace | None:
     """Return the place that a marker or sensor is at; None where it is at no rotor's node."""
-    try:
-        number = int(entries["nodeNumber"])
-    except (KeyError, TypeError, ValueError):
-        return None
+    number = _number(entries, "nodeNumber")
     for place in mbs.sys[_PLACES].values():
         if place.node == number and mark_of(mbs, place.physics) == place.mark:
             return place
     return None
+
+
+def _number(entries: dict, name: str) -> int | None:
+    """Return the number of an item that an entry names; None where it names none."""
+    try:
+        return int(entries[name])
+    except (KeyError, TypeError, ValueError):
+        return None
 
 
 def _entries(item: object) -> dict:
@@ -177,9 +183,29 @@ def _entries(item: object) -> dict:
         return {}
 
 
+def _refuse_mesh_nodes(mbs: exudyn.MainSystem, entries: dict) -> None:
+    """Refuse what asks for mesh nodes of a full body's flexible body, which has virtual ones."""
+    kind = entries.get("markerType", entries.get("sensorType", ""))
+    if kind not in _SUPER_ELEMENT:
+        return
+    number = _number(entries, "bodyNumber")
+    for place in mbs.sys[_PLACES].values():
+        if (
+            place.refusal
+            and place.marker_body == number
+            and mark_of(mbs, place.physics) == place.mark
+        ):
+            raise ValueError(
+                f"bodyNumber: {number} is the marker body of a full rotor body, whose "
+                "nodes are not those of the mesh; use body.add_marker(nodes) and "
+                "body.add_node_sensor(node, output)"
+            )
+
+
 def _moved_marker(mbs: exudyn.MainSystem, item: object) -> object:
     """Return a marker of the flexible body in place of one of its frame's node."""
     entries = _entries(item)
+    _refuse_mesh_nodes(mbs, entries)
     kind = entries.get("markerType")
     place = _place_of(mbs, entries) if kind in _MARKERS else None
     if place is None:
@@ -205,6 +231,7 @@ def _moved_marker(mbs: exudyn.MainSystem, item: object) -> object:
 def _moved_sensor(mbs: exudyn.MainSystem, item: object) -> object:
     """Return a sensor of a marker in place of one of the frame's node, where there is such one."""
     entries = _entries(item)
+    _refuse_mesh_nodes(mbs, entries)
     of_node = entries.get("sensorType") == "Node"
     kind = entries.get("outputVariableType")
     if not of_node or kind not in (*_OF_PLACE, *_OF_ROTATION):

@@ -16,9 +16,11 @@ from exudyn.itemInterface import (
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.full_markers import interface_carrier
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 
@@ -44,7 +46,7 @@ class Seat:
     orientation: np.ndarray
 
     @classmethod
-    def of(cls, body: RotorBody, support: Given, base: Base | Mapping[str, Base] | None) -> Seat:
+    def of(cls, body: RotorItems, support: Given, base: Base | Mapping[str, Base] | None) -> Seat:
         name, setup = support.interface, body.plan.setup.placement
         on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
         place = setup.position + setup.rotation @ on_axis
@@ -110,10 +112,18 @@ def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarr
     return np.asarray(values[0]), np.reshape(values[1], (3, 3))
 
 
-def point_marker(body: RotorBody, interface: str) -> exudyn.MarkerIndex:
+def _carrier(
+    body: RotorItems, interface: str
+) -> tuple[exudyn.ObjectIndex, np.ndarray, np.ndarray, float]:
+    """Return a flexible body, and place on the axis, motion (6, m) and radius of an interface."""
+    if isinstance(body, FullRotorBody):
+        return interface_carrier(body, interface)
+    return body.objects["marker_body"], *interface_motion(body, interface)
+
+
+def point_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the interface's mean displacement, its place on the axis."""
-    place, motion, _ = interface_motion(body, interface)
-    number = body.objects["marker_body"]
+    number, place, motion, _ = _carrier(body, interface)
     nodes = append_nodes(body.mbs, number, place[None, :], motion[:3])
     return body.mbs.AddMarker(
         MarkerSuperElementPosition(
@@ -122,10 +132,9 @@ def point_marker(body: RotorBody, interface: str) -> exudyn.MarkerIndex:
     )
 
 
-def rigid_marker(body: RotorBody, interface: str) -> exudyn.MarkerIndex:
+def rigid_marker(body: RotorItems, interface: str) -> exudyn.MarkerIndex:
     """Add a marker with the mean displacement and rotation, on the axis, axes (n1, n2, e)."""
-    place, motion, radius = interface_motion(body, interface)
-    number = body.objects["marker_body"]
+    number, place, motion, radius = _carrier(body, interface)
     axis = SpinAxis(body.frame.B @ body.axis.direction)
     nodes = append_nodes(body.mbs, number, *virtual_nodes(place, radius, motion, axis))
     return body.mbs.AddMarker(

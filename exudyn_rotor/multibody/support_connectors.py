@@ -20,7 +20,7 @@ from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.support import Support, varies
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.seats import Seat, point_marker, rigid_marker
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
@@ -34,7 +34,7 @@ Numbers = Sequence[float]
 
 
 def displacement_connector(
-    body: RotorBody, support: Support, seat: Seat, base: exudyn.MarkerIndex
+    body: RotorItems, support: Support, seat: Seat, base: exudyn.MarkerIndex
 ) -> tuple[exudyn.ObjectIndex, str]:
     mbs = body.mbs
     item = CartesianSpringDamper(markerNumbers=[base, point_marker(body, support.interface)])
@@ -53,7 +53,7 @@ def displacement_connector(
     return mbs.AddObject(item), SYMBOLIC
 
 
-def _varying_force(body: RotorBody, support: Support, axes: np.ndarray) -> Callable:
+def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Callable:
     spin = _spin_reader(body)
     turns = support.frame == "rotor"
 
@@ -71,7 +71,7 @@ def _varying_force(body: RotorBody, support: Support, axes: np.ndarray) -> Calla
 
 
 def bearing_connector(
-    body: RotorBody, bearing: Bearing, seat: Seat, base: exudyn.MarkerIndex
+    body: RotorItems, bearing: Bearing, seat: Seat, base: exudyn.MarkerIndex
 ) -> exudyn.ObjectIndex:
     """Add the connector of a bearing with a law of its own."""
     spin, law = _spin_reader(body), bearing.law
@@ -92,7 +92,7 @@ def bearing_connector(
 
 
 def tilt_connector(
-    body: RotorBody, support: Support, seat: Seat, base: exudyn.MarkerIndex
+    body: RotorItems, support: Support, seat: Seat, base: exudyn.MarkerIndex
 ) -> tuple[exudyn.ObjectIndex, str]:
     mbs = body.mbs
     item = RigidBodySpringDamper(
@@ -122,7 +122,7 @@ def tilt_connector(
     return mbs.AddObject(item), SYMBOLIC
 
 
-def _varying_torque(body: RotorBody, support: Support, tilt_of_base: Callable | None) -> Callable:
+def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable | None) -> Callable:
     spin = _spin_reader(body)
     turns = support.frame == "rotor"
 
@@ -176,11 +176,11 @@ def _follows_the_spin(support: Support, names: Sequence[str]) -> bool:
     return support.frame == "rotor" or any(varies(getattr(support, name)) for name in names)
 
 
-def _start_speed(body: RotorBody) -> float:
+def _start_speed(body: RotorItems) -> float:
     return body.plan.setup.placement.speed
 
 
-def _spin_reader(body: RotorBody) -> Callable[[exudyn.MainSystem], tuple[float, float]]:
+def _spin_reader(body: RotorItems) -> Callable[[exudyn.MainSystem], tuple[float, float]]:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
     node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
 

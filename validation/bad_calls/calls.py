@@ -51,6 +51,10 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "ReducedRotor": lambda w: w.reduced,
     "RigidDisc": lambda w: w.solid.add_disc(0.15, 1.0, (0.02, 0.02), 0.4).discs[0],
     "FullRotorBody": lambda w: w.full_body,
+    "FullRotorBody.recorded": lambda w: w.full_recorded,
+    "FullRotorBody.start_recording": lambda w: er.add_rotor(
+        SystemContainer().AddSystem(), w.solid, spin=10.0, translation="none", stiffening="tilt"
+    ),
     "RotorBody": lambda w: w.body,
     "RotorBody.start_recording": lambda w: er.add_rotor(SystemContainer().AddSystem(), w.reduced),
     "RunCheck": lambda w: w.run_check,
@@ -263,6 +267,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "FullRotorBody.add_interface_sensor": lambda w: _sensor(interface="left"),
     "FullRotorBody.add_marker": lambda w: {"where": [0, 1, 2, 3], "weights": [1.0, 1.0, 1.0, 2.0]},
     "FullRotorBody.add_node_sensor": lambda w: _sensor(node=0),
+    "FullRotorBody.start_recording": lambda w: {"instants": [0.0, 1e-3]},
     "FullRotorBody.marker": lambda w: {"interface": "left"},
     "RotorBody.add_interface_sensor": lambda w: _sensor(interface="left"),
     "RotorBody.add_marker": lambda w: {"where": [0, 1, 2, 3], "weights": [1.0, 1.0, 1.0, 2.0]},

@@ -372,6 +372,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("FullRotorBody", "markers"): v.MAPPING,
     ("FullRotorBody", "nodes"): v.MAPPING,
     ("FullRotorBody", "ties"): v.OBJECT,
+    ("FullRotorBody.start_recording", "instants"): v.SERIES,
     ("FullRotorBody.add_marker", "where"): Kind(frozenset({"range"}), spoiled=True),
     ("RotorBody", "markers"): v.MAPPING,
     ("RotorBody.add_marker", "where"): Kind(frozenset({"range"}), spoiled=True),

@@ -190,16 +190,17 @@ class World:
     @cached_property
     def recorded(self) -> er.RotorBody:
         """A rotor after four recorded steps."""
-        mbs = exudyn.SystemContainer().AddSystem()
-        body = er.add_rotor(mbs, self.reduced)
+        body = er.add_rotor(exudyn.SystemContainer().AddSystem(), self.reduced)
         body.start_recording()
-        mbs.Assemble()
-        settings = er.recommended_settings(4e-5, 1e-5)
-        settings.solution.sensors.writePeriod = 1e-5
-        settings.solution.file.write = False
-        settings.timeIntegration.verboseMode = 0
-        mbs.SolveDynamic(settings)
-        return body
+        return _after_four_steps(body)
+
+    @cached_property
+    def full_recorded(self) -> er.FullRotorBody:
+        """A full body after four steps, with its displacements at two instants."""
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = er.add_rotor(mbs, self.solid, spin=10.0, translation="none", stiffening="tilt")
+        body.start_recording([0.0, 2e-5])
+        return _after_four_steps(body)
 
     def renew(self) -> None:
         """Forget scenes and mesh, after a call that should have been refused has changed them."""
@@ -329,3 +330,13 @@ def quietly(function: Any, *given: Any, **options: Any) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return function(*given, **options)
+
+
+def _after_four_steps(body: er.RotorBody | er.FullRotorBody) -> er.RotorBody | er.FullRotorBody:
+    body.mbs.Assemble()
+    settings = er.recommended_settings(4e-5, 1e-5, body=body)
+    settings.solution.sensors.writePeriod = 1e-5
+    settings.solution.file.write = False
+    settings.timeIntegration.verboseMode = 0
+    body.mbs.SolveDynamic(settings)
+    return body

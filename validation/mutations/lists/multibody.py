@@ -40,6 +40,30 @@ MULTIBODY = [
         ),
     ),
     *mutations(
+        "multibody/full_markers.py",
+        "test_full_bodies.py::test_full_and_reduced_stand_on_the_same_supports",
+        (
+            "supports of a full body in axes of the mesh",
+            "np.kron(np.eye(2), body.frame.B), interface.radius",
+            "np.eye(6), interface.radius",
+        ),
+    ),
+    *mutations(
+        "multibody/full_record.py",
+        "test_full_bodies.py::test_one_run_stores_displacement_and_stress_at_instants",
+        (
+            "instants stored a step late",
+            "t >= self.instants[done] * (1.0 - _ROUNDING)",
+            "t > self.instants[done] * (1.0 + _ROUNDING)",
+        ),
+        ("runs not told apart", "if t < self.latest:", "if False:"),
+    ),
+    *mutations(
+        "multibody/full_memory.py",
+        "test_full_bodies.py::test_too_little_memory_is_said_before_anything_is_added",
+        ("memory of the factor not checked", "if needed > available:", "if False:"),
+    ),
+    *mutations(
         "multibody/spatial_body.py",
         "test_spatial_body.py",
         ("frame in the mesh origin", "place + turn @ rotor.center_of_mass", "place"),
