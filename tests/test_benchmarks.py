@@ -17,6 +17,7 @@ def test_published_critical_speeds_are_those_of_the_same_beams():
     np.testing.assert_allclose(rotor["rayleigh"][:2], rotor["published"][:2], rtol=5e-4)
     np.testing.assert_allclose(rotor["rayleigh"], rotor["published"], rtol=1.5e-2)
     assert np.all(np.array(rotor["timoshenko"]) < rotor["rayleigh"])
+    assert np.all(np.array(rotor["cones"]) < rotor["timoshenko"])
 
 
 def test_growth_of_an_asymmetric_shaft_on_equal_rigid_bearings():

@@ -134,32 +134,59 @@ def response(made: ross.Rotor) -> list[float]:
     return sizes
 
 
-def nelson_mcvaugh(shear: bool) -> list[float]:
-    """Return the six lowest critical speeds of the rotor below [rpm], ascending."""
+def cones(
+    places: np.ndarray, inner: np.ndarray, outer: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return radii that carry load where force flows around steps along cones of 45 degrees.
+
+    ``min (R(z') + |z - z'|)`` over all places, and the same inside a bore.
+    """
+    middles = 0.5 * (places[1:] + places[:-1])
+    away = np.abs(middles[:, None] - np.clip(middles[:, None], places[:-1], places[1:]))
+    return np.max(inner - away, axis=1), np.min(outer + away, axis=1)
+
+
+def stepped(places: np.ndarray, inner: np.ndarray, outer: np.ndarray, shear: bool) -> ross.Rotor:
+    """Return Nelson and McVaugh's rotor with an element between every two places."""
     data = NELSON_MCVAUGH
-    places = np.array(data["places"])
     material = ross.Material(name="steel", rho=7806.0, E=2.078e11, G_s=2.078e11 / 2.6)
     elements = [
         ross.ShaftElement(
-            L=0.5 * length, idl=2.0 * inner, odl=2.0 * outer, material=material,
+            L=length, idl=2.0 * low, odl=2.0 * high, material=material,
             shear_effects=shear, rotary_inertia=True, gyroscopic=True,
         )
-        for length, inner, outer in zip(
-            np.diff(places), data["inner radii"], data["outer radii"], strict=True
-        )
-        for _ in range(2)
+        for length, low, high in zip(np.diff(places), inner, outer, strict=True)
     ]  # fmt: skip
+
+    def node(place: float) -> int:
+        return int(np.argmin(np.abs(places - place)))
+
     disc = data["disc"]
-    node = int(np.argmin(np.abs(places - disc["position"])))
-    discs = [ross.DiskElement(n=2 * node, m=disc["mass"], Id=disc["transverse"], Ip=disc["polar"])]
+    inertia = {"m": disc["mass"], "Id": disc["transverse"], "Ip": disc["polar"]}
+    discs = [ross.DiskElement(n=node(disc["position"]), **inertia)]
     bearings = [
-        ross.BearingElement(
-            n=2 * int(np.argmin(np.abs(places - z))), kxx=data["bearing stiffness"], cxx=0.0
-        )
+        ross.BearingElement(n=node(z), kxx=data["bearing stiffness"], cxx=0.0)
         for z in data["bearings"]
     ]
-    made = ross.Rotor(elements, discs, bearings)
-    M, G, K = matrices(made, 1.0)
+    return ross.Rotor(elements, discs, bearings)
+
+
+def nelson_mcvaugh(shear: bool, pieces: int = 2, around_steps: bool = False) -> list[float]:
+    """Return the six lowest critical speeds of the rotor below [rpm], ascending.
+
+    With `pieces` elements to a section; `around_steps` gives stiffness to the material within
+    cones of 45 degrees alone, and mass to all.
+    """
+    data = NELSON_MCVAUGH
+    sections = np.array(data["places"])
+    shares = np.arange(pieces) / pieces
+    places = np.append(
+        (sections[:-1, None] + np.diff(sections)[:, None] * shares).ravel(), sections[-1]
+    )
+    radii = [np.repeat(data[f"{side} radii"], pieces) for side in ("inner", "outer")]
+    M, G, K = matrices(stepped(places, *radii, shear), 1.0)
+    if around_steps:
+        K = matrices(stepped(places, *cones(places, *radii), shear), 1.0)[2]
     # whirl at the speed itself: K x = ω² (M − iG) x, forward and backward by conjugation
     found = 1.0 / la.eigvals(la.solve(K, M - 1j * G)).real
     return (np.sqrt(np.sort(found[found > 0.0])[:6]) * 30.0 / np.pi).tolist()
@@ -168,8 +195,9 @@ def nelson_mcvaugh(shear: bool) -> list[float]:
 def main() -> None:
     """Write the reference file."""
     plain, unequal = rotor(BEARING), rotor(UNEQUAL)
+    script = "validation/references/benchmarks_ross.py"
     data = {
-        "source": f"ross-rotordynamics {ross.__version__}, references/benchmarks_ross.py",
+        "source": f"ross-rotordynamics {ross.__version__}, {script}",
         "material": {"youngsModulus": YOUNG, "poissonsRatio": POISSON, "density": DENSITY},
         "steps": STEPS,
         "discs": DISCS,
@@ -185,7 +213,11 @@ def main() -> None:
         "cross": 1.5e5,
         "response": response(rotor(UNEQUAL, 1.5e5)),
     }
-    beams = {"rayleigh": nelson_mcvaugh(False), "timoshenko": nelson_mcvaugh(True)}
+    beams = {
+        "rayleigh": nelson_mcvaugh(False),
+        "timoshenko": nelson_mcvaugh(True),
+        "cones": nelson_mcvaugh(True, 16, around_steps=True),
+    }
     data["nelson mcvaugh"] = {**NELSON_MCVAUGH, **beams}
     target = Path(__file__).with_suffix(".json")
     target.write_text(json.dumps(data, indent=1) + "\n")
