@@ -1,7 +1,8 @@
 """Full bodies in scenes: cost of a step over the size, convergence with the mesh.
 
 ``python -m validation full_bodies`` prints two tables; ``--sizes`` takes the mesh sizes [m] of
-the first, ``--steps`` its number of steps. Times are of the processor, one thread.
+the first, ``--steps`` its number of steps, and ``--thousand`` adds 1,000 steps of one run with a
+larger disc and 51,000 coordinates. Times are of the processor, one thread.
 """
 
 from __future__ import annotations
@@ -28,13 +29,14 @@ from exudyn_rotor import (
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 SPEED, STEP = 300.0, 1e-4
+THOUSAND = (0.012, 0.17, 999)  # mesh size, radius of the disc, steps after the first
 Row = dict[str, float]
 
 
-def disc_on_shaft(maxh: float) -> SolidRotor:
+def disc_on_shaft(maxh: float, radius: float = 0.12) -> SolidRotor:
     """Return a disc on a shaft between two bearings, with an unbalance of 5 g at 0.12 m."""
     solid = occ.Cylinder((0, 0, -0.3), occ.Z, 0.03, 0.6)
-    solid += occ.Cylinder((0, 0, -0.02), occ.Z, 0.12, 0.04)
+    solid += occ.Cylinder((0, 0, -0.02), occ.Z, radius, 0.04)
     solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
     mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=maxh))
     rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z").center_interfaces()
@@ -68,9 +70,9 @@ def settings(steps: int, step: float, body: FullRotorBody | None) -> exudyn.Simu
 # ------------------------------------------------------------------ cost
 
 
-def cost(maxh: float, steps: int) -> Row:
+def cost(maxh: float, radius: float, steps: int) -> Row:
     """Return what a run at constant speed with gravity costs on one mesh."""
-    rotor = disc_on_shaft(maxh)
+    rotor = disc_on_shaft(maxh, radius)
     mbs = exudyn.SystemContainer().AddSystem()
     start = time.process_time()
     body = add_rotor(
@@ -89,12 +91,14 @@ def cost(maxh: float, steps: int) -> Row:
         mbs.SolveDynamic(settings(count, STEP, body))
         times.append(time.process_time() - start)
     per_step = (times[1] - times[0]) / steps
+    nonzeros = factor_size(body)
     return {
         "coordinates": mbs.systemData.ODE2Size(),
-        "nonzeros of the factor": factor_size(body),
+        "nonzeros of the factor": nonzeros,
         "set-up s": set_up,
         "first step s": times[0],
         "ms a step": 1e3 * per_step,
+        "ns a step and nonzero": 1e9 * per_step / nonzeros,
         "1000 steps s": times[0] + 999.0 * per_step,
     }
 
@@ -140,10 +144,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", type=float, nargs="*", default=[0.03, 0.015, 0.012])
     parser.add_argument("--steps", type=int, default=20)
+    parser.add_argument("--thousand", action="store_true")
     parser.add_argument("--refinements", type=int, default=2)
     options = parser.parse_args(arguments)
-    costs = (cost(size, options.steps) for size in options.sizes)
-    for rows in (costs, convergence(options.refinements)):
+    runs = [(size, 0.12, options.steps) for size in options.sizes]
+    if options.thousand:
+        runs.append(THOUSAND)
+    for rows in ((cost(*run) for run in runs), convergence(options.refinements)):
         for row in rows:
             print("  ".join(f"{name} {value:.6g}" for name, value in row.items()), flush=True)
 
