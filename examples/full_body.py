@@ -9,7 +9,13 @@ import ngsolve
 import numpy as np
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, add_rotor, craig_bampton_modes, recommended_settings
+from exudyn_rotor import (
+    SolidRotor,
+    add_rotor,
+    craig_bampton_modes,
+    plotting,
+    recommended_settings,
+)
 
 SPEED, STEP, STEPS = 200.0, 2e-4, 150  # rad/s, s
 
@@ -50,4 +56,8 @@ difference = np.abs(in_full - in_modes).max() / np.abs(in_full).max()
 print(f"{full.node_count} nodes, journal within {difference:.1e} of that in 12 modes")
 stress = full.stress()
 print(f"largest axial stress at the end: {np.abs(stress[:, 2]).max() / 1e6:.2f} MPa")
+bent = rotor.nodes + 3e3 * full.displacement()
+axial = stress[:, 2] / 1e6
+axes = plotting.draw_surface(bent, rotor.triangles, axial, "axial stress [MPa], bent 3000 times")
+plotting.save(axes, "full_body.png")
 assert difference < 1e-2

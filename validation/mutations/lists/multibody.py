@@ -59,6 +59,15 @@ MULTIBODY = [
         ("runs not told apart", "if t < self.latest:", "if False:"),
     ),
     *mutations(
+        "multibody/node_markers.py",
+        "test_full_bodies.py::test_numbers_of_mesh_nodes_mean_nothing_to_the_marker_body",
+        (
+            "virtual nodes of a full body taken for those of the mesh",
+            "and place.marker_body == number",
+            "and place.marker_body != number",
+        ),
+    ),
+    *mutations(
         "multibody/full_memory.py",
         "test_full_bodies.py::test_too_little_memory_is_said_before_anything_is_added",
         ("memory of the factor not checked", "if needed > available:", "if False:"),
