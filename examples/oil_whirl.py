@@ -55,7 +55,7 @@ def run(spin, end_time: float, push: float) -> tuple[np.ndarray, er.SteadyState]
 
 def growth(speed: float) -> float:
     """Return the growth [1/s] of what the push adds to the steady motion of the left journal."""
-    path, steady = run(speed, 0.25, push=5e-4)
+    path, steady = run(speed, 0.18, push=5e-4)
     late = path[path[:, 0] > 0.08]  # all other motions have died down
     at_rest = [steady.interface_motion("left", speed * t)[:2] for t in late[:, 0]]
     return np.polyfit(late[:, 0], np.log(np.linalg.norm(late[:, 1:] - at_rest, axis=1)), 1)[0]

@@ -183,12 +183,11 @@ def _start_speed(body: RotorItems) -> float:
 def _spin_reader(body: RotorItems) -> Callable[[exudyn.MainSystem], tuple[float, float]]:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
     node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
+    angles, rates = _KINDS.Coordinates, _KINDS.Coordinates_t
 
-    def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:
-        angles, rates = (
-            mbs.GetNodeOutput(node, kind) for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
-        )
-        return sign * float(angles[place]), sign * float(rates[place])
+    def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
+        read = mbs.GetNodeOutput
+        return sign * float(read(node, angles)[place]), sign * float(read(node, rates)[place])
 
     return spin
 

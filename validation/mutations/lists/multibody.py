@@ -337,8 +337,8 @@ MULTIBODY = [
         ("matrix not turned into the scene", "turned = axes @ matrix @ axes.T", "turned = matrix"),
         (
             "spin counted as the node does",
-            "return sign * float(angles[place]), sign",
-            "return float(angles[place]), sign",
+            "return sign * float(read(node, angles)[place]), sign",
+            "return float(read(node, angles)[place]), sign",
         ),
     ),
     *mutations(
