@@ -258,7 +258,7 @@ def test_orbit_is_drawn_for_every_place(ellipses):
 
 def test_table_and_peak(ellipses):
     lines = ellipses.table("mid").splitlines()
-    assert len(lines) == 3 + len(ellipses.speeds) + 1  # heads, and the level of stiffening
+    assert len(lines) == 3 + len(ellipses.speeds) + 2  # heads; stiffening, where errors are known
     speed, size = ellipses.peak("mid")
     major = ellipses.semi_axes("mid")[0]
     highest = int(major.argmax())
@@ -354,7 +354,7 @@ def test_errors_that_are_not_estimated_are_no_numbers_in_tables(name, given):
 def test_responses_tell_the_level_of_stiffening(ellipses, shaken):
     for response in (ellipses, shaken):
         assert response.stiffening == "tilt"
-        assert response.table().splitlines()[-1] == "stiffening: tilt"
+        assert "stiffening: tilt" in response.table().splitlines()[-2:]
 
 
 def test_loading_promises_a_result():
