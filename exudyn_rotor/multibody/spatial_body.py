@@ -19,9 +19,9 @@ import numpy as np
 import scipy.sparse as sp
 from exudyn.itemInterface import (
     CoordinateVectorConstraint,
-    LoadMassProportional,
-    MarkerBodyMass,
+    Force,
     MarkerNodeCoordinates,
+    MarkerNodePosition,
     MarkerObjectODE2Coordinates,
     MarkerSuperElementPosition,
     NodePoint,
@@ -201,8 +201,10 @@ def add_spatial_rotor(
     )
     constraint = mbs.AddObject(_mean_axis_conditions(mbs, body, rotor, local))
     if np.any(gravity):
-        weight = mbs.AddMarker(MarkerBodyMass(bodyNumber=body))
-        mbs.AddLoad(LoadMassProportional(markerNumber=weight, loadVector=gravity))
+        # LoadMassProportional reads memory that this body does not set; the conditions balance
+        # the weight's part on the displacements, so that it changes their multipliers alone
+        center = mbs.AddMarker(MarkerNodePosition(nodeNumber=frame))
+        mbs.AddLoad(Force(markerNumber=center, loadVector=rotor.total_mass * gravity))
     markers = {
         key: mbs.AddMarker(
             MarkerSuperElementPosition(
