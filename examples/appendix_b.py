@@ -46,11 +46,11 @@ printed = {
     "Φ (128)": translations(2),
     "ν at 300 rad/s (129)": at_300,
 }
-np.set_printoptions(linewidth=120, precision=15, suppress=True)
-for name, value in printed.items():
-    # whole numbers as the paper has them, and no −0
-    whole = np.array_equal(value, np.round(value))
-    print(f"{name}:\n{value.astype(int) if whole else value + 0.0}\n")
+with np.printoptions(linewidth=120, precision=15, suppress=True):
+    for name, value in printed.items():
+        # whole numbers as the paper has them, and no −0
+        whole = np.array_equal(value, np.round(value))
+        print(f"{name}:\n{value.astype(int) if whole else value + 0.0}\n")
 
 spatial = SpatialInvariants.of(nodes, mass, stiffness, None, modes)
 assert np.array_equal(spatial.M_tilde, tilde_basis(modes).T @ mass @ modes)
