@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -76,6 +77,12 @@ class Bearing(ABC):
         self._static_load(None)
         return Support(self.interface, Linearised(self, 0), Linearised(self, 1))
 
+    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
+        """Check attributes, given with their units, and keep them as floats."""
+        for name, unit in units.items():
+            value = checks.number(getattr(self, name), name, unit, **bounds)
+            object.__setattr__(self, name, value)
+
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
         if load is not None:
             return checks.vector(load, "load", "N", size=2)
@@ -110,3 +117,23 @@ class Linearised:
     def check_range(self, speed: float) -> None:
         """Refuse a speed at which the bearing has no equilibrium, by a ValueError."""
         self.bearing.equilibrium(speed)
+
+
+def by_tangent(
+    force: Callable[[float, float], tuple[float, float]],
+    x: float,
+    y: float,
+    most: float,
+    step: float,
+) -> tuple[float, float]:
+    """Return a force at a place outside the radius `most`, by its tangent there.
+
+    The tangent is that of the last `step` inside. So Newton's method comes back from places at
+    which there is no force.
+    """
+    eccentricity = hypot(x, y)
+    ex, ey = x / eccentricity, y / eccentricity
+    fx, fy = force(most * ex, most * ey)
+    gx, gy = force((most - step) * ex, (most - step) * ey)
+    beyond = (eccentricity - most) / step
+    return fx + beyond * (fx - gx), fy + beyond * (fy - gy)

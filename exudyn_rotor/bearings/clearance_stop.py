@@ -77,12 +77,8 @@ class ClearanceStop(Bearing):
     def __post_init__(self) -> None:
         super().__post_init__()
         positive = {"radius": "m", "clearance": "m", "stiffness": "N/m", "slip_speed": "m/s"}
-        for name, unit in positive.items():
-            value = checks.number(getattr(self, name), name, unit, above=0.0)
-            object.__setattr__(self, name, value)
-        for name, unit in {"damping": "N s/m", "friction": ""}.items():
-            value = checks.number(getattr(self, name), name, unit, least=0.0)
-            object.__setattr__(self, name, value)
+        self._set_numbers(positive, above=0.0)
+        self._set_numbers({"damping": "N s/m", "friction": ""}, least=0.0)
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
         """Return the force on the journal (1), (2) [N], shape (2,).

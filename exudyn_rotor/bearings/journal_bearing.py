@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, by_tangent
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
 
@@ -68,14 +68,14 @@ class JournalBearing(Bearing):
                 "force by place and velocity alone; scenes need another cavitation"
             )
         rate = np.array([vx, vy])
-        eccentricity, most = hypot(x, y), self.film.clearance - self.film.thinnest
-        if eccentricity <= most:
-            return tuple(self.film.force(np.array([x, y]), rate, speed))
-        outwards, step = np.array([x, y]) / eccentricity, _STEP * self.film.clearance
-        last, before = (
-            self.film.force(radius * outwards, rate, speed) for radius in (most, most - step)
-        )
-        return tuple(last + (eccentricity - most) / step * (last - before))
+
+        def force(a: float, b: float) -> tuple[float, float]:
+            return tuple(self.film.force(np.array([a, b]), rate, speed))
+
+        most = self.film.clearance - self.film.thinnest
+        if hypot(x, y) <= most:
+            return force(x, y)
+        return by_tangent(force, x, y, most, _STEP * self.film.clearance)
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).

@@ -92,15 +92,10 @@ class RollingBearing(Bearing):
         super().__post_init__()
         checks.count(self.count, "count", least=3)
         sizes = {"pitch_radius": "m", "element_radius": "m", "stiffness": "N/m^n"}
-        for name, unit in sizes.items():
-            value = checks.number(getattr(self, name), name, unit, above=0.0)
-            object.__setattr__(self, name, value)
-        for name, unit in {"clearance": "m", "damping": "N s/m"}.items():
-            value = checks.number(getattr(self, name), name, unit, least=0.0)
-            object.__setattr__(self, name, value)
+        self._set_numbers(sizes, above=0.0)
+        self._set_numbers({"clearance": "m", "damping": "N s/m"}, least=0.0)
         checks.choice(self.elements, "elements", _EXPONENTS)
-        angle = checks.number(self.contact_angle, "contact_angle", "rad", least=0.0, below=pi / 2)
-        object.__setattr__(self, "contact_angle", angle)
+        self._set_numbers({"contact_angle": "rad"}, least=0.0, below=pi / 2)
         if self.element_radius >= self.pitch_radius * sin(pi / self.count):
             raise ValueError(
                 f"element_radius: {self.count} elements of {self.element_radius:g} m do not fit "

@@ -19,9 +19,16 @@ F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
 
-_THINNEST = 0.01  # of the clearance: a thinner film goes on by its tangent
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing, by_tangent
+
+_MOST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
 _STEP = 1e-6  # of the clearance, of that tangent
 
 
@@ -41,17 +48,61 @@ def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[
     return across * b - along * a, -along * b - across * a
 
 
-def force_anywhere(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-    """Return the force (1); a film thinner than c/100 goes on by its tangent.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ShortFilmBearing(Bearing):
+    """A bearing that has a short film around its journal.
 
-    So Newton's method comes back from beyond the clearance.
+    Attributes
+    ----------
+    radius, length : float
+        Of the film [m].
+    clearance : float
+        Radial clearance [m].
+    viscosity : float
+        Dynamic viscosity of the oil [Pa s].
     """
-    eccentricity, most = hypot(x, y), 1.0 - _THINNEST
-    if eccentricity <= most:
-        return film_force(x, y, vx, vy, speed)
-    ex, ey = x / eccentricity, y / eccentricity
-    fx, fy = film_force(most * ex, most * ey, vx, vy, speed)
-    inside = most - _STEP
-    gx, gy = film_force(inside * ex, inside * ey, vx, vy, speed)
-    beyond = (eccentricity - most) / _STEP
-    return fx + beyond * (fx - gx), fy + beyond * (fy - gy)
+
+    radius: float
+    length: float
+    clearance: float
+    viscosity: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
+        self._set_numbers(units, above=0.0)
+        if self.clearance >= self.radius:
+            raise ValueError(
+                "clearance: needs the radial clearance, far below the radius of "
+                f"{self.radius:g} m, got {self.clearance:g} m"
+            )
+
+    @property
+    def _size(self) -> float:
+        """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
+        return self.viscosity * self.radius * self.length**3 / self.clearance**2
+
+    def _checked_film(
+        self, displacement: ArrayLike, velocity: ArrayLike, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return a displacement [m] and the force of the film there [N]; refuse bad input."""
+        place = checks.vector(displacement, "displacement", "m", size=2)
+        rate = checks.vector(velocity, "velocity", "m/s", size=2)
+        checks.number(speed, "speed", "rad/s")
+        c = self.clearance
+        if hypot(*place) >= c:
+            raise ValueError(
+                f"displacement: needs less than the clearance of {c:g} m, got "
+                f"{hypot(*place):g} m: the journal would touch"
+            )
+        return place, self._size * np.array(film_force(*(place / c), *(rate / c), speed))
+
+    def _film(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+        """Return the force of the film [N]; one thinner than c/100 goes on by its tangent."""
+        c, size = self.clearance, self._size
+        x, y, vx, vy = x / c, y / c, vx / c, vy / c
+        if hypot(x, y) <= _MOST:
+            fx, fy = film_force(x, y, vx, vy, speed)
+        else:
+            fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, _MOST, _STEP)
+        return size * fx, size * fy

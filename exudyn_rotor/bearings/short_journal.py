@@ -20,14 +20,13 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.short_film import film_force, force_anywhere
+from exudyn_rotor.bearings.short_film import ShortFilmBearing
 
 _LEAST, _MOST = 1e-12, 1.0 - 1e-9  # eccentricity ratios of an equilibrium
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ShortJournalBearing(Bearing):
+class ShortJournalBearing(ShortFilmBearing):
     """Plain cylindrical journal bearing by the theory of the short bearing.
 
     Parameters
@@ -66,29 +65,6 @@ class ShortJournalBearing(Bearing):
      [-25.06   8.82]]
     """
 
-    radius: float
-    length: float
-    clearance: float
-    viscosity: float
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
-        for name, unit in units.items():
-            object.__setattr__(
-                self, name, checks.number(getattr(self, name), name, unit, above=0.0)
-            )
-        if self.clearance >= self.radius:
-            raise ValueError(
-                "clearance: needs the radial clearance, far below the radius of "
-                f"{self.radius:g} m, got {self.clearance:g} m"
-            )
-
-    @property
-    def _size(self) -> float:
-        """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
-        return self.viscosity * self.radius * self.length**3 / self.clearance**2
-
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
         """Return the force of the film on the journal [N], shape (2,).
 
@@ -104,23 +80,12 @@ class ShortJournalBearing(Bearing):
         TypeError, ValueError
             For bad input, and a displacement as large as the clearance.
         """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        checks.number(speed, "speed", "rad/s")
-        if hypot(*place) >= self.clearance:
-            raise ValueError(
-                f"displacement: needs less than the clearance of {self.clearance:g} m, got "
-                f"{hypot(*place):g} m: the journal would touch"
-            )
-        c = self.clearance
-        return self._size * np.array(film_force(*(place / c), *(rate / c), speed))
+        return self._checked_film(displacement, velocity, speed)[1]
 
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
-        c, size = self.clearance, self._size
-        fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, speed)
-        return size * fx, size * fy
+        return self._film(x, y, vx, vy, speed)
 
     def eccentricity_ratio(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the eccentricity over the clearance under a static load [N] at a speed [rad/s].

@@ -21,12 +21,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.short_film import film_force, force_anywhere
+from exudyn_rotor.bearings.short_film import ShortFilmBearing
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SqueezeFilmDamper(Bearing):
+class SqueezeFilmDamper(ShortFilmBearing):
     """Squeeze-film damper with open ends, with or without a centring spring.
 
     Parameters
@@ -67,33 +66,13 @@ class SqueezeFilmDamper(Bearing):
     5806248.0 2901.8
     """
 
-    radius: float
-    length: float
-    clearance: float
-    viscosity: float
     centring_stiffness: float = 0.0
     orbit: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
-        for name, unit in units.items():
-            value = checks.number(getattr(self, name), name, unit, above=0.0)
-            object.__setattr__(self, name, value)
-        spring = checks.number(self.centring_stiffness, "centring_stiffness", "N/m", least=0.0)
-        object.__setattr__(self, "centring_stiffness", spring)
-        orbit = checks.number(self.orbit, "orbit", least=0.0, below=1.0)
-        object.__setattr__(self, "orbit", orbit)
-        if self.clearance >= self.radius:
-            raise ValueError(
-                "clearance: needs the radial clearance, far below the radius of "
-                f"{self.radius:g} m, got {self.clearance:g} m"
-            )
-
-    @property
-    def _size(self) -> float:
-        """``μ R L³/c²`` [N s]."""
-        return self.viscosity * self.radius * self.length**3 / self.clearance**2
+        self._set_numbers({"centring_stiffness": "N/m"}, least=0.0)
+        self._set_numbers({"orbit": ""}, least=0.0, below=1.0)
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike) -> np.ndarray:
         """Return the force of film and spring on the journal [N], shape (2,).
@@ -108,23 +87,15 @@ class SqueezeFilmDamper(Bearing):
         TypeError, ValueError
             For bad input, and a displacement as large as the clearance.
         """
-        place = checks.vector(displacement, "displacement", "m", size=2)
-        rate = checks.vector(velocity, "velocity", "m/s", size=2)
-        c = self.clearance
-        if hypot(*place) >= c:
-            raise ValueError(
-                f"displacement: needs less than the clearance of {c:g} m, got "
-                f"{hypot(*place):g} m: the journal would touch"
-            )
-        film = self._size * np.array(film_force(*(place / c), *(rate / c), 0.0))
+        place, film = self._checked_film(displacement, velocity, 0.0)
         return film - self.centring_stiffness * place
 
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
-        c, size, k = self.clearance, self._size, self.centring_stiffness
-        fx, fy = force_anywhere(x / c, y / c, vx / c, vy / c, 0.0)
-        return size * fx - k * x, size * fy - k * y
+        k = self.centring_stiffness
+        fx, fy = self._film(x, y, vx, vy, 0.0)
+        return fx - k * x, fy - k * y
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the spring holds the journal under a static load [m], shape (2,).

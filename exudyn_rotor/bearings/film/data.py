@@ -61,7 +61,7 @@ class FilmData:
 
     @property
     def thinnest(self) -> float:
-        """OilFilm that the grid still resolves [m]."""
+        """Thickness of the thinnest film that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
     def _heights(self, position: np.ndarray) -> np.ndarray:

@@ -117,7 +117,11 @@ BEARINGS = [
     *mutations(
         "bearings/squeeze_film.py",
         "test_dampers_and_stops.py",
-        ("journal turns in the damper", "vx / c, vy / c, 0.0)", "vx / c, vy / c, speed)"),
+        (
+            "journal turns in the damper",
+            "self._film(x, y, vx, vy, 0.0)",
+            "self._film(x, y, vx, vy, speed)",
+        ),
         ("film's stiffness halved", "film = 2.0 * size", "film = size"),
         (
             "spring pushes away",
@@ -133,9 +137,9 @@ BEARINGS = [
         ("sliding without the orbit", "speed + vy * nx - vx * ny", "speed"),
     ),
     *mutations(
-        "bearings/journal_bearing.py",
+        "bearings/bearing.py",
         "test_journal_bearing.py::test_a_film_too_thin_goes_on_by_its_tangent",
-        ("tangent pulls outwards", "/ step * (last - before)", "/ step * (before - last)"),
+        ("tangent pulls outwards", "(eccentricity - most) / step", "(most - eccentricity) / step"),
     ),
     *mutations(
         "bearings/rolling.py",
