@@ -372,3 +372,14 @@ def test_no_markers_are_needed(bar, options):
     mbs.SolveDynamic(settings)
     assert np.isfinite(body.displacement()).all()
     assert body.displacement()[bar.nearest_node([0.03, -0.025, 0.3])] @ [1.0, -1.0, 0.0] > 0.0
+
+
+def test_supports_that_python_evaluates_count(bar):
+    """A turning support has the script's force; its body says so, as a reduced one does."""
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, bar, spin=300.0, translation="none")
+    assert not body.uses_python
+    assert "no Python call" in body.report()
+    add_supports(body, [Support("left", 1e5, damping=10.0, frame="rotor")])
+    assert body.uses_python
+    assert "Python user functions" in body.report()

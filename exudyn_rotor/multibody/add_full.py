@@ -7,21 +7,16 @@ from collections.abc import Callable
 import exudyn
 import numpy as np
 import scipy.sparse as sp
-from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass
 
 from exudyn_rotor.multibody import inputs
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.full_drawing import surface_drawing
 from exudyn_rotor.multibody.full_equations import sparse_object, spin_coupling_object
 from exudyn_rotor.multibody.full_plan import FullPlan
-from exudyn_rotor.multibody.locking import (
-    ConstraintMonitor,
-    add_constraints,
-    add_spin_guide,
-    guiding_force,
-)
+from exudyn_rotor.multibody.locking import add_spin_guide, hold
 from exudyn_rotor.multibody.marker_body import (
     MarkerBodyMesh,
+    add_weight,
     interface_markers,
     marker_body_mesh,
     marker_body_object,
@@ -56,22 +51,13 @@ def add_full(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
             plan.setup.color,
         )
     )
-    guide, constraints = guiding_force(plan.locks, plan.layout), {}
-    if not plan.by_mass:
-        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
-        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
-        guide = monitor or guide
+    guide, constraints = hold(mbs, plan.locks, plan.layout, plan.by_mass, rigid)
     if motion.is_constant:
         guide = None
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
     drawing = surface_drawing(plan, rigid, fields)
     objects = _add_equations(mbs, plan, [rigid, fields], guide, drawing)
-    load = None
-    if np.any(plan.marker_body_gravity):
-        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))
-        load = mbs.AddLoad(
-            LoadMassProportional(markerNumber=marker, loadVector=plan.marker_body_gravity)
-        )
+    load = add_weight(mbs, marker_body, plan.marker_body_gravity)
     return FullRotorBody(
         mbs,
         plan,

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import exudyn
 import numpy as np
-from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass, ObjectGenericODE2
+from exudyn.itemInterface import ObjectGenericODE2
 
 from exudyn_rotor.multibody import condensed_markers, inputs
 from exudyn_rotor.multibody.equations import LockedForce, constant_object, user_function_object
-from exudyn_rotor.multibody.locking import (
-    ConstraintMonitor,
-    add_constraints,
-    add_spin_guide,
-    guiding_force,
-)
+from exudyn_rotor.multibody.locking import add_spin_guide, hold
 from exudyn_rotor.multibody.marker_body import (
     MarkerBodyMesh,
+    add_weight,
     interface_markers,
     marker_body_object,
 )
@@ -62,21 +58,11 @@ def add_with_marker_body(mbs: exudyn.MainSystem, plan: Plan, mesh: MarkerBodyMes
     )
     tilts = plan.frame.B @ plan.motion.invariants.mean_rotation
     condensed_markers.at_assembly(mbs, marker_body, plan.setup.condense_markers, tilts)
-    guide = guiding_force(plan.locks, plan.layout)
-    constraints = {}
-    if not plan.by_mass:
-        monitor = ConstraintMonitor(guide, plan.layout.size) if plan.locks.varying else None
-        constraints = add_constraints(mbs, plan.locks, rigid, monitor)
-        guide = monitor or guide
+    guide, constraints = hold(mbs, plan.locks, plan.layout, plan.by_mass, rigid)
     physics = mbs.AddObject(_physics(plan, [rigid, modes], guide))
     if plan.motion.is_constant:
         add_spin_guide(mbs, plan.locks, plan.layout, rigid)
-    load = None
-    if np.any(plan.marker_body_gravity):
-        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))
-        load = mbs.AddLoad(
-            LoadMassProportional(markerNumber=marker, loadVector=plan.marker_body_gravity)
-        )
+    load = add_weight(mbs, marker_body, plan.marker_body_gravity)
     return RotorBody(
         mbs,
         plan,

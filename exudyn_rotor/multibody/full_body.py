@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import full_markers, full_record, sensors
-from exudyn_rotor.multibody.connections import ConnectionWarning, lost_connections
+from exudyn_rotor.multibody import full_markers, full_record
 from exudyn_rotor.multibody.full_plan import FullPlan
 from exudyn_rotor.multibody.full_record import FullRecord
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.scene_body import SceneBody
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FullRotorBody(RotorItems):
+class FullRotorBody(SceneBody):
     """A full fixed-axis rotor inside an ``mbs``; :func:`exudyn_rotor.add_rotor` makes it.
 
     The attributes are those of :class:`~exudyn_rotor.multibody.rotor_items.RotorItems`, with the
@@ -57,19 +56,13 @@ class FullRotorBody(RotorItems):
     plan: FullPlan
     ties: exudyn.ObjectIndex | None = None
 
+    _kind: ClassVar[str] = "full, "
+
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.plan, "plan", FullPlan, "add_rotor makes one")
         if self.ties is not None:
             checks.instance(self.ties, "ties", exudyn.ObjectIndex)
-
-    def __repr__(self) -> str:
-        """Return one line; :meth:`report` says more."""
-        return (
-            f"{type(self).__name__}({self.name!r}, Sect. {self.formulation.section}, "
-            f"stiffening {self.stiffening!r}, {self.node_count} nodes, "
-            f"markers: {', '.join(self.markers) or 'none'})"
-        )
 
     @property
     def node_count(self) -> int:
@@ -82,32 +75,14 @@ class FullRotorBody(RotorItems):
         return len(self.selection.conditions.rows)
 
     @property
-    def uses_python(self) -> bool:
-        """True when a time step calls Python user functions."""
-        return not self.motion.is_constant
+    def _size_in_words(self) -> str:
+        return f"{self.node_count} nodes"
 
-    @property
-    def locked(self) -> tuple[str, ...]:
-        """Coordinates that exist only because the marker body's node has them."""
-        return self.locks.locked_names if "marker_body" in self.objects else ()
-
-    def report(self) -> str:
-        """Return a short table of what was added and what it means at run time."""
-        names = {3: "x, y, z", 2: "two in the plane of rotation", 0: "none"}
-        spin = "unknown" if self.formulation.has_spin else "prescribed"
-        lines = [
-            f"rotor {self.name!r}: Sect. {self.formulation.section}, full, "
-            f"stiffening {self.stiffening!r}",
-            f"  translations   {names[self.formulation.translation_count]}",
-            f"  spin           {spin}",
+    def _report_of_coordinates(self) -> list[str]:
+        return [
             f"  nodes          {self.node_count}, {3 * self.node_count} displacements",
             f"  conditions     {self.condition_count} of the frame, in mass matrix and stiffness",
-            f"  locked         {', '.join(self.locked) or 'none'}",
-            f"  constraints    {len(self.constraints)}",
-            f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
-            f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
-        return "\n".join(lines)
 
     def displacement(
         self, configuration: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
@@ -164,15 +139,6 @@ class FullRotorBody(RotorItems):
         """
         return full_record.recorded(self)
 
-    def check_connections(self, *, warn: bool = True) -> tuple[str, ...]:
-        """Return what the scene attaches to the rotor that it cannot carry; as of RotorBody."""
-        checks.flag(warn, "warn")
-        self.check_assembled()
-        lost = lost_connections(self)
-        for sentence in lost if warn else ():
-            warnings.warn(f"rotor {self.name!r}: {sentence}", ConnectionWarning, stacklevel=2)
-        return lost
-
     def add_marker(
         self,
         where: str | Sequence[int],
@@ -200,22 +166,6 @@ class FullRotorBody(RotorItems):
     def add_node_sensor(self, node: int, output: exudyn.OutputVariableType, **options):
         """Add a native sensor at a mesh node; `options` go to ``SensorSuperElement``."""
         return full_markers.add_node_sensor(self, node, output, options)
-
-    def add_interface_sensor(self, interface: str, output: exudyn.OutputVariableType, **options):
-        """Add a native sensor at an interface's marker; `options` go to ``SensorMarker``."""
-        return sensors.add_interface_sensor(self, interface, output, **options)
-
-    def add_spin_sensor(self, **options):
-        """Add a sensor of spin angle [rad] and spin speed [rad/s]."""
-        return sensors.add_spin_sensor(self, **options)
-
-    def add_drive_torque_sensor(self, **options):
-        """Add a sensor of the torque about e that a prescribed spin needs [N m]."""
-        return sensors.add_drive_torque_sensor(self, **options)
-
-    def add_energy_sensor(self, **options):
-        """Add a sensor of kinetic energy, elastic energy and the potential of the weight [J]."""
-        return sensors.add_energy_sensor(self, **options)
 
 
 def reduced_body(body: object, name: str = "body", how: str = "add_rotor returned it") -> RotorBody:

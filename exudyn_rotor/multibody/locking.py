@@ -264,6 +264,20 @@ class ConstraintMonitor:
         return np.zeros(self._size) if self._force is None else self._force(t)
 
 
+def hold(
+    mbs: exudyn.MainSystem, locks: Locks, place: Layout, by_mass: bool, node: exudyn.NodeIndex
+) -> tuple[LockedForce | None, dict[str, exudyn.ObjectIndex]]:
+    """Hold the locked coordinates by mass or constraints.
+
+    Returns the force by which the equations guide them, and the constraints by name.
+    """
+    guide = guiding_force(locks, place)
+    if by_mass:
+        return guide, {}
+    monitor = ConstraintMonitor(guide, place.size) if locks.varying else None
+    return monitor or guide, add_constraints(mbs, locks, node, monitor)
+
+
 def add_constraints(
     mbs: exudyn.MainSystem, locks: Locks, node: exudyn.NodeIndex, monitor: ConstraintMonitor | None
 ) -> dict[str, exudyn.ObjectIndex]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import exudyn
 import numpy as np
 from exudyn.itemInterface import (
+    LoadMassProportional,
+    MarkerBodyMass,
     MarkerSuperElementPosition,
     MarkerSuperElementRigid,
     ObjectFFRFreducedOrder,
@@ -182,6 +184,16 @@ def marker_body_object(
             triangleMesh=mesh.triangles.tolist(), color=color, showNodes=False
         ),
     )
+
+
+def add_weight(
+    mbs: exudyn.MainSystem, marker_body: exudyn.ObjectIndex, gravity: np.ndarray
+) -> exudyn.LoadIndex | None:
+    """Add gravity (3,) [m/s²] on the marker body; None without any."""
+    if not np.any(gravity):
+        return None
+    marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=marker_body))
+    return mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=gravity))
 
 
 def interface_markers(

@@ -67,14 +67,12 @@ def estimated_fill(matrix: sp.csr_array, nodes: np.ndarray) -> Fill:
 
 def _edges(matrix: sp.csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs of nodes that the matrix couples, both ways."""
-    ends = matrix.indptr[::3]
-    starts = np.repeat(matrix.indptr[:-1:3], np.diff(matrix.indptr)[::3])
     length = np.diff(matrix.indptr)[::3]
+    starts = np.repeat(matrix.indptr[:-1:3], length)
     offset = np.arange(starts.size) - np.repeat(np.cumsum(length) - length, length)
-    second = matrix.indices[starts + offset][::1] // 3
-    first = np.repeat(np.arange(count), length)
-    del ends
-    kept = (first != second) & (matrix.indices[starts + offset] % 3 == 0)
+    columns = matrix.indices[starts + offset]
+    first, second = np.repeat(np.arange(count), length), columns // 3
+    kept = (first != second) & (columns % 3 == 0)
     return first[kept], second[kept]
 
 
@@ -113,4 +111,6 @@ def _next_to_cut(part, side, first, second) -> np.ndarray:
     """Return the nodes on side 0 that touch side 1 of their part."""
     across = (part[first] == part[second]) & (part[first] >= 0)
     across &= (side[first] == 0) & (side[second] == 1)
-    return np.unique(first[across])
+    touching = np.zeros(len(part), dtype=bool)
+    touching[first[across]] = True
+    return np.flatnonzero(touching)

@@ -72,8 +72,9 @@ class Companion:
         except la.LinAlgError as error:
             raise ValueError(f"the mass matrix is not positive definite ({error})") from error
         inverse = la.solve_triangular(lower, np.eye(len(M)), lower=True)
-        noise = _rounding(0.5 * (K + _transposed(K)), inverse.T, rounding)
-        stiffness = _congruent(0.5 * (K + _transposed(K)), inverse.T)
+        symmetric = 0.5 * (K + _transposed(K))
+        noise = _rounding(symmetric, inverse.T, rounding)
+        stiffness = _congruent(symmetric, inverse.T)
         if not np.all(np.isfinite(stiffness)):
             raise ValueError("the system matrices have entries that are not finite")
         _, turn = np.linalg.eigh(stiffness)
