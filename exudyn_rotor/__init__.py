@@ -18,6 +18,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
     anticipated_cross_coupling,
@@ -88,6 +89,7 @@ __all__ = [
     "EnergyBalance",
     "Formulation",
     "FullRotorBody",
+    "GearMesh",
     "HarmonicForce",
     "HarmonicResponse",
     "Interface",

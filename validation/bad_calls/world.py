@@ -130,6 +130,11 @@ class World:
         return er.ClearanceStop(interface="left", radius=0.05, clearance=1e-4, stiffness=1e7)
 
     @cached_property
+    def gears(self) -> er.GearMesh:
+        """A mesh of two gears."""
+        return er.GearMesh(radii=[0.05, 0.1], stiffness=1e8, teeth=[20, 40], variation=[0.1])
+
+    @cached_property
     def isotropic(self) -> tuple[er.Support, ...]:
         """Bearings whose damper turns with the rotor, too: unstable above some speed."""
         return (

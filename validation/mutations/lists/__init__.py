@@ -2,6 +2,7 @@
 
 from validation.mutations.lists.advice import ADVICE
 from validation.mutations.lists.bearings import BEARINGS
+from validation.mutations.lists.drives import DRIVES
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.multibody import MULTIBODY
@@ -21,6 +22,7 @@ ALL = (
     *PRESTRESS,
     *REDUCTION,
     *BEARINGS,
+    *DRIVES,
     *MULTIBODY,
     *LINEAR,
     *EVALUATION,

@@ -1,0 +1,1 @@
+"""Laws of drives, couplings and gears, for scenes and linear analyses alike."""

@@ -1,0 +1,232 @@
+"""Mesh of two external gears on parallel axes: a spring along the line of action.
+
+With r from the centre of the first gear to the pitch point, t = e × r and the flank s = ±1, the
+flank of the first gear pushes that of the second along
+
+    n = cos β_b (s cos α t + sin α r) − s sin β_b e,   tan β_b = tan β cos α,               (1)
+
+α the transverse pressure angle and β the helix angle at the pitch circle. Displacements u and
+rotations φ of the gears bring the flanks together by (M. Kubur et al., J. Vib. Acoust. 126 (2004))
+
+    δ = n·(u₁ − u₂) + (r_p1 r × n)·φ₁ + (r_p2 r × n)·φ₂ = vᵀ x,   r_p = r_b/cos α,           (2)
+
+in which the rotations about e have the factors s r_b cos β_b. The mesh force N = k δ + d δ̇ acts as
+f = −v N, so that the stiffness matrix is k v vᵀ. With backlash both flanks count, each with δ − b/2
+in place of δ, and a flank only pushes: N = max(0, …) where δ > b/2, else 0. The stiffness may vary
+with the rotation of the first gear, k(φ₁) = k (1 + Σ_j a_j cos(j z₁ φ₁)); the moment −k′(φ₁) δ²/2
+that goes with it conserves energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import atan, cos, pi, sin, tan
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.drives.connection import Connection
+
+ABOUT_AXIS = 5  # row of the first gear's rotation about e
+_SAME_RATIO = 1e-6  # of radii and numbers of teeth
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GearMesh(Connection):
+    """Mesh of two external gears on parallel axes.
+
+    Parameters
+    ----------
+    radii : array_like, shape (2,)
+        Base radii of the first and the second gear [m].
+    stiffness : float
+        Mean stiffness of the mesh along the line of action [N/m].
+    damping : float, optional
+        Along the line of action [N s/m].
+    pressure_angle : float, optional
+        In the plane of rotation, at the centre distance as mounted [rad]; 20° by default.
+    helix_angle : float, optional
+        At the pitch circle [rad], positive where the first gear is right-handed about e.
+    line_angle : float, optional
+        Direction from the first centre to the second: angle about e from n1 of the first rotor
+        [rad].
+    flank : {1, -1}, optional
+        1 where the first gear drives with a positive torque about e, or is driven by a negative
+        one. What linear analyses take, and scenes without backlash.
+    backlash : float, optional
+        Along the line of action, of both sides together [m]. Without it teeth never part.
+    teeth : array_like of two int, optional
+        Numbers of teeth; needed for a stiffness that varies.
+    variation : array_like, optional
+        Amplitudes a_j of the harmonics of the mesh frequency, over the mean stiffness.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, e.g. numbers of teeth in another ratio than the radii.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import GearMesh
+    >>> mesh = GearMesh(radii=[0.05, 0.1], stiffness=2e8, teeth=[20, 40])
+    >>> mesh.direction.round(3)
+    array([ 0.342,  0.94 ,  0.   ,  0.   ,  0.   ,  0.05 , -0.342, -0.94 ,
+           -0.   ,  0.   ,  0.   ,  0.1  ])
+    >>> mesh.mesh_frequency(100.0)
+    2000.0
+    """
+
+    radii: np.ndarray
+    stiffness: float
+    damping: float = 0.0
+    pressure_angle: float = pi / 9.0
+    helix_angle: float = 0.0
+    line_angle: float = 0.0
+    flank: int = 1
+    backlash: float | None = None
+    teeth: np.ndarray | None = None
+    variation: np.ndarray = ()
+
+    def __post_init__(self) -> None:
+        def keep(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        radii = checks.vector(self.radii, "radii", "m", size=2)
+        if np.any(radii <= 0.0):
+            raise ValueError(f"radii: needs two numbers [m] > 0, got {radii.tolist()}")
+        keep("radii", radii)
+        keep("stiffness", checks.number(self.stiffness, "stiffness", "N/m", above=0.0))
+        keep("damping", checks.number(self.damping, "damping", "N s/m", least=0.0))
+        for name, least in (("pressure_angle", 0.0), ("helix_angle", -0.5 * pi)):
+            angle = checks.number(getattr(self, name), name, "rad", above=least, below=0.5 * pi)
+            keep(name, angle)
+        keep("line_angle", checks.number(self.line_angle, "line_angle", "rad"))
+        if checks.whole_number(self.flank, "flank") not in (1, -1):
+            raise ValueError(f"flank: needs 1 or -1, got {self.flank}")
+        if self.backlash is not None:
+            keep("backlash", checks.number(self.backlash, "backlash", "m", least=0.0))
+        if self.teeth is not None:
+            keep("teeth", self._checked_teeth())
+        keep("variation", self._checked_variation())
+        keep("_directions", {s: self._direction(s) for s in (1, -1)})
+
+    def _checked_teeth(self) -> np.ndarray:
+        teeth = checks.whole_numbers(self.teeth, "teeth", least=1)
+        if teeth.shape != (2,):
+            raise ValueError(f"teeth: needs two whole numbers, got {len(teeth)}")
+        if abs(teeth[0] * self.radii[1] / (teeth[1] * self.radii[0]) - 1.0) > _SAME_RATIO:
+            raise ValueError(
+                f"teeth: {teeth[0]} to {teeth[1]} is not the ratio of the radii, "
+                f"{self.radii[0]:g} to {self.radii[1]:g} m; give radii in the ratio of the teeth"
+            )
+        return teeth
+
+    def _checked_variation(self) -> np.ndarray:
+        amplitudes = checks.vector(self.variation, "variation", size=None)
+        if amplitudes.size and self.teeth is None:
+            raise ValueError("variation: needs the numbers of teeth; give teeth=[…, …]")
+        if np.abs(amplitudes).sum() >= 1.0:
+            raise ValueError(
+                "variation: needs amplitudes whose sum is below 1, or the stiffness may vanish, "
+                f"got {checks.shown(amplitudes.tolist())}"
+            )
+        return amplitudes
+
+    @property
+    def direction(self) -> np.ndarray:
+        """v of (2) for the flank, shape (12,): the stiffness matrix of the mesh is k v vᵀ.
+
+        Rows: displacement of the first gear along (n1, n2, e) of the first rotor, rotation about
+        them, then the same of the second gear in the same axes.
+        """
+        return self._directions[self.flank]
+
+    @property
+    def center_distance(self) -> float:
+        """Distance of the axes [m]."""
+        return float(self.radii.sum() / cos(self.pressure_angle))
+
+    def _direction(self, flank: int) -> np.ndarray:
+        alpha, angle = self.pressure_angle, self.line_angle
+        base_helix = atan(tan(self.helix_angle) * cos(alpha))
+        radial = np.array([cos(angle), sin(angle), 0.0])
+        along, axis = np.array([-sin(angle), cos(angle), 0.0]), np.array([0.0, 0.0, 1.0])
+        normal = cos(base_helix) * (flank * cos(alpha) * along + sin(alpha) * radial)
+        normal = normal - flank * sin(base_helix) * axis
+        lever = np.cross(radial, normal) / cos(alpha)
+        first, second = self.radii
+        return checks.read_only(np.hstack([normal, first * lever, -normal, second * lever]))
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return mean stiffness and damping matrix, each (12, 12), in the rows of `direction`."""
+        both = np.outer(self.direction, self.direction)
+        return self.stiffness * both, self.damping * both
+
+    def mesh_frequency(self, speed: float) -> float:
+        """Return how often teeth mesh [rad/s] at a spin speed of the first gear [rad/s].
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and for gears without numbers of teeth.
+        """
+        checks.number(speed, "speed", "rad/s")
+        if self.teeth is None:
+            raise ValueError("teeth: the mesh frequency needs their numbers; give teeth=[…, …]")
+        return float(abs(self.teeth[0] * speed))
+
+    # -------------------------------------------------------------- law
+
+    def _stiffness_at(self, x: np.ndarray) -> tuple[float, float]:
+        """Return k and its derivative by the rotation of the first gear."""
+        if not self.variation.size:
+            return self.stiffness, 0.0
+        orders = self.teeth[0] * np.arange(1, len(self.variation) + 1)
+        c, s = np.cos(orders * x[ABOUT_AXIS]), np.sin(orders * x[ABOUT_AXIS])
+        share, slope = 1.0 + self.variation @ c, -(self.variation * orders) @ s
+        return self.stiffness * float(share), self.stiffness * float(slope)
+
+    def _contacts(
+        self, x: np.ndarray, x_t: np.ndarray, k: float
+    ) -> Iterator[tuple[np.ndarray, float, float, float]]:
+        """Yield v, δ, δ̇ and N of each flank in reach; without backlash of the one."""
+        if self.backlash is None:
+            depth, rate = float(self.direction @ x), float(self.direction @ x_t)
+            yield self.direction, depth, rate, k * depth + self.damping * rate
+            return
+        for v in self._directions.values():
+            depth, rate = float(v @ x) - 0.5 * self.backlash, float(v @ x_t)
+            if depth > 0.0:
+                yield v, depth, rate, max(0.0, k * depth + self.damping * rate)
+
+    def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        k, slope = self._stiffness_at(x)
+        total = np.zeros(12)
+        for v, depth, _, push in self._contacts(x, x_t, k):
+            total -= push * v
+            total[ABOUT_AXIS] -= 0.5 * slope * depth**2
+        return total
+
+    def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Leave out how the stiffness varies: it is small beside the stiffness itself."""
+        k, _ = self._stiffness_at(x)
+        touching = (v for v, *_, push in self._contacts(x, x_t, k) if push)
+        both = sum((np.outer(v, v) for v in touching), np.zeros((12, 12)))
+        return k * both, self.damping * both
+
+    def _transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        """Return the force along the line of action, negative on the other flank."""
+        k, _ = self._stiffness_at(x)
+        each = self._contacts(x, x_t, k)
+        return sum((push if v is self.direction else -push for v, _, _, push in each), start=0.0)
+
+    def _energy(self, x: np.ndarray) -> float:
+        k, _ = self._stiffness_at(x)
+        return sum((0.5 * k * d**2 for _, d, *_ in self._contacts(x, 0.0 * x, k)), start=0.0)
+
+    def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        k, _ = self._stiffness_at(x)
+        each = self._contacts(x, x_t, k)
+        return sum(((push - k * depth) * rate for _, depth, rate, push in each), start=0.0)
