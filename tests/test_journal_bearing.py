@@ -54,6 +54,27 @@ def test_film_is_the_integral_of_its_pressure(motion):
     np.testing.assert_allclose(bearing().force(place, velocity, speed), expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_power_that_goes_into_a_short_film_is_dissipated(speed):
+    """Shear μ (RΩ)²/h all around, and flow h³ (∂p/∂z)²/12 μ where the film carries."""
+    place, velocity = np.array([5e-5, -6e-5]), np.array([5e-3, 4e-3])
+    radius, length, c, mu = (SIZE[n] for n in ("radius", "length", "clearance", "viscosity"))
+    (x, y), (vx, vy) = place, velocity
+
+    def dissipated(angle):
+        h = c - x * np.cos(angle) - y * np.sin(angle)
+        slope = x * np.sin(angle) - y * np.cos(angle)
+        fed = 0.5 * speed * slope - vx * np.cos(angle) - vy * np.sin(angle)
+        flow = mu * length**3 / h**3 * min(fed, 0.0) ** 2  # ∂p/∂z = 12 μ fed z/h³
+        return radius * (mu * length * (radius * speed) ** 2 / h + flow)
+
+    start = np.arctan2(vy - 0.5 * speed * x, vx + 0.5 * speed * y) - np.pi / 2.0
+    halves = (start, start + np.pi), (start + np.pi, start + 2.0 * np.pi)
+    expected = sum(quad(dissipated, *each, epsrel=1e-11)[0] for each in halves)
+    *force, torque = bearing().law_with_torque(*place, *velocity, 0.0, speed)
+    assert -np.dot(force, velocity) - torque * speed == pytest.approx(expected, rel=1e-9)
+
+
 def test_equilibrium_and_coefficients_of_a_published_bearing():
     """Friswell, Penny, Garvey, Lees: Dynamics of Rotating Machines (2010), Example 5.5.1."""
     K, D = bearing().coefficients(SPEED)

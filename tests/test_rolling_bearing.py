@@ -62,6 +62,26 @@ def test_tangent_is_the_derivative_of_the_force():
     np.testing.assert_allclose(D, 30.0 * np.eye(2))
 
 
+@pytest.mark.parametrize("elements", ["balls", "rollers"])
+def test_force_and_torque_are_the_slopes_of_what_the_contacts_store(elements):
+    """V = Σ k δ^{n+1}/(n+1), n = 3/2 or 10/9, of place and spin angle."""
+    one = bearing(clearance=5e-6, elements=elements)
+    exponent = {"balls": 1.5, "rollers": 10.0 / 9.0}[elements]
+    at, steps = np.array([2e-5, -1e-5, 0.7]), (1e-9, 1e-9, 1e-4)
+
+    def stored(x, y, angle):
+        turned = 2.0 * np.pi / 8 * np.arange(8) + one.cage_ratio * angle
+        depth = np.maximum(x * np.cos(turned) + y * np.sin(turned) - 5e-6, 0.0)
+        return np.sum(7e9 * depth ** (exponent + 1.0)) / (exponent + 1.0)
+
+    expected = [
+        (stored(*(at - move)) - stored(*(at + move))) / (2.0 * step)
+        for move, step in zip(np.diag(steps), steps, strict=True)
+    ]
+    found = one.law_with_torque(*at[:2], 0.0, 0.0, at[2], 50.0)
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
 def rotor():
     rings = ring_rotor(0.1, 0.15, 20.0)
     return rings.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)

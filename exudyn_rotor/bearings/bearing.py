@@ -15,6 +15,9 @@ from exudyn_rotor.bearings.support import Support
 
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
+Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
+LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Bearing(ABC):
@@ -42,9 +45,17 @@ class Bearing(ABC):
             object.__setattr__(self, "load", load)
 
     @property
-    def law(self) -> Callable[[float, float, float, float, float, float], tuple[float, float]]:
+    def law(self) -> Law:
         """For scenes: the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
         return self._law
+
+    @property
+    def law_with_torque(self) -> LawWithTorque | None:
+        """As :attr:`law`, with the torque on the journal about the axis [N m]; None without one.
+
+        Scenes need it where the spin is free.
+        """
+        return None
 
     @abstractmethod
     def _law(
@@ -120,20 +131,20 @@ class Linearised:
 
 
 def by_tangent(
-    force: Callable[[float, float], tuple[float, float]],
+    force: Callable[[float, float], tuple[float, ...]],
     x: float,
     y: float,
     most: float,
     step: float,
-) -> tuple[float, float]:
-    """Return a force at a place outside the radius `most`, by its tangent there.
+) -> tuple[float, ...]:
+    """Return a force, and a torque with it, outside the radius `most`, by its tangent there.
 
     The tangent is that of the last `step` inside. So Newton's method comes back from places at
     which there is no force.
     """
     eccentricity = hypot(x, y)
     ex, ey = x / eccentricity, y / eccentricity
-    fx, fy = force(most * ex, most * ey)
-    gx, gy = force((most - step) * ex, (most - step) * ey)
+    edge = force(most * ex, most * ey)
+    inside = force((most - step) * ex, (most - step) * ey)
     beyond = (eccentricity - most) / step
-    return fx + beyond * (fx - gx), fy + beyond * (fy - gy)
+    return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))

@@ -10,7 +10,7 @@ whose damping begins at zero with the contact (K. H. Hunt, F. R. E. Crossley, J.
     T = −μ N tanh(v_s/v_0),   v_s = R Ω + v_t,                                             (2)
 
 Coulomb's friction, smooth below the speed v_0. Dry backward whirl follows where friction
-overcomes the damping. The torque R T that brakes the spin is not applied: it counts for free spins.
+overcomes the damping. Friction brakes the spin by the torque R T.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -99,19 +99,32 @@ class ClearanceStop(Bearing):
         rate = checks.vector(velocity, "velocity", "m/s", size=2)
         return np.array(self._law(*place, *rate, 0.0, checks.number(speed, "speed", "rad/s")))
 
+    @property
+    def law_with_torque(self) -> LawWithTorque | None:
+        """As :attr:`law`, with the torque of friction on the journal [N m]; None without friction.
+
+        Scenes need it where the spin is free.
+        """
+        return self._law_with_torque if self.friction else None
+
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
+        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
+
+    def _law_with_torque(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float, float]:
         e = hypot(x, y)
         depth = e - self.clearance
         if depth <= 0.0:
-            return 0.0, 0.0
+            return 0.0, 0.0, 0.0
         nx, ny = x / e, y / e
         approach = vx * nx + vy * ny
         normal = max(0.0, depth * (self.stiffness + self.damping * approach / self.clearance))
         sliding = self.radius * speed + vy * nx - vx * ny
         drag = self.friction * normal * tanh(sliding / self.slip_speed)
-        return drag * ny - normal * nx, -drag * nx - normal * ny
+        return drag * ny - normal * nx, -drag * nx - normal * ny, -self.radius * drag
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return the centre, shape (2,): an open stop carries nothing.

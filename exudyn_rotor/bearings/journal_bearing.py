@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, by_tangent
+from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque, by_tangent
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
 
@@ -59,9 +59,19 @@ class JournalBearing(Bearing):
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
 
+    @property
+    def law_with_torque(self) -> LawWithTorque:
+        """As :attr:`law`, with the torque on the journal [N m]; see :attr:`FilmState.torque`."""
+        return self._law_with_torque
+
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
+        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
+
+    def _law_with_torque(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float, float]:
         if self.film.cavitation == "mass-conserving":
             raise ValueError(
                 f"bearing at {self.interface!r}: a film with cavitation='mass-conserving' has no "
@@ -69,8 +79,9 @@ class JournalBearing(Bearing):
             )
         rate = np.array([vx, vy])
 
-        def force(a: float, b: float) -> tuple[float, float]:
-            return tuple(self.film.force(np.array([a, b]), rate, speed))
+        def force(a: float, b: float) -> tuple[float, float, float]:
+            state = self.film.state(np.array([a, b]), rate, speed)
+            return *state.force, -state.torque
 
         most = self.film.clearance - self.film.thinnest
         if hypot(x, y) <= most:

@@ -11,9 +11,14 @@ element with both rings together carry
     Q_j = k max(0, x cos φ_j + y sin φ_j − c)^n,                                           (2)
 
 n = 3/2 for balls, 10/9 for rollers. The sum varies with every element that passes the load: at the
-frequency Z κ Ω (varying compliance). T. A. Harris, *Rolling Bearing Analysis* (2001), Ch. 7, 8;
-C. S. Sunnersjö, J. Sound Vib. 58 (1978). Centrifugal and gyroscopic loads of the elements, slip,
-waviness and the oil film are left out; α counts in (1) alone.
+frequency Z κ Ω (varying compliance). Elements that roll without loss take from the spin, by the
+torque
+
+    T = −κ Σ Q_j (y cos φ_j − x sin φ_j),                                                  (3)
+
+what the contacts store and the inner ring does not bring. T. A. Harris, *Rolling Bearing Analysis*
+(2001), Ch. 7, 8; C. S. Sunnersjö, J. Sound Vib. 58 (1978). Centrifugal and gyroscopic loads of the
+elements, slip, waviness and the oil film are left out; α counts in (1) alone.
 """
 
 from __future__ import annotations
@@ -26,7 +31,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import root
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 
 _EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}
 _CAGE_ANGLES = 16  # over the passage of one element, for mean coefficients
@@ -141,10 +146,21 @@ class RollingBearing(Bearing):
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
+        return self._law_with_torque(x, y, vx, vy, angle, speed)[:2]
+
+    @property
+    def law_with_torque(self) -> LawWithTorque:
+        """As :attr:`law`, with the torque (3) on the inner ring [N m]."""
+        return self._law_with_torque
+
+    def _law_with_torque(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float, float]:
         angles = self._angles(angle)
         c, s = np.cos(angles), np.sin(angles)
         loads, d = self._loads(x, y, c, s), self.damping
-        return -float(loads @ c) - d * vx, -float(loads @ s) - d * vy
+        px, py = float(loads @ c), float(loads @ s)
+        return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
     def equilibrium(
         self, speed: float, load: ArrayLike | None = None, angle: float = 0.0

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, by_tangent
 
-_MOST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
+THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
 _STEP = 1e-6  # of the clearance, of that tangent
 
 
@@ -101,8 +101,8 @@ class ShortFilmBearing(Bearing):
         """Return the force of the film [N]; one thinner than c/100 goes on by its tangent."""
         c, size = self.clearance, self._size
         x, y, vx, vy = x / c, y / c, vx / c, vy / c
-        if hypot(x, y) <= _MOST:
+        if hypot(x, y) <= THINNEST:
             fx, fy = film_force(x, y, vx, vy, speed)
         else:
-            fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, _MOST, _STEP)
+            fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, THINNEST, _STEP)
         return size * fx, size * fy

@@ -5,6 +5,11 @@ across it, its force is
 
     F_r = −(μ Ω R L³/c²) ε²/(1 − ε²)²,   F_t = (μ Ω R L³/c²) π ε/(4 (1 − ε²)^{3/2}).     (2)
 
+The journal is braked by the shear of a film all around it, and by the moment of the pressure about
+its centre, which is e from that of the bearing:
+
+    T = −2π μ Ω R³ L/(c √(1 − ε²)) − ½ e × F.                                              (3)
+
 F. W. Ocvirk, NACA TN 2808 (1952); M. I. Friswell et al., *Dynamics of Rotating Machines* (2010),
 Sect. 5.5. Error of the short bearing: below 5 % of the force for L/D ≤ 0.25, and about 20 to 30 %
 at L/D = 0.5; the oil's heating and inertia are left out.
@@ -20,7 +25,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.short_film import ShortFilmBearing
+from exudyn_rotor.bearings.bearing import LawWithTorque
+from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing
 
 _LEAST, _MOST = 1e-12, 1.0 - 1e-9  # eccentricity ratios of an equilibrium
 
@@ -86,6 +92,19 @@ class ShortJournalBearing(ShortFilmBearing):
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         return self._film(x, y, vx, vy, speed)
+
+    @property
+    def law_with_torque(self) -> LawWithTorque:
+        """As :attr:`law`, with the torque (3) on the journal [N m]."""
+        return self._law_with_torque
+
+    def _law_with_torque(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float, float]:
+        fx, fy = self._film(x, y, vx, vy, speed)
+        ratio = min(hypot(x, y) / self.clearance, THINNEST)
+        shear = 2.0 * pi * self.viscosity * self.radius**3 * self.length / self.clearance
+        return fx, fy, -shear * speed / sqrt(1.0 - ratio**2) - 0.5 * (x * fy - y * fx)
 
     def eccentricity_ratio(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the eccentricity over the clearance under a static load [N] at a speed [rad/s].
@@ -173,10 +192,7 @@ class ShortJournalBearing(ShortFilmBearing):
         return size * abs(speed) * turn @ K @ turn.T, size * turn @ D @ turn.T
 
     def power_loss(self, speed: float, load: ArrayLike | None = None) -> float:
-        """Return the friction of the journal at rest under a static load [W].
-
-        ``Ω (2π μ Ω R³ L/(c √(1 − ε²)) + e F_t/2)``: shear of a film around the whole journal, and
-        the moment of the film's pressure about the journal's centre.
+        """Return the friction (3) of the journal at rest under a static load, −T Ω [W].
 
         Parameters
         ----------
@@ -190,10 +206,8 @@ class ShortJournalBearing(ShortFilmBearing):
         TypeError, ValueError
             As :meth:`eccentricity_ratio`.
         """
-        ratio = self.eccentricity_ratio(speed, load)
-        shear = 2.0 * pi * self.viscosity * self.radius**3 * self.length / self.clearance
-        pressure = 0.5 * ratio * self.clearance * self._size * _at_rest(ratio)[1]
-        return speed**2 * (shear / sqrt(1.0 - ratio**2) + pressure)
+        place = self.equilibrium(speed, load).tolist()
+        return -speed * self._law_with_torque(*place, 0.0, 0.0, 0.0, speed)[2]
 
     def _direction(self, ratio: float, speed: float, load: np.ndarray) -> np.ndarray:
         """Return the unit vector from the bearing's centre to the journal's."""

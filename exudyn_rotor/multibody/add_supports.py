@@ -95,6 +95,10 @@ def add_supports(
     prescribed spin. Supports in the rotor's frame stand on something that turns with the frame and
     is driven there: its reaction does not act on a free spin.
 
+    The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
+    torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
+    its drive lacks it.
+
     Examples
     --------
     >>> import exudyn
@@ -130,8 +134,17 @@ def add_supports(
 
 
 def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Given) -> None:
-    """Refuse what acts against the rotation of a frame whose spin is free."""
-    if isinstance(support, Bearing) or not body.formulation.has_spin:
+    """Refuse what acts against the rotation of a frame whose spin is free, or cannot brake it."""
+    if not body.formulation.has_spin:
+        return
+    if isinstance(support, Bearing):
+        interface = body.selection.source.interfaces[support.interface]
+        if support.law_with_torque is not None and interface.radius == 0.0:
+            raise ValueError(
+                f"support at {support.interface!r}: its torque would not brake the free spin, "
+                "since the interface is a single node, which has no rotation; make the interface "
+                "of three nodes or more, or prescribe the spin"
+            )
         return
     stiffness, damping = support.matrices(body.plan.setup.placement.speed)
     acting = {"tilt_stiffness": stiffness}

@@ -73,7 +73,12 @@ def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Call
 def bearing_connector(
     body: RotorItems, bearing: Bearing, seat: Seat, base: exudyn.MarkerIndex
 ) -> exudyn.ObjectIndex:
-    """Add the connector of a bearing with a law of its own."""
+    """Add the connector of a bearing with a law of its own.
+
+    Its torque acts on a spin that is free; a prescribed one does not feel it.
+    """
+    if body.formulation.has_spin and bearing.law_with_torque is not None:
+        return _braking_connector(body, bearing, base)
     spin, law = _spin_reader(body), bearing.law
     (a, d), (b, e), (c, f) = seat.axes[:, :2].tolist()
 
@@ -85,6 +90,25 @@ def bearing_connector(
 
     marker = point_marker(body, bearing.interface)
     item = CartesianSpringDamper(markerNumbers=[base, marker], springForceUserFunction=force)
+    return body.mbs.AddObject(item)
+
+
+def _braking_connector(
+    body: RotorItems, bearing: Bearing, base: exudyn.MarkerIndex
+) -> exudyn.ObjectIndex:
+    """Add a connector with force and torque, in the axes of its base."""
+    spin, law = _spin_reader(body), bearing.law_with_torque
+
+    def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
+        return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
+
+    item = RigidBodySpringDamper(
+        markerNumbers=[base, rigid_marker(body, bearing.interface)],
+        stiffness=np.zeros((6, 6)),
+        damping=np.zeros((6, 6)),
+        springForceTorqueUserFunction=force,
+    )
     return body.mbs.AddObject(item)
 
 

@@ -105,6 +105,18 @@ BEARINGS = [
     ),
     *mutations(
         "bearings/short_journal.py",
+        "test_bearing_energy.py::test_films_brake_a_free_spin_as_petroff_says "
+        "test_journal_bearing.py::test_power_that_goes_into_a_short_film_is_dissipated",
+        ("film drives the journal", "return fx, fy, -shear", "return fx, fy, shear"),
+        ("pressure's moment reversed", "- 0.5 * (x * fy - y * fx)", "+ 0.5 * (x * fy - y * fx)"),
+    ),
+    *mutations(
+        "bearings/journal_bearing.py",
+        "test_bearing_energy.py::test_films_brake_a_free_spin_as_petroff_says",
+        ("film drives the journal", "-state.torque", "state.torque"),
+    ),
+    *mutations(
+        "bearings/short_journal.py",
         "test_journal_bearing.py",
         ("cross damping reversed", "s**5, -2.0 * ratio / s2**2],", "s**5, 2.0 * ratio / s2**2],"),
         (
@@ -135,6 +147,7 @@ BEARINGS = [
         ("friction drives", "return drag * ny - normal * nx", "return -drag * ny - normal * nx"),
         ("contact holds the journal back", "normal = max(0.0, ", "normal = max(-1e9, "),
         ("sliding without the orbit", "speed + vy * nx - vx * ny", "speed"),
+        ("friction drives the spin", "-self.radius * drag", "self.radius * drag"),
     ),
     *mutations(
         "bearings/bearing.py",
@@ -145,6 +158,7 @@ BEARINGS = [
         "bearings/rolling.py",
         "test_rolling_bearing.py",
         ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),
+        ("cage drives the ring", "self.cage_ratio * (x * py", "-self.cage_ratio * (x * py"),
         ("elements pull", "np.maximum(x * c + y * s - self.clearance, 0.0)", "x * c + y * s - 0.0"),
         ("tangent without its exponent", "(n * (exponent * self", "(n * (self"),
     ),
