@@ -18,7 +18,9 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.drives.drive import Drag, TorqueCurve
 from exudyn_rotor.drives.gear_mesh import GearMesh
+from exudyn_rotor.drives.motors import DirectCurrentMotor, InductionMotor, LimitedPower
 from exudyn_rotor.evaluation.level_one import (
     StabilityLevelOne,
     anticipated_cross_coupling,
@@ -42,6 +44,7 @@ from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
+from exudyn_rotor.multibody.add_drive import add_drive
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.add_supports import add_supports
 from exudyn_rotor.multibody.connections import ConnectionWarning
@@ -86,15 +89,19 @@ __all__ = [
     "ConstantSpeed",
     "CriticalSpeedMap",
     "CriticalSpeeds",
+    "DirectCurrentMotor",
+    "Drag",
     "EnergyBalance",
     "Formulation",
     "FullRotorBody",
     "GearMesh",
     "HarmonicForce",
     "HarmonicResponse",
+    "InductionMotor",
     "Interface",
     "Invariants",
     "JournalBearing",
+    "LimitedPower",
     "LinearModel",
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
@@ -129,8 +136,10 @@ __all__ = [
     "StressField",
     "StressHistory",
     "Support",
+    "TorqueCurve",
     "Unbalance",
     "UnbalanceResponse",
+    "add_drive",
     "add_rotor",
     "add_supports",
     "anticipated_cross_coupling",

@@ -315,10 +315,10 @@ def test_refused_calls_leave_the_scene_as_it_was():
         (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [good, held])),
         (ValueError, "tilt_stiffness about the spin axis needs a prescribed", (body, [turning])),
         (TypeError, "base: needs MarkerIndex or ObjectIndex", (body, good, "ground")),
-        (ValueError, r"marker \d+ is 0.15 m off the support at 'left'", (body, good, off)),
+        (ValueError, r"marker \d+ is 0.15 m off the interface 'left'", (body, good, off)),
         (ValueError, "has no place and orientation", (body, good, point)),
         (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
-        (ValueError, "base: has nothing for the support at 'left'", (body, good, {"right": off})),
+        (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
     ):
         with pytest.raises(error, match=match):
             add_supports(*arguments)

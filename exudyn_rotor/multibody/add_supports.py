@@ -125,7 +125,7 @@ def add_supports(
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
         _check_about_the_axis(body, support)
-    seats = [Seat.of(body, support, base) for support in supports]
+    seats = [Seat.of(body, support.interface, base) for support in supports]
     added = tuple(
         _added(body, support, seat) for support, seat in zip(supports, seats, strict=True)
     )

@@ -96,14 +96,11 @@ class _Walk:
 
     def objects(self) -> Iterator[tuple[str, str]]:
         """Yield connectors and joints, and what of them is lost or wrong."""
-        constraints = {int(number) for number in self.body.constraints.values()}
+        own = {int(number) for number in self.body.constraints.values()}
+        own |= {int(drive.object) for drive in self.body.drives}
         for number in range(self.mbs.systemData.NumberOfObjects()):
             item = self.mbs.GetObject(number)
-            if (
-                number in constraints
-                or "markerNumbers" not in item
-                or not item.get("activeConnector", 1)
-            ):
+            if number in own or "markerNumbers" not in item or not item.get("activeConnector", 1):
                 continue
             for place, marker in enumerate(map(int, item["markerNumbers"])):
                 reason = None

@@ -56,6 +56,8 @@ class RotorItems:
         Whether these sensors know the stress.
     supports : list
         What :func:`exudyn_rotor.add_supports` added.
+    drives : list
+        What :func:`exudyn_rotor.add_drive` added.
     """
 
     mbs: exudyn.MainSystem
@@ -68,6 +70,7 @@ class RotorItems:
     mesh_node_count: int = 0
     mesh_stress: bool = False
     supports: list = field(default_factory=list, init=False)
+    drives: list = field(default_factory=list, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
     mark: Mark | None = field(default=None, init=False)
 

@@ -44,7 +44,9 @@ class SceneBody(RotorItems, ABC):
     @property
     def uses_python(self) -> bool:
         """True when a time step calls Python user functions, of the rotor or its supports."""
-        return not self.motion.is_constant or any(each.uses_python for each in self.supports)
+        return not self.motion.is_constant or any(
+            each.uses_python for each in (*self.supports, *self.drives)
+        )
 
     @property
     def locked(self) -> tuple[str, ...]:
@@ -65,6 +67,7 @@ class SceneBody(RotorItems, ABC):
             f"  locked         {', '.join(self.locked) or 'none'}",
             f"  constraints    {len(self.constraints)}",
             f"  supports       {'; '.join(map(str, self.supports)) or 'none added'}",
+            *([f"  drives         {'; '.join(map(str, self.drives))}"] if self.drives else []),
             f"  per step       {'Python user functions' if self.uses_python else 'no Python call'}",
         ]
         return "\n".join(lines)

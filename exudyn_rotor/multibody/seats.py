@@ -15,7 +15,6 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.full_markers import interface_carrier
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
@@ -46,15 +45,15 @@ class Seat:
     orientation: np.ndarray
 
     @classmethod
-    def of(cls, body: RotorItems, support: Given, base: Base | Mapping[str, Base] | None) -> Seat:
-        name, setup = support.interface, body.plan.setup.placement
+    def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
+        setup = body.plan.setup.placement
         on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
         place = setup.position + setup.rotation @ on_axis
         axes = setup.rotation @ axes_of(body.axis)
         if isinstance(base, Mapping):
             if name not in base:
                 raise ValueError(
-                    f"base: has nothing for the support at {name!r}, only for: "
+                    f"base: has nothing for the interface {name!r}, only for: "
                     f"{', '.join(map(str, base)) or 'none'}"
                 )
             base = base[name]
@@ -65,7 +64,7 @@ class Seat:
         apart = np.linalg.norm(origin - place)
         if isinstance(base, exudyn.MarkerIndex) and apart > _SAME_PLACE:
             raise ValueError(
-                f"base: the marker {int(base)} is {apart:.3g} m off the support at {name!r}, which "
+                f"base: the marker {int(base)} is {apart:.3g} m off the interface {name!r}, which "
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
         return cls(place, axes, base, origin, orientation)

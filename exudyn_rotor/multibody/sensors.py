@@ -133,7 +133,7 @@ def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
         speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
         return [sign * float(angle), sign * float(speed)]
 
-    return _add_function_sensor(body, spin, options)
+    return add_function_sensor(body, spin, options)
 
 
 def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
@@ -158,7 +158,7 @@ def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIn
         needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
         return [needed - external(t, configuration) - _deflected_weight(body, t, q[modes])]
 
-    return _add_function_sensor(body, torque, options)
+    return add_function_sensor(body, torque, options)
 
 
 def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
@@ -213,7 +213,7 @@ def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
         energy = energy_of(body.motion, t, q, q_t, gravity)
         return [energy.kinetic, energy.elastic, energy.weight]
 
-    return _add_function_sensor(body, energy, options)
+    return add_function_sensor(body, energy, options)
 
 
 def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:
@@ -224,7 +224,7 @@ def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:
     return body.objects["marker_body"]
 
 
-def _add_function_sensor(
+def add_function_sensor(
     body: RotorItems, function: Callable, options: Mapping[str, Any]
 ) -> exudyn.SensorIndex:
     settings = _settings(body, options, shown=False)

@@ -49,7 +49,7 @@ def displacement_connector(
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         return exudyn.symbolic.Vector(_sum(_times(K, u), _times(D, v)))
 
-    item.springForceUserFunction = _symbolic(mbs, force, item, "springForceUserFunction")
+    item.springForceUserFunction = symbolic_function(mbs, force, item, "springForceUserFunction")
     return mbs.AddObject(item), SYMBOLIC
 
 
@@ -140,7 +140,7 @@ def tilt_connector(
         values = _sum(_times(K, angles), _times(D, rate))
         return exudyn.symbolic.Vector([0.0, 0.0, 0.0, *values])
 
-    item.springForceTorqueUserFunction = _symbolic(
+    item.springForceTorqueUserFunction = symbolic_function(
         mbs, torque, item, "springForceTorqueUserFunction"
     )
     return mbs.AddObject(item), SYMBOLIC
@@ -240,7 +240,9 @@ def _sum(first: list, second: list) -> list:
     return [a + b for a, b in zip(first, second, strict=True)]
 
 
-def _symbolic(mbs: exudyn.MainSystem, function: Callable, item: object, name: str) -> object:
+def symbolic_function(
+    mbs: exudyn.MainSystem, function: Callable, item: object, name: str
+) -> object:
     """Return a function as Exudyn's symbolic one, kept alive by the system."""
     kind = type(item).__name__
     made = CreateSymbolicUserFunction(mbs, function, name, itemTypeName=kind)

@@ -35,4 +35,31 @@ DRIVES = [
         "test_gear_mesh.py::test_stiffness_follows_the_teeth",
         ("teeth of no influence", "orders = self.teeth[0] * np", "orders = 1.0 * np"),
     ),
+    *mutations(
+        "drives/motors.py",
+        "test_drives.py::test_start_and_coast_down_in_closed_form",
+        ("Kloss without the square", "(slip * slip + most**2)", "(slip + most**2)"),
+        (
+            "constant torque at all speeds",
+            "(forward + corner + (beyond",
+            "(corner + corner + 0.0 * (beyond",
+        ),
+        ("torque that does not fall", "(1.0 - speed / self.no_load_speed)", "(1.0 - 0.0 * speed)"),
+    ),
+    *mutations(
+        "drives/motors.py",
+        "test_drives.py::test_torques_backwards_are_those_forwards",
+        (
+            "backwards forgotten",
+            "return 2.0 * sense * self.breakdown_torque",
+            "return 2.0 * self.breakdown_torque",
+        ),
+    ),
+    *mutations(
+        "drives/drive.py",
+        "test_drives.py::test_start_and_coast_down_in_closed_form",
+        ("drag drives", "return -(dry + self", "return (dry + self"),
+        ("quadratic drag linear", "self.quadratic * speed * square**0.5", "self.quadratic * speed"),
+        ("dry friction grows", "(square + self.smooth_speed**2) ** 0.5", "1.0"),
+    ),
 ]

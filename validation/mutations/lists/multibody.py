@@ -364,4 +364,13 @@ MULTIBODY = [
             "self.place - self.origin",
         ),
     ),
+    *mutations(
+        "multibody/add_drive.py",
+        "test_drives.py::test_axes_change_nothing "
+        "test_drives.py::test_energy_is_what_the_drives_give",
+        ("spin counted as the node does", "return -sign * law(sign * v, t)", "return -law(v, t)"),
+        ("torque brakes", "0.0, -law(omega[2], t)]", "0.0, law(omega[2], t)]"),
+        ("power without the speed", "[torque, torque * speed]", "[torque, torque]"),
+        ("sensor counts as the node does", "speed = sign * float(", "speed = float("),
+    ),
 ]

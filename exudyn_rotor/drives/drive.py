@@ -1,0 +1,169 @@
+"""Torques on a shaft by its spin speed: what motors, brakes and drag have in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+
+_ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
+
+
+@dataclass(frozen=True, eq=False)
+class Drive(ABC):
+    """A torque about the spin axis by spin speed and time."""
+
+    _is_formula: ClassVar[bool] = True  # made of + − · / and powers alone, and without the time
+
+    @property
+    def is_formula(self) -> bool:
+        """Whether `law` takes symbols, too, and no time: Exudyn evaluates such a drive itself."""
+        return self._is_formula
+
+    @property
+    def law(self) -> Callable[[float, float], float]:
+        """For scenes: the torque [N m] by spin speed [rad/s] and time [s], unchecked."""
+        return self._torque
+
+    def torque(self, speed: float, time: float = 0.0) -> float:
+        """Return the torque about e on the rotor [N m].
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s].
+        time : float, optional
+            [s]; only a :class:`TorqueCurve` may depend on it.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, and a speed beyond the table of a :class:`TorqueCurve`.
+        """
+        return float(
+            self._torque(checks.number(speed, "speed", "rad/s"), checks.number(time, "time", "s"))
+        )
+
+    @abstractmethod
+    def _torque(self, speed: float, time: float) -> float: ...
+
+    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
+        """Check attributes, given with their units, and keep them as floats."""
+        for name, unit in units.items():
+            value = checks.number(getattr(self, name), name, unit, **bounds)
+            object.__setattr__(self, name, value)
+
+    def _refuse_zero(self, name: str, unit: str) -> None:
+        if getattr(self, name) == 0.0:
+            raise ValueError(f"{name}: needs a number [{unit}] that is not zero, got 0.0")
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueCurve(Drive):
+    """Torque by a table over the spin speed, or by a function.
+
+    Parameters
+    ----------
+    curve : (speeds, torques) or callable
+        A table: speeds, ascending [rad/s], and the torques about e on the rotor there [N m],
+        interpolated linearly; or a function of spin speed and time [s] that returns the torque.
+    extrapolate : bool, optional
+        Whether a table goes on beyond its ends with the value there; an error by default.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import TorqueCurve
+    >>> TorqueCurve(([0.0, 100.0, 150.0], [20.0, 30.0, 0.0])).torque(125.0)
+    15.0
+    >>> TorqueCurve(lambda speed, time: 5.0 * time - 0.1 * speed).torque(10.0, time=2.0)
+    9.0
+    """
+
+    _is_formula = False
+
+    curve: tuple[ArrayLike, ArrayLike] | Callable[[float, float], float]
+    extrapolate: bool = False
+
+    def __post_init__(self) -> None:
+        checks.flag(self.extrapolate, "extrapolate")
+        if callable(self.curve):
+            return
+        if not isinstance(self.curve, tuple | list) or len(self.curve) != 2:
+            raise TypeError(
+                "curve: needs a table (speeds, torques) or a function of speed and time, got "
+                f"{checks.shown(self.curve)}"
+            )
+        speeds = checks.ascending(self.curve[0], "curve: its speeds", "rad/s")
+        torques = checks.vector(self.curve[1], "curve: its torques", "N m", size=len(speeds))
+        object.__setattr__(self, "curve", (speeds, torques))
+
+    def _torque(self, speed: float, time: float) -> float:
+        if callable(self.curve):
+            return self.curve(speed, time)
+        speeds, torques = self.curve
+        slack = _ROUNDING * max(abs(speeds[0]), abs(speeds[-1]))
+        if not self.extrapolate and not speeds[0] - slack <= speed <= speeds[-1] + slack:
+            raise ValueError(
+                f"curve: its table holds {speeds[0]:g} to {speeds[-1]:g} rad/s, not {speed:g} "
+                "rad/s: give more of it, or extrapolate=True to keep the value at its end"
+            )
+        return float(np.interp(speed, speeds, torques))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Drag(Drive):
+    """Drag of bearings, air and seals: it opposes the spin.
+
+    ``T = −(c₀ Ω/√(Ω² + Ω_s²) + c₁ Ω + c₂ |Ω| Ω)``: dry friction, smooth below the speed Ω_s; linear
+    and quadratic drag.
+
+    Parameters
+    ----------
+    constant : float, optional
+        c₀ [N m].
+    linear : float, optional
+        c₁ [N m s/rad].
+    quadratic : float, optional
+        c₂ [N m s²/rad²].
+    smooth_speed : float, optional
+        Ω_s [rad/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For negative numbers, and for a drag without any.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Drag
+    >>> Drag(linear=0.1, quadratic=2e-3).torque(100.0)
+    -30.0
+    """
+
+    constant: float = 0.0
+    linear: float = 0.0
+    quadratic: float = 0.0
+    smooth_speed: float = 0.1
+
+    def __post_init__(self) -> None:
+        units = {"constant": "N m", "linear": "N m s/rad", "quadratic": "N m s²/rad²"}
+        self._set_numbers(units, least=0.0)
+        self._set_numbers({"smooth_speed": "rad/s"}, above=0.0)
+        if not (self.constant or self.linear or self.quadratic):
+            raise ValueError("drag: needs constant, linear or quadratic above zero, got none")
+
+    def _torque(self, speed: float, time: float) -> float:
+        square = speed * speed
+        dry = self.constant * speed / (square + self.smooth_speed**2) ** 0.5
+        return -(dry + self.linear * speed + self.quadratic * speed * square**0.5)

@@ -1,0 +1,139 @@
+"""Torque curves of motors over the spin speed Ω, at steady supply.
+
+Induction motor, by Kloss's formula (M. Kloss, Archiv für Elektrotechnik 5 (1916) 59):
+
+    T = 2 T_b/(s/s_b + s_b/s),   s = 1 − Ω/Ω_s,                                             (1)
+
+direct-current motor with separate excitation (W. Leonhard, Control of Electrical Drives, ch. 5):
+
+    T = T_0 (1 − Ω/Ω_0),                                                                   (2)
+
+and a drive with limited power: T = T_0 up to Ω = P/T_0, P/Ω beyond.                         (3)
+
+Transients of the currents are left out: they are over within some periods of the supply.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from exudyn_rotor.drives.drive import Drive
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class InductionMotor(Drive):
+    """Induction motor by Kloss's formula (1); a generator above its synchronous speed.
+
+    Parameters
+    ----------
+    breakdown_torque : float
+        Largest torque T_b [N m], a size.
+    breakdown_slip : float
+        Slip s_b at which it is reached, above 0 and below 1.
+    synchronous_speed : float
+        Ω_s [rad/s]; negative for a motor that turns the rotor backwards.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For numbers out of these ranges.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import InductionMotor
+    >>> motor = InductionMotor(breakdown_torque=50.0, breakdown_slip=0.2, synchronous_speed=100.0)
+    >>> motor.torque(80.0), round(motor.torque(0.0), 3), motor.torque(100.0)
+    (50.0, 19.231, 0.0)
+    """
+
+    breakdown_torque: float
+    breakdown_slip: float
+    synchronous_speed: float
+
+    def __post_init__(self) -> None:
+        self._set_numbers({"breakdown_torque": "N m"}, above=0.0)
+        self._set_numbers({"breakdown_slip": ""}, above=0.0, below=1.0)
+        self._set_numbers({"synchronous_speed": "rad/s"})
+        self._refuse_zero("synchronous_speed", "rad/s")
+
+    def _torque(self, speed: float, time: float) -> float:
+        sense = 1.0 if self.synchronous_speed > 0.0 else -1.0
+        slip, most = 1.0 - speed / self.synchronous_speed, self.breakdown_slip
+        return 2.0 * sense * self.breakdown_torque * most * slip / (slip * slip + most**2)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DirectCurrentMotor(Drive):
+    """Direct-current motor: a torque that falls linearly with the speed (2).
+
+    Parameters
+    ----------
+    stall_torque : float
+        T_0 [N m], a size.
+    no_load_speed : float
+        Ω_0 [rad/s]; negative for a motor that turns the rotor backwards.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For numbers that are not above zero, a speed that is zero.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import DirectCurrentMotor
+    >>> DirectCurrentMotor(stall_torque=10.0, no_load_speed=200.0).torque(50.0)
+    7.5
+    """
+
+    stall_torque: float
+    no_load_speed: float
+
+    def __post_init__(self) -> None:
+        self._set_numbers({"stall_torque": "N m"}, above=0.0)
+        self._set_numbers({"no_load_speed": "rad/s"})
+        self._refuse_zero("no_load_speed", "rad/s")
+
+    def _torque(self, speed: float, time: float) -> float:
+        sense = 1.0 if self.no_load_speed > 0.0 else -1.0
+        return sense * self.stall_torque * (1.0 - speed / self.no_load_speed)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LimitedPower(Drive):
+    """Drive of constant torque at low speed and of constant power above (3).
+
+    Parameters
+    ----------
+    power : float
+        P [W].
+    stall_torque : float
+        T_0 [N m]; negative for a drive that turns the rotor backwards.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For a power that is not above zero, a torque that is zero.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import LimitedPower
+    >>> drive = LimitedPower(power=1000.0, stall_torque=20.0)
+    >>> drive.torque(40.0), drive.torque(100.0)
+    (20.0, 10.0)
+    """
+
+    power: float
+    stall_torque: float
+
+    def __post_init__(self) -> None:
+        self._set_numbers({"power": "W"}, above=0.0)
+        self._set_numbers({"stall_torque": "N m"})
+        self._refuse_zero("stall_torque", "N m")
+
+    def _torque(self, speed: float, time: float) -> float:
+        sense = 1.0 if self.stall_torque > 0.0 else -1.0
+        corner, forward = sense * self.power / self.stall_torque, sense * speed
+        beyond = forward - corner
+        # the larger of both speeds, without a case
+        larger = 0.5 * (forward + corner + (beyond * beyond) ** 0.5)
+        return sense * self.power / larger

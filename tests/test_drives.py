@@ -1,0 +1,249 @@
+"""Motors and drag in scenes: start-up and coast-down in closed form, energy, axes, refusals."""
+
+from dataclasses import replace
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.rigidBodyUtilities import InertiaCuboid
+from point_rotors import ring_rotor
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    DirectCurrentMotor,
+    Drag,
+    InductionMotor,
+    LimitedPower,
+    SolidRotor,
+    Support,
+    TorqueCurve,
+    add_drive,
+    add_rotor,
+    add_supports,
+    energy_balance,
+    recommended_settings,
+)
+
+J = 0.05  # of the rings below [kg m²]
+Z = [0.0, 0.0, 1.0]
+MOTOR = DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
+
+
+def rings(axis=Z, heavy=0.0):
+    """Return two rings of 5 kg together, J = m r², in full."""
+    upright = ring_rotor(0.1, 0.15, 5.0)
+    turn = Rotation.align_vectors([axis], [[0.0, 0.0, 1.0]])[0].as_matrix()
+    whole = np.kron(np.eye(10), turn)
+    stiffness = whole @ upright.stiffness @ whole.T
+    upright = SolidRotor.from_matrices(upright.mass, stiffness, upright.nodes @ turn.T, axis)
+    if heavy:
+        upright = upright.add_point_mass(turn @ [0.1, 0.0, 0.15], heavy)
+    return upright.with_interface("left", range(5)).with_interface("right", range(5, 10))
+
+
+def run(mbs, end_time, steps, body=None):
+    mbs.Assemble()
+    settings = recommended_settings(end_time, end_time / steps, accuracy=1e-6, body=body)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = end_time / steps
+    assert mbs.SolveDynamic(settings)
+
+
+def speed_of(body):
+    place = body.formulation.translation_count
+    return body.coordinates()[1][place]
+
+
+def from_slip(slip, motor):
+    """Return the time until a slip: dΩ/dt = T/J integrated, with T by Kloss."""
+    most, size = motor.breakdown_slip, J * motor.synchronous_speed / motor.breakdown_torque
+    return 0.5 * size * ((1.0 - slip**2) / (2.0 * most) - most * np.log(slip))
+
+
+INDUCTION = InductionMotor(breakdown_torque=8.0, breakdown_slip=0.25, synchronous_speed=100.0)
+LIMITED = LimitedPower(power=100.0, stall_torque=4.0)
+CLOSED = {  # drive, speed at the start, time, speed then
+    "direct current": (MOTOR, 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
+    "induction": (INDUCTION, 0.0, from_slip(0.15, INDUCTION), 85.0),
+    "limited power": (LIMITED, 0.0, 1.0, np.sqrt(25.0**2 + 2.0 * 100.0 / J * (1.0 - J * 25 / 4))),
+    "table": (TorqueCurve(([0.0, 100.0], [5.0, 0.0])), 0.0, 1.0, 100.0 * (1.0 - np.exp(-1.0))),
+    "function of time": (TorqueCurve(lambda speed, time: 4.0 * time), 0.0, 1.0, 2.0 / J),
+    "dry": (Drag(constant=2.0, smooth_speed=1e-3), 60.0, 1.0, 60.0 - 2.0 / J),
+    "linear": (Drag(linear=0.05), 60.0, 1.0, 60.0 * np.exp(-1.0)),
+    "quadratic": (Drag(quadratic=1e-3), 60.0, 1.0, 1.0 / (1.0 / 60.0 + 1e-3 / J)),
+}
+
+
+@pytest.mark.parametrize("at", [None, "left"])
+@pytest.mark.parametrize("name", CLOSED)
+def test_start_and_coast_down_in_closed_form(name, at):
+    """J dΩ/dt = T(Ω, t); the rule is of second order, its error some (h/τ)²/12."""
+    drive, start, time, expected = CLOSED[name]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none", initial_speed=start)
+    add_drive(body, drive, at)
+    run(mbs, time, 150)
+    assert speed_of(body) == pytest.approx(expected, rel=2e-5)
+
+
+AXES = {
+    "x": ([1.0, 0.0, 0.0], None),
+    "y": ([0.0, 1.0, 0.0], None),
+    "-y": ([0.0, -1.0, 0.0], None),
+    "-z mounted": ([0.0, 0.0, -1.0], Rotation.from_euler("x", 0.3).as_matrix()),
+    "skew": ([2.0, -1.0, 2.0], Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()),
+}
+
+
+def eccentric(axis=Z, rotation=None, at=None, steps=60, modes=0):
+    """Start an eccentric rotor on springs, a full one without `modes`; return scene and sensors."""
+    mbs = exu.SystemContainer().AddSystem()
+    rotor = rings(axis, heavy=0.05)
+    rotor = rotor if modes is None else rotor.reduce(modes)
+    body = add_rotor(mbs, rotor, rotation=rotation, initial_speed=20.0)
+    add_supports(body, [Support(name, 1e5 * np.eye(3)) for name in ("left", "right")])
+    motor = add_drive(body, MOTOR, at)
+    drag = add_drive(body, Drag(quadratic=2e-4, linear=0.01), "right" if at is None else None)
+    sensors = [motor.add_sensor(), drag.add_sensor()]
+    if modes is not None:
+        body.start_recording()
+    run(mbs, 0.2, steps, body)
+    return mbs, body, sensors
+
+
+@pytest.fixture(scope="module")
+def upright():
+    return eccentric()
+
+
+@pytest.mark.parametrize("name", AXES)
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+def test_axes_change_nothing(upright, name):
+    mbs, body, sensors = eccentric(*AXES[name])
+    assert speed_of(body) == pytest.approx(speed_of(upright[1]), rel=1e-8)
+    found, expected = (
+        scene.GetSensorStoredData(made[0])[-1]
+        for scene, made in ((mbs, sensors), (upright[0], upright[2]))
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-7)
+
+
+@pytest.mark.parametrize("at", [None, "left"])
+def test_a_full_body_takes_drives(at):
+    """All displacements of ten masses and one more, as coordinates and as modes."""
+    speeds = [speed_of(eccentric(at=at, modes=modes)[1]) for modes in (None, 24)]
+    assert speeds[0] == pytest.approx(speeds[1], rel=1e-6)  # accuracy of the run
+
+
+@pytest.mark.parametrize("at", [None, "left"])
+def test_energy_is_what_the_drives_give(at):
+    """Of the rotor: the work of drives and springs; the integrals are of second order."""
+    errors = []
+    for steps in (60, 120):
+        mbs, body, sensors = eccentric(at=at, steps=steps)
+        work = 0.0
+        for sensor in sensors:
+            time, _, power = mbs.GetSensorStoredData(sensor)[1:].T
+            work += np.trapezoid(power, time)
+        springs = 0.0
+        for support in body.supports:
+            u = mbs.GetObjectOutput(support.objects[0], exu.OutputVariableType.Displacement)
+            springs += 0.5e5 * u @ u
+        balance = energy_balance(body)
+        errors.append((balance.loads[-1] + springs - work) / work)
+        assert balance.error[-1] == pytest.approx(0.0, abs=2e-4 * work)
+    assert abs(errors[0]) < 2e-3
+    assert abs(errors[1]) < 0.35 * abs(errors[0])
+
+
+def test_the_stator_takes_the_reaction():
+    """Rotor and a free housing: no angular momentum together."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none", position=[0.0, 0.0, 0.15])
+    inertia = InertiaCuboid(density=2500.0, sideLengths=[0.3, 0.2, 0.1])
+    housing = mbs.CreateRigidBody(inertia=inertia, nodeType=exu.NodeType.RotationRxyz)
+    add_drive(body, MOTOR, "left", base=housing)
+    run(mbs, 0.5, 50)
+    omega = mbs.GetObjectOutputBody(housing, exu.OutputVariableType.AngularVelocity, [0, 0, 0])
+    back = inertia.GetInertia6D()[2]
+    assert back * omega[2] == pytest.approx(-J * speed_of(body), rel=1e-9)
+    both = J * back / (J + back)
+    relative = 100.0 * (1.0 - np.exp(-0.5 * 0.05 / both))
+    assert speed_of(body) - omega[2] == pytest.approx(relative, rel=1e-4)
+
+
+def test_torques_backwards_are_those_forwards():
+    for motor, other in (
+        (INDUCTION, replace(INDUCTION, synchronous_speed=-100.0)),
+        (MOTOR, replace(MOTOR, no_load_speed=-100.0)),
+        (LIMITED, replace(LIMITED, stall_torque=-4.0)),
+    ):
+        for speed in (-20.0, 10.0, 80.0, 130.0):
+            assert other.torque(-speed) == pytest.approx(-motor.torque(speed), rel=1e-12)
+
+
+def test_who_evaluates_is_reported():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0))
+    add_drive(body, MOTOR, "left")
+    curve = add_drive(body, TorqueCurve(([0.0, 1.0], [1.0, 0.0])))
+    assert curve.uses_python
+    assert "DirectCurrentMotor at left by symbolic function; TorqueCurve by Python" in body.report()
+    mbs.Assemble()
+    assert body.check_connections() == ()
+
+
+def test_refused_calls_leave_the_scene_as_it_was():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().with_interface("point", [0]).reduce(0))
+    driven = add_rotor(mbs, rings().reduce(0), name="driven", spin=10.0)
+    bare = add_rotor(mbs, rings().reduce(0), name="bare", marker_body=False)
+    ground = mbs.CreateGround()
+
+    def counts():
+        data = mbs.systemData
+        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
+
+    before = counts()
+    for error, match, arguments in (
+        (TypeError, "body: needs RotorBody", (mbs, MOTOR)),
+        (TypeError, "drive: needs Drive", (body, 5.0)),
+        (ValueError, "body: rotor 'driven' has a prescribed spin", (driven, MOTOR)),
+        (ValueError, "body: rotor 'bare' was added with marker_body=False", (bare, MOTOR)),
+        (ValueError, "at: 'top' is unknown", (body, MOTOR, "top")),
+        (ValueError, "at: 'point' is a single node", (body, MOTOR, "point")),
+        (ValueError, "base: a drive on the whole rotor", (body, MOTOR, None, ground)),
+    ):
+        with pytest.raises(error, match=match):
+            add_drive(*arguments)
+        assert counts() == before
+        assert body.drives == []
+
+
+def test_a_run_beyond_a_table_stops():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings().reduce(0), translation="none")
+    add_drive(body, TorqueCurve(([0.0, 5.0], [5.0, 5.0])))
+    with pytest.raises(Exception, match="curve: its table holds 0 to 5 rad/s"):
+        run(mbs, 0.2, 20)
+    assert TorqueCurve(([0.0, 5.0], [5.0, 4.0]), extrapolate=True).torque(9.0) == 4.0
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Drag(), "drag: needs constant, linear or quadratic"),
+        (lambda: Drag(linear=-1.0), "linear: needs a finite number"),
+        (lambda: LimitedPower(power=1.0, stall_torque=0.0), "stall_torque: needs a number"),
+        (
+            lambda: InductionMotor(breakdown_torque=1, breakdown_slip=1.2, synchronous_speed=9),
+            "breakdown_slip: needs",
+        ),
+        (lambda: TorqueCurve(([1.0, 0.0], [1.0, 2.0])), "curve: its speeds: needs"),
+        (lambda: TorqueCurve(([0.0, 1.0], [1.0])), "curve: its torques: needs"),
+    ],
+)
+def test_bad_numbers_are_refused(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()
