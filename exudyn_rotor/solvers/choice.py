@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.solvers import pardiso
 from exudyn_rotor.solvers.fill import Fill, estimated_fill
 from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
@@ -24,6 +25,8 @@ _ITERATIVE_PER_COORDINATE = 4000.0
 # solutions, and per entry of the matrix by iteration; only their ratios count
 _PER_OPERATION, _PER_FACTOR_ENTRY, _PER_MATRIX_ENTRY = 7e-11, 1.6e-7, 2e-6
 _WORTH_IT = 2.0
+# how much quicker Pardiso is, where it is installed
+_PARDISO = 2.5
 
 
 class Elements(Protocol):
@@ -109,7 +112,8 @@ def is_iterative(way: Way, stiffness: sp.csr_array) -> bool:
     direct = _direct_bytes(stiffness, fill)
     if way.solver == "auto" and way.interpolation is not None:
         seconds = _PER_OPERATION * fill.operations + _PER_FACTOR_ENTRY * fill.entries
-        if direct > available or seconds > _WORTH_IT * _PER_MATRIX_ENTRY * entries:
+        worth_it = _WORTH_IT * (_PARDISO if pardiso.is_installed() else 1.0)
+        if direct > available or seconds > worth_it * _PER_MATRIX_ENTRY * entries:
             _check_iterative(size, entries, available)
             return True
     if direct > available:

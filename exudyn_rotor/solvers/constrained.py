@@ -46,9 +46,9 @@ class ConstrainedInverse:
         return elastic + self._correction(self._constraints @ elastic, resultant)
 
     @property
-    def iterative(self) -> bool:
-        """Whether there is no factor, and modes are to be found by :meth:`precondition`."""
-        return self._relief.iterative
+    def by_blocks(self) -> bool:
+        """Whether modes are to be found by :meth:`precondition`, many at once."""
+        return self._relief.by_blocks
 
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (3n, k), with ``C u = 0``."""

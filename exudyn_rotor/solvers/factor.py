@@ -11,6 +11,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from ngsolve.la import SparseMatrixd
 
+from exudyn_rotor.solvers import pardiso
+
 Solve = Callable[[np.ndarray], np.ndarray]
 
 # below this size LAPACK is faster than handing the matrix over
@@ -30,16 +32,22 @@ class NotPositiveDefiniteError(ValueError):
 class SparseCholesky:
     """Factorisation of a symmetric positive definite matrix.
 
-    Large matrices go to NGSolve's ``sparsecholesky`` (fill-reducing, threaded), small ones to
-    LAPACK. NGSolve's variant is an LDLᵀ that accepts negative pivots in silence, so the factors
-    are probed once: the residual of a random right-hand side shows a singular matrix, and a
-    negative Ritz value of ``A⁻¹`` in a small Krylov space proves an indefinite one (it lies inside
-    the spectrum). A negative eigenvalue in the middle of the spectrum of ``A`` can pass.
+    Large matrices go to Pardiso where it is installed, else to NGSolve's ``sparsecholesky``
+    (fill-reducing, threaded), small ones to LAPACK. NGSolve's variant is an LDLᵀ that accepts
+    negative pivots in silence, so the factors are probed once: the residual of a random right-hand
+    side shows a singular matrix, and a negative Ritz value of ``A⁻¹`` in a small Krylov space
+    proves an indefinite one (it lies inside the spectrum). A negative eigenvalue in the middle of
+    the spectrum of ``A`` can pass.
 
     Parameters
     ----------
     matrix : scipy.sparse array, shape (n, n)
         Symmetric positive definite; only the lower triangle is factorised.
+
+    Attributes
+    ----------
+    by_blocks : bool
+        Whether solving for many right-hand sides at once is much quicker than one by one.
 
     Raises
     ------
@@ -52,30 +60,28 @@ class SparseCholesky:
         matrix = sp.csr_array(matrix)
         if not np.all(matrix.diagonal() > 0.0):
             raise NotPositiveDefiniteError("the matrix has a diagonal entry that is not positive")
-        self._solve_one = _dense(matrix) if self.shape[0] <= DENSE_SIZE else _sparse(matrix)
+        self.by_blocks = self.shape[0] > pardiso.SMALLEST and pardiso.is_installed()
+        if self.by_blocks:
+            self._solve = _by_pardiso(matrix)
+        else:
+            self._solve = _dense(matrix) if self.shape[0] <= DENSE_SIZE else _sparse(matrix)
         if self.shape[0]:
             self._probe(matrix)
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return ``A⁻¹ b`` for `right` of shape (n,) or (n, k)."""
-        right = np.asarray(right, dtype=float)
-        if right.ndim == 1:
-            return self._solve_one(right)
-        solution = np.empty_like(right)
-        for column in range(right.shape[1]):
-            solution[:, column] = self._solve_one(right[:, column])
-        return solution
+        return self._solve(np.asarray(right, dtype=float))
 
     def _probe(self, matrix: sp.csr_array) -> None:
         start = np.random.default_rng(_SEED).standard_normal(self.shape[0])
         start /= np.linalg.norm(start)
-        residual = np.linalg.norm(matrix @ self._solve_one(start) - start)
+        residual = np.linalg.norm(matrix @ self._solve(start) - start)
         # written so that a NaN fails too
         if not residual <= _RESIDUAL_LIMIT:
             raise NotPositiveDefiniteError(
                 f"the matrix is singular: a solve leaves the relative residual {residual:.1e}"
             )
-        lowest = _ritz_values(self._solve_one, start)[0]
+        lowest = _ritz_values(self._solve, start)[0]
         if lowest <= 0.0:
             raise NotPositiveDefiniteError(
                 f"the matrix is indefinite: its inverse has the Ritz value {lowest:.1e}"
@@ -92,6 +98,15 @@ def _dense(matrix: sp.csr_array) -> Solve:
     return lambda right: la.cho_solve(factor, right)
 
 
+def _by_pardiso(matrix: sp.csr_array) -> Solve:
+    try:
+        return pardiso.factor(matrix)
+    except pardiso.PivotError as error:
+        raise NotPositiveDefiniteError(
+            f"the matrix has a pivot that is not positive ({error})"
+        ) from error
+
+
 def _sparse(matrix: sp.csr_array) -> Solve:
     # sparsecholesky reads the lower triangle only
     lower = sp.coo_array(sp.tril(matrix))
@@ -102,6 +117,8 @@ def _sparse(matrix: sp.csr_array) -> Solve:
     threads = ngsolve.TaskManager if lower.shape[0] > _THREADED_SIZE else nullcontext
 
     def solve(vector: np.ndarray) -> np.ndarray:
+        if vector.ndim == 2:
+            return np.column_stack([solve(column) for column in vector.T] or [vector])
         # new ones each time: several threads may share a factor
         right, solution = ngsolve.BaseVector(len(vector)), ngsolve.BaseVector(len(vector))
         right.FV().NumPy()[:] = vector

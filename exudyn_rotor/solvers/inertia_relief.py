@@ -31,6 +31,7 @@ _STRAIN_LIMIT = 1e-8
 # share of an error that a step of conjugate gradients leaves, from which a factor is quicker: 0.35
 # for compact solids, 0.7 for Poisson's ratio 0.49 or flat elements, 0.96 for thin blades
 _SLOW = 0.75
+_SEED = 9
 
 
 class ElasticBody(Model, Protocol):
@@ -120,7 +121,7 @@ class InertiaRelief:
     Attributes
     ----------
     iterative : bool
-        Whether there is no factor, and modes are to be found by :meth:`precondition`.
+        Whether there is no factor.
 
     Raises
     ------
@@ -167,12 +168,21 @@ class InertiaRelief:
             displacement[self._kept] = self._factor.solve(balanced[self._kept])
         return self._elastic(displacement)
 
+    @property
+    def by_blocks(self) -> bool:
+        """Whether modes are to be found by :meth:`precondition`, many at once."""
+        return self.iterative or self._factor.by_blocks
+
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (m, k); symmetric and definite."""
+        if not self.iterative:
+            return self.solve(load)
         return self._elastic(self._two_level(self._balanced(load)))
 
     def start(self, count: int) -> np.ndarray:
-        """Return `count` motions (m, count) near the lowest modes."""
+        """Return `count` motions (m, count) to begin with, near the lowest modes where known."""
+        if not self.iterative:
+            return np.random.default_rng(_SEED).standard_normal((len(self.rigid), count))
         return self._two_level.start(count)
 
     def _prepare_iteration(self, stiffness: sp.csr_array, mass: sp.csr_array, way: Way) -> None:

@@ -15,7 +15,8 @@ from exudyn_rotor.solvers.lanczos import Modes, lanczos_modes
 class Inverse(ApproximateInverse, Protocol):
     """Inverse of a stiffness on the motions that are allowed, exact and approximate."""
 
-    iterative: bool
+    @property
+    def by_blocks(self) -> bool: ...
 
     def solve(self, load: np.ndarray) -> np.ndarray: ...
 
@@ -29,6 +30,6 @@ def lowest_modes(
     balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Modes:
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
-    if inverse.iterative:
+    if inverse.by_blocks:
         return davidson_modes(stiffness, mass, inverse, count, tolerance, balanced)
     return lanczos_modes(stiffness, mass, inverse.solve, count, tolerance)

@@ -1,0 +1,91 @@
+"""Factors by Pardiso, where it is installed, and modes by blocks with any factor."""
+
+import threading
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from netgen.occ import Cylinder, OCCGeometry, Pnt, X
+from ngsolve import Mesh
+
+from exudyn_rotor import SolidRotor, free_modes
+from exudyn_rotor.solvers import factor, pardiso
+from exudyn_rotor.solvers.davidson import davidson_modes
+from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers.inertia_relief import inertia_relief
+
+STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
+TOLERANCE = 1e-10  # of eigenvalues, as free_modes asks for
+
+
+@pytest.fixture(scope="module")
+def shaft():
+    mesh = Mesh(OCCGeometry(Cylinder(Pnt(0, 0, 0), X, 0.04, 0.4)).GenerateMesh(maxh=0.03))
+    return SolidRotor.from_ngsolve(mesh, STEEL, axis="x", interfaces=())
+
+
+def laplacian(points: int) -> sp.csr_array:
+    """Return the stiffness of a grid of springs, all edges held, in three dimensions."""
+    one = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(points, points))
+    unit = sp.eye_array(points)
+    parts = ([one, unit, unit], [unit, one, unit], [unit, unit, one])
+    return sp.csr_array(sum(sp.kron(sp.kron(a, b), c) for a, b, c in parts))
+
+
+def test_modes_by_blocks_are_those_by_lanczos(shaft):
+    """Davidson iteration with the exact inverse, from a random start."""
+    relief = inertia_relief(shaft)
+    assert not relief.iterative
+    values, modes = davidson_modes(shaft.stiffness, shaft.mass, relief, 12, TOLERANCE)
+    assert np.sqrt(values) == pytest.approx(free_modes(shaft, 12).frequencies, rel=1e-9)
+    assert modes.T @ (shaft.mass @ modes) == pytest.approx(np.eye(12), abs=1e-10)
+
+
+def test_pardiso_solves_many_right_hand_sides():
+    pytest.importorskip("pypardiso")
+    matrix = laplacian(22)
+    assert matrix.shape[0] > pardiso.SMALLEST
+    known = np.random.default_rng(3).standard_normal((matrix.shape[0], 4))
+    made = SparseCholesky(matrix)
+    assert made.by_blocks
+    # the condition of the grid is (2 · 22/π)² ≈ 200
+    assert made.solve(matrix @ known) == pytest.approx(known, abs=1e-11)
+    assert made.solve(matrix @ known[:, 0]) == pytest.approx(known[:, 0], abs=1e-11)
+    assert made.solve(np.zeros((matrix.shape[0], 0))).shape == (matrix.shape[0], 0)
+
+
+def test_pardiso_refuses_negative_pivots():
+    pytest.importorskip("pypardiso")
+    matrix = laplacian(22)
+    lowest = 6.0 - 6.0 * np.cos(np.pi / 23)
+    with pytest.raises(NotPositiveDefiniteError, match="pivot"):
+        SparseCholesky(sp.csr_array(matrix - 1.5 * lowest * sp.eye_array(matrix.shape[0])))
+
+
+def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
+    pytest.importorskip("pypardiso")
+    expected = free_modes(shaft, 12)
+    monkeypatch.setattr(pardiso, "SMALLEST", factor.DENSE_SIZE)
+    again = SolidRotor.from_matrices(shaft.mass, shaft.stiffness.copy(), shaft.nodes, "x")
+    found = free_modes(again, 12)
+    assert inertia_relief(again).by_blocks
+    assert found.frequencies == pytest.approx(expected.frequencies, rel=1e-9)
+
+
+def test_threads_share_a_factor():
+    pytest.importorskip("pypardiso")
+    matrix = laplacian(22)
+    known = np.random.default_rng(5).standard_normal((matrix.shape[0], 6))
+    made, found = SparseCholesky(matrix), {}
+
+    def solve(column: int) -> None:
+        found[column] = made.solve(matrix @ known[:, column])
+
+    threads = [threading.Thread(target=solve, args=(column,)) for column in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert np.column_stack([found[column] for column in range(6)]) == pytest.approx(
+        known, abs=1e-11
+    )
