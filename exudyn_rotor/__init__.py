@@ -28,6 +28,8 @@ from exudyn_rotor.evaluation.level_one import (
 )
 from exudyn_rotor.evaluation.placement import bearing_loads, bearing_masses, standard_unbalances
 from exudyn_rotor.evaluation.separation import SeparationMargins, separation_margins
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.foundations.mount import Mount
 from exudyn_rotor.html_report import report
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
@@ -50,6 +52,7 @@ from exudyn_rotor.multibody.add_supports import add_supports
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
+from exudyn_rotor.multibody.foundation_body import SceneFoundation, add_foundation
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.solver_settings import recommended_settings
@@ -93,6 +96,7 @@ __all__ = [
     "Drag",
     "EnergyBalance",
     "Formulation",
+    "Foundation",
     "FullRotorBody",
     "GearMesh",
     "HarmonicForce",
@@ -107,6 +111,7 @@ __all__ = [
     "ModeBasis",
     "Motion",
     "MotionShapes",
+    "Mount",
     "ObjectFixedAxisFFRFreducedOrderInterface",
     "OilFilm",
     "Pad",
@@ -120,6 +125,7 @@ __all__ = [
     "RollingBearing",
     "RotorBody",
     "RunCheck",
+    "SceneFoundation",
     "SeparationMargins",
     "ShortJournalBearing",
     "SolidRotor",
@@ -140,6 +146,7 @@ __all__ = [
     "Unbalance",
     "UnbalanceResponse",
     "add_drive",
+    "add_foundation",
     "add_rotor",
     "add_supports",
     "anticipated_cross_coupling",

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 
 # colours that stay apart in grey and for colour-blind readers (Okabe and Ito)
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", ":", "-.", (0, (1, 1)))
 
 

@@ -72,10 +72,10 @@ def add_supports(
     supports : sequence of Support or bearings
         A bearing acts by its law at the rotor's place, velocity and spin; a support, too, where it
         depends on the spin.
-    base : MarkerIndex, ObjectIndex, or mapping of interface to these, optional
-        What carries them: a marker at the place of the interface, a rigid body, which gets such a
-        marker; the ground by default. Forces act along the inertial axes, also where the base
-        tilts.
+    base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
+        What carries them: a foundation, by its point of the interface's name; a marker at the place
+        of the interface; a rigid body, which gets such a marker; the ground by default. Forces act
+        along the inertial axes, also where the base tilts.
 
     Returns
     -------

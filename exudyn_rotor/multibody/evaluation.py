@@ -51,7 +51,8 @@ def constraint_rows(
     """Return the constraints' Jacobian by the `size` coordinates, shape (c, size)."""
     if not solver.GetAEsize():
         return np.zeros((0, size))
-    # the first call clears the matrix that the second one fills
-    solver.ComputeJacobianODE2RHS(mbs, 0.0, 0.0, 0.0)
+    # cleared by hand: Exudyn's own way evaluates forces, which this state may lie out of range of
+    total = size + solver.GetAEsize()
+    solver.SetSystemJacobian(np.zeros((total, total)))
     solver.ComputeJacobianAE(mbs, 1.0, 0.0, 0.0, False)
     return np.array(solver.GetSystemJacobian())[size:, :size]

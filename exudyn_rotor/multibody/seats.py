@@ -15,6 +15,7 @@ from exudyn.itemInterface import (
 )
 
 from exudyn_rotor import checks
+from exudyn_rotor.multibody.foundation_body import SceneFoundation, foundation_marker
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.full_markers import interface_carrier
 from exudyn_rotor.multibody.marker_body import append_nodes, virtual_nodes
@@ -27,17 +28,18 @@ _SAME_PLACE = 1e-6  # m, between a marker of the base and the bearing's place
 _KINDS = exudyn.OutputVariableType
 _REFERENCE = exudyn.ConfigurationType.Reference
 _HIDDEN = {"show": False, "showMarkerNodes": False}
-Base = exudyn.MarkerIndex | exudyn.ObjectIndex
+Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
 
 @dataclass(frozen=True, eq=False)
 class Seat:
     """Where a support is, checked, before anything is added.
 
-    `place` is inertial [m], `axes` (n1, n2, e) in inertial axes; `base` is what carries it, with
-    its reference position and orientation.
+    `name` is that of the interface, `place` is inertial [m], `axes` (n1, n2, e) in inertial axes;
+    `base` is what carries it, with its reference position and orientation.
     """
 
+    name: str
     place: np.ndarray
     axes: np.ndarray
     base: Base | None
@@ -58,8 +60,13 @@ class Seat:
                 )
             base = base[name]
         if base is None:
-            return cls(place, axes, None, np.zeros(3), np.eye(3))
-        checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex))
+            return cls(name, place, axes, None, np.zeros(3), np.eye(3))
+        if isinstance(base, SceneFoundation):
+            if base.mbs is not body.mbs:
+                raise ValueError("base: this foundation is in another mbs")
+            base.foundation.motion(name, place)
+            return cls(name, place, axes, base, np.zeros(3), np.eye(3))
+        checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
         origin, orientation = _reference(body.mbs, base)
         apart = np.linalg.norm(origin - place)
         if isinstance(base, exudyn.MarkerIndex) and apart > _SAME_PLACE:
@@ -67,10 +74,12 @@ class Seat:
                 f"base: the marker {int(base)} is {apart:.3g} m off the interface {name!r}, which "
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
-        return cls(place, axes, base, origin, orientation)
+        return cls(name, place, axes, base, origin, orientation)
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
         """Add a marker of the base at the place, with the axes (n1, n2, e)."""
+        if isinstance(self.base, SceneFoundation):
+            return foundation_marker(self.base, self.name, self.place, self.axes)
         turn = self.orientation.T @ self.axes
         if isinstance(self.base, exudyn.MarkerIndex):
             item = mbs.GetMarker(self.base)

@@ -47,6 +47,15 @@ def into_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarra
     return turned
 
 
+def out_of_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
+    """Return the harmonics of ``Rᵀ(θ) u`` for a motion (p, 6) in inertial axes."""
+    turned: dict[int, np.ndarray] = {}
+    for m, amplitudes in motion.items():
+        for n, R in turning_harmonics(amplitudes.shape[-1]).items():
+            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ R
+    return turned
+
+
 def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
 

@@ -44,6 +44,15 @@ class World:
         return er.SolidRotor.from_ngsolve(self.mesh, STEEL, "z", order=1)
 
     @cached_property
+    def foundation(self) -> er.Foundation:
+        """Two modes below its ends."""
+        points = {"left": np.ones((6, 2)), "right": np.ones((6, 2)) - np.eye(6)[:, :2]}
+        places = {"left": [0.0, 0.0, 0.0], "right": [0.0, 0.0, 0.3]}
+        return er.Foundation.from_modes(
+            [300.0, 500.0], 0.02, points, places=places, participation=np.ones((3, 2))
+        )
+
+    @cached_property
     def film(self) -> er.OilFilm:
         """A film on a coarse grid between two grooves."""
         return er.OilFilm(0.05, 0.05, 0.02, er.grooved_pads(1e-4, [0.5, 3.6], 0.3), nodes=24)

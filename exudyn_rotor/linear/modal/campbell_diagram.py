@@ -20,6 +20,7 @@ _STYLES = {  # colour, line
     whirl.RADIAL: (plotting.COLORS[4], ":"),
     whirl.STATIC: ("0.7", ":"),
     whirl.UNKNOWN: ("0.2", "-"),
+    whirl.FOUNDATION: (plotting.COLORS[5], "-"),
 }
 
 

@@ -116,7 +116,9 @@ def _resonances(
                 _solved(equations, np.array([order - n]), limit), content, order, waves
             )
     else:
-        for start in {n % step: n for n in waves}.values():
+        # with a step of one all harmonics, those of the conjugate motions too, are in one row
+        starts = {n % step: n for n in waves}.values() if step > 1 else [round(order)]
+        for start in starts:
             critical += _converged(
                 equations, content, order, waves, order - start, step, limit, tolerance
             )
@@ -331,6 +333,9 @@ def _turning(
     total = np.maximum(content.whole_energy(vectors), 1e-300)
     meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(np.abs(content.orders), np.abs(waves))
     turning = np.sum(energy * meets[..., None], axis=(0, 1))
+    if 0 not in waves:  # what stands still beside the rotor answers to all
+        answers = np.abs(np.abs(multiples) - order) < 1e-9
+        turning += answers @ content.beside(vectors)
     conjugate = np.einsum("ho,hok->k", seen, energy) < -_CONJUGATE * order * total
     return [
         Resonance(ascending[column].speed, multiples, vectors[:, :, column])

@@ -2,7 +2,8 @@
 
 In cylindrical coordinates about the axis every motion ``Re(φ exp(iνt))`` is a sum of waves
 ``exp(i(νt − nα))``; n > 0 travels with a positive spin, n < 0 against it. The angle seen from
-outside is ``α + Ωt``, so that the wave n has the inertial frequency ``ν + nΩ``. Rigid
+outside is ``α + Ωt``, so that the wave n has the inertial frequency ``ν + nΩ``. A foundation stands
+still, as n = 0 does; a mode is its own where it has most of the energy ``Σ m|x|²``. Rigid
 translation, tilt and bending are n = ±1, with ``z = u_1 + i u_2 = a exp(iνt) + b̄ exp(−iνt)``: a is
 n = +1 and b is n = −1. Axial motion and torsion are n = 0. Source: Genta,
 Dynamics of Rotating Systems (2005).
@@ -20,12 +21,15 @@ from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
-WHIRLS = ("forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown")
-FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN = range(len(WHIRLS))
+WHIRLS = (
+    "forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown",
+    "foundation",
+)  # fmt: skip
+FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN, FOUNDATION = range(len(WHIRLS))
 
 # kinds of motion: 'lateral' has one nodal diameter, 'disc' more; 'other' are radial ones and those
-# that neither shapes nor interfaces show
-FAMILIES = ("lateral", "torsional", "axial", "disc", "other")
+# that neither shapes nor interfaces show; 'foundation' moves more mass beside the rotor than in it
+FAMILIES = ("lateral", "torsional", "axial", "disc", "other", "foundation")
 
 # a mode is mixed when the weaker sense has more than this share of the energy of the stronger
 MIXED_SHARE = 0.25
@@ -61,6 +65,8 @@ class WhirlContent:
     axial, tangential, radial, whole : ndarray, shape (p, c)
         Amplitudes of the axial part of n = 0, of the motion along the circumference and along the
         radius, and of the whole motion.
+    standing : ndarray, shape (p, c)
+        Amplitudes of what stands still beside the rotor.
     rows : ndarray of int or None, shape (c,)
         Which coordinates count; all by default.
     knows_diameters : bool
@@ -73,6 +79,7 @@ class WhirlContent:
     tangential: np.ndarray
     radial: np.ndarray
     whole: np.ndarray
+    standing: np.ndarray
     rows: np.ndarray | None = None
     knows_diameters: bool = True
 
@@ -89,7 +96,11 @@ class WhirlContent:
     @one_thread()
     def from_points(cls, points: PointMotions) -> WhirlContent:
         """Build the content from points and their motions."""
-        return cls(*_operators(points.points, points.motion), points.rows, points.is_mesh)
+        standing = points.standing
+        if standing is None:
+            standing = np.zeros((0, points.motion.shape[1]))
+        operators = _operators(points.points, points.motion, standing)
+        return cls(*operators, standing, points.rows, points.is_mesh)
 
     def within(self, basis: np.ndarray | None) -> WhirlContent:
         """Return the content of a basis (c, r) of the coordinates; None for all of them."""
@@ -98,7 +109,7 @@ class WhirlContent:
         V = self._chosen(basis[None])[0]
         parts = {
             name: getattr(self, name) @ V
-            for name in ("waves", "axial", "tangential", "radial", "whole")
+            for name in ("waves", "axial", "tangential", "radial", "whole", "standing")
         }
         return replace(self, rows=None, **parts)
 
@@ -201,6 +212,13 @@ class WhirlContent:
         strongest wave stands still, unknown where nothing of it is seen; then n is taken as 0.
         """
         energy = self.energies(vectors)  # (h, o, k)
+        beside, total = self.beside(vectors), self.whole_energy(vectors)
+        stands = np.sum(beside, axis=0) > 0.5 * total
+        # what moves most is looked at alone
+        zero = np.flatnonzero(self.orders == 0)[0]
+        energy[:, zero] = np.maximum(energy[:, zero] - beside, 0.0)
+        energy[:, :, stands] = 0.0
+        energy[:, zero, stands] = beside[:, stands]
         n = self.orders[None, :, None]
         seen = nu + (orders[:, None, None] + n) * speed
         turns = np.sign(n * seen) * np.where(np.less(speed, 0.0), -1.0, 1.0)
@@ -217,12 +235,16 @@ class WhirlContent:
         wave = np.broadcast_to(n, energy.shape).reshape(flat.shape)[best, columns]
         code[(turns.reshape(flat.shape)[best, columns] == 0) & (wave != 0)] = STATIC
         code = np.where(wave == 0, self._without_waves(vectors), code)
-        total = self.whole_energy(vectors)
+        code[stands] = FOUNDATION
         unseen = total <= 1e-12 * np.max(total, initial=0.0)
         code[unseen] = UNKNOWN
         strongest = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
         frequency = np.where(unseen, np.abs(nu + strongest * speed), frequency)
-        return frequency, code, self._diameters(energy, total)
+        return frequency, code, self._diameters(energy, np.abs(total - np.sum(beside, axis=0)))
+
+    def beside(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the energy of what stands still, which counts as waves n = 0, shape (h, k)."""
+        return _energy(self.standing, self._chosen(vectors))
 
     def whole_energy(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of the whole motion, all harmonics, shape (k,)."""
@@ -251,7 +273,7 @@ class WhirlContent:
 
 def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     """Return which of :data:`FAMILIES` modes belong to, from whirl codes and nodal diameters."""
-    special = {TORSIONAL: 1, AXIAL: 2, RADIAL: 4, UNKNOWN: 4}
+    special = {TORSIONAL: 1, AXIAL: 2, RADIAL: 4, UNKNOWN: 4, FOUNDATION: 5}
     kinds = np.where(np.asarray(diameters) >= 2, 3, 0)
     for code, kind in special.items():
         kinds = np.where(np.asarray(codes) == code, kind, kinds)
@@ -287,19 +309,22 @@ def _gram(amplitudes: np.ndarray, vectors: np.ndarray, weights: np.ndarray) -> n
     return np.einsum("h,hpi,hpj->ij", weights, moved.conj(), moved)
 
 
-def _operators(points: np.ndarray, motion: np.ndarray) -> tuple:
+def _operators(points: np.ndarray, motion: np.ndarray, standing: np.ndarray) -> tuple:
     """Return the fields of :class:`WhirlContent` up to `whole`."""
     u1, u2, ue = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
     a, b = np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)
     fits = wave_fits(points, _HIGHEST + 1)
     orders = np.arange(-_HIGHEST, _HIGHEST + 1)
     # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
-    waves = _alike([np.vstack([fits[1 - n] @ a, fits[-1 - n] @ b, fits[-n] @ ue]) for n in orders])
+    waves = [[fits[1 - n] @ a, fits[-1 - n] @ b, fits[-n] @ ue] for n in orders]
+    waves[_HIGHEST].append(standing)
+    waves = _alike([np.vstack(parts) for parts in waves])
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
     radial = np.cos(angle) * u1 + np.sin(angle) * u2
     tangential = np.cos(angle) * u2 - np.sin(angle) * u1
     axial = fits[0] @ ue
-    return (orders, waves, axial, *(_small(X) for X in (tangential, radial, motion)))
+    whole = np.vstack([motion, standing])
+    return (orders, waves, axial, *(_small(X) for X in (tangential, radial, whole)))
 
 
 def _small(matrix: np.ndarray) -> np.ndarray:

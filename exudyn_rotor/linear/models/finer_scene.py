@@ -57,6 +57,7 @@ class FinerScene:
     spin: ClassVar[None] = None
     mesh: ClassVar[None] = None
     base_loads: ClassVar[None] = None
+    standing_interfaces: ClassVar[tuple[str, ...]] = ()
     stiffness_varies: ClassVar[bool] = True
 
     @classmethod

@@ -11,9 +11,11 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import checked_supports
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
+from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -27,13 +29,14 @@ from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 DENSE_SIZE = 600
 
 Target = LinearModel | ReducedRotor | SolidRotor | exudyn.MainSystem
-MODELS = (LinearRotor, FullRotor, LinearScene)
+MODELS = (LinearRotor, FullRotor, LinearScene, RotorOnFoundation)
 
 
 def linear_model(
     target: Target,
     *,
     supports: Sequence[Support] | Support = (),
+    foundation: Foundation | None = None,
     body: RotorBody | None = None,
     stiffening: str = "auto",
     about: str = "steady",
@@ -50,6 +53,9 @@ def linear_model(
         A linear model is returned as it is.
     supports : sequence of Support, optional
         Of a rotor; a scene has its own connectors.
+    foundation : Foundation, optional
+        What carries all supports of a rotor, by points of their names; the ground by default. The
+        rotor is a reduced one, or a SolidRotor of up to 600 degrees of freedom.
     body : RotorBody, optional
         The rotor in a scene, from :func:`exudyn_rotor.add_rotor`.
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -94,6 +100,13 @@ def linear_model(
     checks.choice(about, "about", ABOUT)
     if dense is not None:
         checks.flag(dense, "dense")
+    if foundation is not None:
+        checks.instance(foundation, "foundation", Foundation)
+        if not isinstance(target, ReducedRotor | SolidRotor):
+            raise ValueError(
+                "foundation: is for a rotor; a linear model has its own, and to a scene "
+                "add_foundation adds one"
+            )
     if isinstance(target, exudyn.MainSystem):
         if supports:
             raise ValueError("supports: are for a rotor; a scene has its own connectors")
@@ -109,15 +122,21 @@ def linear_model(
             raise ValueError("supports: a linear model has its own; leave them out")
         return target
     if isinstance(target, ReducedRotor):
-        return LinearRotor.of(target, supports, stiffening)
+        return _founded(LinearRotor.of(target, supports, stiffening), foundation)
     how = "needs a ReducedRotor, a SolidRotor, a linear model, or an exudyn.MainSystem with body=…"
     if not isinstance(target, SolidRotor):
         raise TypeError(f"target: {how}, got {checks.shown(target)}")
     if stiffening == "auto":
         target = with_chosen_prestress(target, None)
     if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
-        return LinearRotor.of_solid(target, supports, stiffening)
+        return _founded(LinearRotor.of_solid(target, supports, stiffening), foundation)
+    if foundation is not None:
+        raise ValueError("foundation: needs a reduced rotor: give rotor.reduce(…)")
     return FullRotor.of(target, supports, stiffening).with_spin()
+
+
+def _founded(model: LinearRotor, foundation: Foundation | None) -> LinearModel:
+    return model if foundation is None else RotorOnFoundation.of(model, foundation)
 
 
 def warn_of_structural_damping(model: LinearModel, what: str) -> None:
@@ -128,5 +147,5 @@ def warn_of_structural_damping(model: LinearModel, what: str) -> None:
 
 def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
     """Warn where the level 'tilt', which nobody asked for, errs much at a speed [rad/s]."""
-    if isinstance(model, LinearRotor):
+    if isinstance(model, LinearRotor | RotorOnFoundation):
         warn_of_left_out(model.invariants, speed, user_level() + 1)

@@ -12,7 +12,7 @@ Neglected: the change of mass matrices and constraint directions along small ste
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -22,7 +22,7 @@ import scipy.linalg
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.journal_start import journal_start
-from exudyn_rotor.linear.models.points import Ring, ring_motions
+from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
@@ -65,6 +65,7 @@ class LinearScene(SceneCoordinates):
     base_loads: ClassVar[None] = None
     radius: ClassVar[float] = 1.0
     stiffness_varies: ClassVar[None] = None
+    standing_interfaces: ClassVar[tuple[str, ...]] = ()
 
     about: str = "steady"
 
@@ -110,6 +111,11 @@ class LinearScene(SceneCoordinates):
     def interfaces(self) -> tuple[str, ...]:
         """Names of the interfaces that have a marker."""
         return tuple(self.body.markers)
+
+    @cached_property
+    def standing(self) -> np.ndarray:
+        """Coordinates of everything but the rotor."""
+        return np.flatnonzero(~np.any(self.N[: self.modal.stop], axis=0))
 
     @property
     def mass_matrix(self) -> np.ndarray:
@@ -210,7 +216,17 @@ class LinearScene(SceneCoordinates):
             Ring(np.array([0.0, 0.0, float(i)]), radius, self.interface_motion(name))
             for i, name in enumerate(self.interfaces)
         ]
-        return ring_motions(rings, self.size)
+        return replace(ring_motions(rings, self.size), standing=self._standing_amplitudes(rings))
+
+    def _standing_amplitudes(self, rings: Sequence[Ring]) -> np.ndarray:
+        """Return the motion of everything but the rotor, mass for mass as large as the rings'."""
+        with probing(self, 0.0) as probe:
+            mass = self.N.T @ probe.mass() @ self.N
+        values, vectors = np.linalg.eigh(mass[np.ix_(self.standing, self.standing)])
+        share = np.sqrt(ring_size(rings) / self.mass)
+        amplitudes = np.zeros((len(values), self.size))
+        amplitudes[:, self.standing] = share * (vectors * np.sqrt(np.maximum(values, 0.0))).T
+        return amplitudes
 
     def space(
         self,

@@ -46,6 +46,11 @@ def ring_motions(rings: Sequence[Ring], size: int) -> PointMotions:
     return PointMotions(np.vstack(points), np.vstack(motion), None, False)
 
 
+def ring_size(rings: Sequence[Ring]) -> int:
+    """Return how many points :func:`ring_motions` makes."""
+    return 1 + _CORNERS * len(rings)
+
+
 def spread(count: int, most: int) -> np.ndarray:
     """Return up to `most` node numbers, evenly spread over `count`."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))

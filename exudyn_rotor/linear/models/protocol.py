@@ -56,12 +56,15 @@ class PointMotions:
         Which coordinates these are; all by default.
     is_mesh : bool
         False where rings that move with the interfaces stand for the mesh.
+    standing : ndarray, shape (p, c), or None
+        Amplitudes of what stands still beside the rotor; their squares count as those of points.
     """
 
     points: np.ndarray
     motion: np.ndarray
     rows: np.ndarray | None
     is_mesh: bool
+    standing: np.ndarray | None = None
 
 
 class Space(Protocol):
@@ -116,6 +119,10 @@ class LinearModel(Protocol):
         Number of coordinates k.
     interfaces : tuple of str
         What can be loaded and looked at by name.
+    standing : ndarray of int
+        Coordinates in inertial axes, of what stands still beside the rotor.
+    standing_interfaces : tuple of str
+        Interfaces of that, whose motion is in inertial axes.
     mesh : Mesh or None
         Nodes that can be loaded and looked at.
     free_motions : tuple of str
@@ -128,7 +135,7 @@ class LinearModel(Protocol):
     has_structural_damping : bool
         True where steady motions have structural damping, which other analyses leave out.
     base_loads : ndarray, shape (3, k), or None
-        Loads of unit accelerations of the ground along (n1, n2, e); None for a scene.
+        Loads of unit accelerations of the ground along (n1, n2, e); None where they are not known.
     radius : float
         By which a rotation counts as a displacement [m].
     gives_all : bool
@@ -159,6 +166,10 @@ class LinearModel(Protocol):
     @property
     def interfaces(self) -> tuple[str, ...]: ...
     @property
+    def standing(self) -> np.ndarray: ...
+    @property
+    def standing_interfaces(self) -> tuple[str, ...]: ...
+    @property
     def mesh(self) -> Mesh | None: ...
     @property
     def free_motions(self) -> tuple[str, ...]: ...
@@ -184,7 +195,10 @@ class LinearModel(Protocol):
     def stiffness_varies(self) -> bool | None: ...
 
     def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
+
+        In the rotor frame, or in inertial axes where it is one of :attr:`standing_interfaces`.
+        """
 
     def undamped(self) -> LinearModel:
         """Return a model whose critical speeds are those without damping."""

@@ -156,7 +156,7 @@ class LinearRotor(SupportedRotor):
         )
 
     @cached_property
-    def _supported_motions(self) -> list[np.ndarray]:
+    def supported_motions(self) -> list[np.ndarray]:
         """The motions (6, k) at the supports, which a free spin does not displace."""
         motions = [self.interface_motion(support.interface) for support in self.supports]
         if self.spin is None:
@@ -171,7 +171,7 @@ class LinearRotor(SupportedRotor):
         With those of the rotor itself, but for its gyroscopic and centrifugal terms.
         """
         D, K, carried = {0: self.invariants.D}, {0: self.invariants.K}, {}
-        for support, U in zip(self.supports, self._supported_motions, strict=True):
+        for support, U in zip(self.supports, self.supported_motions, strict=True):
             if not support.varies:
                 for terms, harmonics in zip((D, K, carried), support.parts(0.0), strict=True):
                     _add(terms, harmonics, U)
@@ -184,7 +184,7 @@ class LinearRotor(SupportedRotor):
             K[n] = K.get(n, 0.0) + speed * X
         D[0] = D[0] + self.terms.damping(speed)
         K[0] = K[0] + self._spin_terms.stiffness(speed)
-        for support, U in zip(self.supports, self._supported_motions, strict=True):
+        for support, U in zip(self.supports, self.supported_motions, strict=True):
             if support.varies:
                 for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
                     _add(terms, harmonics, U)
@@ -199,7 +199,7 @@ class LinearRotor(SupportedRotor):
         ``F·ρ``, see :mod:`exudyn_rotor.linear.models.spin`; F is the mean over a revolution of
         what the rotor's own unbalance causes.
         """
-        motions = self._supported_motions
+        motions = self.supported_motions
         pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
         K = self.invariants.K + self._spin_terms.stiffness(speed)
         for U, pull in zip(motions, pulls, strict=True):
@@ -266,11 +266,11 @@ def _without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants,
 
 def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
     for n, X in harmonics.items():
-        block = _congruent(X.real, U) if n == 0 else U.T @ X @ U
+        block = congruent(X.real, U) if n == 0 else U.T @ X @ U
         terms[n] = terms.get(n, 0.0) + block
 
 
-def _congruent(X: np.ndarray, U: np.ndarray) -> np.ndarray:
+def congruent(X: np.ndarray, U: np.ndarray) -> np.ndarray:
     """Return ``UᵀXU`` with exactly symmetric and skew parts.
 
     The rounding of a stiff support would else be a circulatory force.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.eccentricity import is_balanced
 from exudyn_rotor.linear.models.points import radius_of_gyration
@@ -33,6 +34,9 @@ class SupportedRotor:
     spin : Spin, optional
         The spin as a coordinate.
     """
+
+    standing: ClassVar[np.ndarray] = checks.read_only(np.zeros(0, dtype=int), int)
+    standing_interfaces: ClassVar[tuple[str, ...]] = ()
 
     rotor: ReducedRotor | SolidRotor
     supports: tuple[Support, ...]

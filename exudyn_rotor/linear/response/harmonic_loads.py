@@ -68,7 +68,10 @@ class HarmonicForce:
                 f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
             )
         wrench = np.concatenate([self.force, self.moment])
-        parts = {0: wrench} if self.frame == "rotor" else into_rotor_frame(wrench)
+        stays = self.frame == ("inertial" if point.stands else "rotor")
+        parts = {0: wrench} if stays else into_rotor_frame(wrench)
+        if point.stands and not stays:  # seen from outside it turns the other way
+            parts = {-n: amplitude for n, amplitude in parts.items()}
         return {n: _pulled(point, amplitude) for n, amplitude in parts.items()}
 
 
@@ -107,11 +110,16 @@ class BaseAcceleration:
         """Return the harmonics (k,) of the load in the rotor frame."""
         if model.base_loads is None:
             raise ValueError(
-                "base acceleration needs a rotor with supports; in a scene, put a force on "
-                "the moving parts"
+                "base acceleration needs a rotor with supports, and a foundation with its "
+                "participation; in a scene, put a force on the moving parts"
             )
+        loads, standing = model.base_loads.T, np.isin(np.arange(model.size), model.standing)
         parts = into_rotor_frame(self.acceleration)
-        return {n: model.base_loads.T @ amplitude for n, amplitude in parts.items()}
+        harmonics = {n: np.where(standing, 0.0, loads @ a) for n, a in parts.items()}
+        if np.any(standing):
+            still = np.where(standing, loads @ self.acceleration, 0.0)
+            harmonics[0] = harmonics.get(0, 0.0) + still
+        return harmonics
 
 
 def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
@@ -128,7 +136,10 @@ def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: boo
     load = np.array(model.unit_unbalance, dtype=float) if own else np.zeros(model.size)
     for unbalance in unbalances:
         wrench = np.concatenate([unbalance.vector, np.zeros(3)])
-        load += _pulled(place(model, unbalance.at), wrench)
+        point = place(model, unbalance.at)
+        if point.stands:
+            raise ValueError(f"unbalance at {unbalance.at!r}: a foundation does not turn")
+        load += _pulled(point, wrench)
     return load
 
 

@@ -23,14 +23,17 @@ class Place:
     label : str
         Name of the interface, or 'node 12'.
     motion : ndarray, shape (6, k)
-        Displacement and rotation along (n1, n2, e) per coordinate, rotor frame.
+        Displacement and rotation along (n1, n2, e) per coordinate.
     is_node : bool
         True for a mesh node, which has no rotation: those rows are zero.
+    stands : bool
+        True where the motion is that of a foundation, in inertial axes; else it is in the rotor's.
     """
 
     label: str
     motion: np.ndarray
     is_node: bool
+    stands: bool = False
 
 
 def place(model: LinearModel, at: At) -> Place:
@@ -86,7 +89,8 @@ def _interface(model: LinearModel, name: str) -> Place:
         raise ValueError(
             f"at: {name!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
         )
-    return Place(name, np.asarray(model.interface_motion(name)), is_node=False)
+    stands = name in model.standing_interfaces
+    return Place(name, np.asarray(model.interface_motion(name)), is_node=False, stands=stands)
 
 
 def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:

@@ -42,7 +42,11 @@ from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
-from exudyn_rotor.theory.rotating_axes import FRAMES, into_inertial_frame
+from exudyn_rotor.theory.rotating_axes import (
+    FRAMES,
+    into_inertial_frame,
+    out_of_inertial_frame,
+)
 
 _MODES = 6  # that the subspace of a full rotor begins with
 
@@ -296,9 +300,10 @@ class _Solved:
 
 @dataclass(frozen=True, eq=False)
 class _Observation:
-    """What is looked at: rows (p, 6, k) of the places, and how."""
+    """What is looked at: rows (p, 6, k) of the places, which of them stand (p,), and how."""
 
     rows: np.ndarray
+    stands: np.ndarray
     frame: str
     tolerance: float
     keeps: bool
@@ -308,7 +313,8 @@ class _Observation:
         cls, observed: Sequence[Place], frame: str, tolerance: float, model: LinearModel
     ) -> _Observation:
         rows = np.array([one.motion for one in observed])
-        return cls(rows, frame, tolerance, kept_basis(model) is not None)
+        stands = np.array([one.stands for one in observed])
+        return cls(rows, stands, frame, tolerance, kept_basis(model) is not None)
 
     def solved(
         self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
@@ -316,9 +322,22 @@ class _Observation:
         """Return the steady motion."""
         harmonics = space.steady_motion(speed, loads, rate, self.tolerance)
         seen = {n: self.rows @ x for n, x in harmonics.items()}
-        if self.frame == "inertial" and speed != 0.0:  # at θ = 0 the axes are the same
-            seen = into_inertial_frame(seen)
+        if speed != 0.0:  # at θ = 0 the axes are the same
+            seen = self._in_frame(seen)
         return _Solved(seen, harmonics if self.keeps else {})
+
+    def _in_frame(self, motion: Motion) -> Motion:
+        """Return motions of the rotor seen in its frame, and of what stands, in the frame."""
+        turn, turns = into_inertial_frame, ~self.stands
+        if self.frame == "rotor":
+            turn, turns = out_of_inertial_frame, self.stands
+        if not np.any(turns):
+            return motion
+        turned = turn({n: a * turns[:, None] for n, a in motion.items()})
+        if not np.all(turns):
+            for n, a in motion.items():
+                turned[n] = turned.get(n, 0.0) + a * ~turns[:, None]
+        return turned
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from validation.mutations.lists.advice import ADVICE
 from validation.mutations.lists.bearings import BEARINGS
 from validation.mutations.lists.drives import DRIVES
 from validation.mutations.lists.evaluation import EVALUATION
+from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.pictures import PICTURES
@@ -23,6 +24,7 @@ ALL = (
     *REDUCTION,
     *BEARINGS,
     *DRIVES,
+    *FOUNDATIONS,
     *MULTIBODY,
     *LINEAR,
     *EVALUATION,

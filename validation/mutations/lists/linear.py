@@ -212,8 +212,8 @@ LINEAR = [
         ),
         (
             "ground's acceleration pulls along",
-            "return {n: model.base_loads.T @ amplitude for n, amplitude in parts.items()}",
-            "return {n: -model.base_loads.T @ amplitude for n, amplitude in parts.items()}",
+            "np.where(standing, 0.0, loads @ a)",
+            "np.where(standing, 0.0, -loads @ a)",
         ),
     ),
     *mutations(
@@ -226,8 +226,8 @@ LINEAR = [
         ),
         (
             "motion in the inertial frame as in the rotor frame",
-            'if self.frame == "inertial" and speed != 0.0:',
-            'if self.frame == "rotor" and speed != 0.0:',
+            'if self.frame == "rotor":',
+            'if self.frame == "inertial":',
         ),
         (
             "harmonics folded to the wrong sense",

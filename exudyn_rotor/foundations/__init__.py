@@ -1,0 +1,1 @@
+"""What carries the supports of a rotor, and how the ground moves."""

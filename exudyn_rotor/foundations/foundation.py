@@ -1,0 +1,377 @@
+"""Foundations and casings: linear equations, and how the points that carry bearings move.
+
+    M ÿ + D ẏ + K y = Σ Bᵢᵀ fᵢ − Sᵀ a
+
+with the force and moment fᵢ that a support exerts at its point, whose displacement and rotation are
+``Bᵢ y``, and the acceleration a of the ground, against which y is counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.foundations.mount import Mount
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.nodal import skew
+
+SAME_PLACE = 1e-6  # m, between a point of a foundation and its support
+_SINGULAR = 1e-10  # of a matrix scaled to a diagonal of ones
+_UNITS = {"mass": "kg", "damping": "N s/m", "stiffness": "N/m"}
+
+
+@dataclass(frozen=True, eq=False)
+class Foundation:
+    """A linear foundation or casing on the ground, which carries supports of a rotor.
+
+    In scenes (:func:`exudyn_rotor.add_foundation`) and linear analyses (``foundation=…``) alike. It
+    stands still beside the rotor; all axes are those of the rotor's mesh at the spin angle 0.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : array_like, shape (k, k)
+        M, D, K of any coordinates, symmetric; M and K positive definite.
+    points : mapping of str to array_like, shape (6, k) or (3, k)
+        What carries the supports at the interface of this name: displacement and rotation along
+        and about x, y, z per coordinate. With three rows it does not rotate.
+    places : mapping of str to array_like, shape (3,), optional
+        Where these points are [m]. Those given must be where the supports are: on the axis.
+    participation : array_like, shape (3, k), optional
+        S, the momentum along x, y, z per rate of each coordinate, ``ΦᵀMΨ``. Gravity and motions
+        of the ground need it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For matrices of other shapes, not symmetric, not positive, or a foundation that the ground
+        does not hold.
+
+    Examples
+    --------
+    A block of 50 kg on four springs, below two bearings:
+
+    >>> from exudyn_rotor import Foundation, Mount
+    >>> corners = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.4, 0.4)]
+    >>> block = Foundation.rigid(
+    ...     mass=50.0, inertia=[4.0, 5.0, 1.0], center=[0.0, -0.2, 0.0],
+    ...     mounts=[Mount(corner, 1e6, 200.0) for corner in corners],
+    ...     points={"left": [0.0, 0.0, -0.3], "right": [0.0, 0.0, 0.3]},
+    ... )
+    >>> block
+    Foundation(6 coordinates, 38.18 to 75.07 Hz, points: left, right)
+    """
+
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    points: Mapping[str, np.ndarray]
+    places: Mapping[str, np.ndarray] = field(default_factory=dict)
+    participation: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        size = len(checks.array(self.mass, "mass", "kg", shape=(None, None)))
+        if size == 0:
+            raise ValueError("mass: needs one coordinate or more")
+        for name, unit in _UNITS.items():
+            matrix = checks.symmetric(getattr(self, name), name, unit, size=size)
+            object.__setattr__(self, name, checks.read_only(0.5 * (matrix + matrix.T)))
+        _check_definite(self.mass, "mass: needs a positive definite matrix [kg]")
+        _check_definite(
+            self.stiffness,
+            "stiffness: needs a positive definite matrix [N/m], so that the ground holds every "
+            "coordinate; add mounts, or clamp the structure,",
+        )
+        if _least(self.damping) < -_SINGULAR:
+            raise ValueError(f"damping: needs a matrix ≥ 0 [N s/m], got {_lowest(self.damping)}")
+        checks.mapping(self.points, "points", "the motion (6, k) or (3, k) of each point")
+        points = {
+            checks.label(name, "points"): _motion(motion, f"points: {name!r}", size)
+            for name, motion in self.points.items()
+        }
+        if not points:
+            raise ValueError(
+                "points: needs the motion of one point or more, which carries supports"
+            )
+        checks.mapping(self.places, "places", "the position of each point")
+        places = {
+            name: checks.vector(place, f"places: {name!r}", "m")
+            for name, place in self.places.items()
+        }
+        for name in places.keys() - points.keys():
+            raise ValueError(f"places: {name!r} is none of the points {', '.join(points)}")
+        object.__setattr__(self, "points", checks.read_only_mapping(points))
+        object.__setattr__(self, "places", checks.read_only_mapping(places))
+        if self.participation is not None:
+            S = checks.array(self.participation, "participation", "kg", shape=(3, size))
+            object.__setattr__(self, "participation", S)
+
+    @classmethod
+    def rigid(
+        cls,
+        mass: float,
+        inertia: ArrayLike,
+        center: ArrayLike,
+        mounts: Sequence[Mount] | Mount,
+        points: Mapping[str, ArrayLike],
+    ) -> Foundation:
+        """Return a rigid block on mounts; its rotations are small.
+
+        Parameters
+        ----------
+        mass : float
+            [kg]
+        inertia : array_like, shape (3,) or (3, 3)
+            About the centre of mass, along x, y, z [kg m²].
+        center : array_like, shape (3,)
+            Centre of mass [m].
+        mounts : sequence of Mount
+            At places.
+        points : mapping of str to array_like, shape (3,)
+            Where the block carries the supports at the interfaces of these names [m].
+        """
+        mass = checks.number(mass, "mass", "kg", above=0.0)
+        moments = checks.array(inertia, "inertia", "kg m²")
+        if moments.shape == (3,):
+            moments = np.diag(moments)
+        moments = checks.symmetric(moments, "inertia", "kg m²", size=3)
+        _check_definite(moments, "inertia: needs a positive definite matrix [kg m²]")
+        center = checks.vector(center, "center", "m")
+        checks.mapping(points, "points", "the position of each point")
+        places = {n: checks.vector(p, f"points: {n!r}", "m") for n, p in points.items()}
+        M = scipy.linalg.block_diag(mass * np.eye(3), moments)
+        held = []
+        for mount in checks.instances(mounts, "mounts", Mount):
+            if isinstance(mount.at, str):
+                raise ValueError(f"mounts: a rigid block needs places [m], got {mount.at!r}")
+            held.append((mount, _of_rigid(mount.at - center)))
+        K, D = _on_mounts(np.zeros((6, 6)), np.zeros((6, 6)), held)
+        motions = {name: _of_rigid(place - center) for name, place in places.items()}
+        return cls(M, D, K, motions, places, M[:3])
+
+    @classmethod
+    def from_modes(
+        cls,
+        frequencies: ArrayLike,
+        damping_ratios: ArrayLike,
+        points: Mapping[str, ArrayLike],
+        *,
+        masses: ArrayLike = 1.0,
+        places: Mapping[str, ArrayLike] | None = None,
+        participation: ArrayLike | None = None,
+    ) -> Foundation:
+        """Return a foundation given by its modes, as by an analysis or a modal test.
+
+        Parameters
+        ----------
+        frequencies : array_like, shape (k,)
+            Undamped natural frequencies > 0 [rad/s].
+        damping_ratios : float or array_like, shape (k,)
+            From 0 to 1.
+        points : mapping of str to array_like, shape (6, k) or (3, k)
+            Mode shapes at the points that carry supports, see :class:`Foundation`.
+        masses : float or array_like, shape (k,), optional
+            Modal masses of these shapes [kg]; 1 where they are normalised by the mass.
+        places, participation
+            See :class:`Foundation`.
+        """
+        omega = checks.vector(frequencies, "frequencies", "rad/s", size=None)
+        zeta, m = (
+            np.broadcast_to(checks.array(value, name), omega.shape)
+            if np.ndim(value) == 0
+            else checks.vector(value, name, size=len(omega))
+            for value, name in ((damping_ratios, "damping_ratios"), (masses, "masses"))
+        )
+        for values, name, good in (
+            (omega, "frequencies", np.all(omega > 0.0)),
+            (zeta, "damping_ratios", np.all((zeta >= 0.0) & (zeta <= 1.0))),
+            (m, "masses", np.all(m > 0.0)),
+        ):
+            if not good:
+                raise ValueError(
+                    f"{name}: needs numbers {'from 0 to 1' if values is zeta else '> 0'}, got "
+                    f"{checks.shown(values)}"
+                )
+        matrices = m, 2.0 * zeta * omega * m, omega**2 * m
+        return cls(*map(np.diag, matrices), points, places or {}, participation)
+
+    @classmethod
+    def from_solid(
+        cls,
+        solid: SolidRotor | ReducedRotor,
+        points: Mapping[str, ArrayLike],
+        *,
+        mounts: Sequence[Mount] | Mount = (),
+        modes: int = 12,
+    ) -> Foundation:
+        """Return an elastic structure from its finite elements.
+
+        Parameters
+        ----------
+        solid : SolidRotor or ReducedRotor
+            The structure, meshed where it stands, with an interface for every point and mount; its
+            axis plays no part. Clamp it (:meth:`SolidRotor.clamped`) or give mounts. Damping is its
+            own (:meth:`SolidRotor.with_damping`).
+        points : mapping of str to array_like, shape (3,)
+            Where the interface of this name carries the support of the same name [m]: a rigid arm
+            leads from the interface there.
+        mounts : sequence of Mount, optional
+            At interfaces, whose mean displacement they act on.
+        modes : int, optional
+            Of a SolidRotor: eigenmodes with the interfaces fixed, beside their static modes.
+        """
+        checks.instance(solid, "solid", (SolidRotor, ReducedRotor))
+        mounts = checks.instances(mounts, "mounts", Mount)
+        checks.mapping(points, "points", "the position of each point")
+        named = [("points", name) for name in points] + [("mounts", m.at) for m in mounts]
+        for what, name in named:
+            if not isinstance(name, str) or name not in solid.interfaces:
+                raise ValueError(
+                    f"{what}: {checks.shown(name)} is no interface of the solid; it has: "
+                    f"{', '.join(solid.interfaces) or 'none'}"
+                )
+        if isinstance(solid, SolidRotor):
+            count = checks.count(modes, "modes")
+            used = list(dict.fromkeys(name for _, name in named))
+            basis = craig_bampton_modes(solid, count, used, coupling="RBE3")
+            solid = solid.reduce(basis, prestress=False, keep_shapes=False)
+        if solid.invariants.H is not None:
+            raise ValueError(
+                "solid: its structural damping is for steady motions only; use "
+                "with_damping(stiffness=…), or with_damping_ratio of the foundation"
+            )
+        held = [(mount, solid.interfaces[mount.at].motion) for mount in mounts]
+        K, D = _on_mounts(solid.invariants.K, solid.invariants.D, held)
+        places = {n: checks.vector(p, f"points: {n!r}", "m") for n, p in points.items()}
+        motions = {
+            name: _of_rigid(place - solid.interfaces[name].reference)
+            @ solid.interfaces[name].motion
+            for name, place in places.items()
+        }
+        return cls(solid.invariants.M, D, K, motions, places, solid.invariants.S)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return len(self.mass)
+
+    @cached_property
+    def frequencies(self) -> np.ndarray:
+        """Undamped natural frequencies of the foundation alone, ascending [rad/s]."""
+        return np.sqrt(scipy.linalg.eigh(self.stiffness, self.mass, eigvals_only=True))
+
+    def __repr__(self) -> str:
+        """Return a short summary."""
+        low, high = self.frequencies[[0, -1]] / (2.0 * np.pi)
+        return (
+            f"Foundation({self.size} coordinates, {low:.4g} to {high:.4g} Hz, points: "
+            f"{', '.join(self.points)})"
+        )
+
+    def modal(self) -> Foundation:
+        """Return the same foundation in the coordinates of its modes, normalised by the mass."""
+        values, T = scipy.linalg.eigh(self.stiffness, self.mass)
+        return replace(
+            self,
+            mass=np.eye(self.size),
+            damping=T.T @ self.damping @ T,
+            stiffness=np.diag(values),
+            points={name: motion @ T for name, motion in self.points.items()},
+            participation=None if self.participation is None else self.participation @ T,
+        )
+
+    def with_damping_ratio(self, ratio: float) -> Foundation:
+        """Return the foundation with one damping ratio of all its modes, instead of its damping."""
+        checks.number(ratio, "ratio", least=0.0, most=1.0)
+        values, T = scipy.linalg.eigh(self.stiffness, self.mass)
+        rates = self.mass @ T
+        return replace(self, damping=(rates * (2.0 * ratio * np.sqrt(values))) @ rates.T)
+
+    def undamped(self) -> Foundation:
+        """Return the foundation without damping."""
+        return replace(self, damping=np.zeros_like(self.mass))
+
+    def turned(self, rotation: np.ndarray, position: ArrayLike = (0.0, 0.0, 0.0)) -> Foundation:
+        """Return it in other axes, into which `rotation` (3, 3) leads, the origin at `position`."""
+        rotation = checks.rotation(rotation)
+        position = checks.vector(position, "position", "m")
+        S = self.participation
+        return replace(
+            self,
+            points={n: np.kron(np.eye(2), rotation) @ U for n, U in self.points.items()},
+            places={n: rotation @ place + position for n, place in self.places.items()},
+            participation=None if S is None else rotation @ S,
+        )
+
+    def motion(self, name: str, place: ArrayLike) -> np.ndarray:
+        """Return displacement and rotation (6, k) of what carries the support `name`.
+
+        Raises
+        ------
+        ValueError
+            Where there is no such point, or it is not at the place [m] of the support.
+        """
+        place = checks.vector(place, "place", "m")
+        if checks.label(name, "name") not in self.points:
+            raise ValueError(
+                f"foundation: has no point for the support at {name!r}, only for: "
+                f"{', '.join(self.points)}"
+            )
+        apart = np.linalg.norm(self.places.get(name, place) - place)
+        if apart > SAME_PLACE:
+            raise ValueError(
+                f"foundation: its point {name!r} is {apart:.3g} m off the support there, which is "
+                f"at {np.round(place, 9).tolist()}"
+            )
+        return self.points[name]
+
+
+def _of_rigid(arm: np.ndarray) -> np.ndarray:
+    """Return displacement and rotation of a point at an arm from a rigid motion (6,)."""
+    motion = np.eye(6)
+    motion[:3, 3:] = -skew(arm)
+    return motion
+
+
+def _on_mounts(
+    K: np.ndarray, D: np.ndarray, held: Sequence[tuple[Mount, np.ndarray]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return stiffness and damping with mounts at motions (6, k)."""
+    for mount, motion in held:
+        U = motion[:3]
+        K, D = K + U.T @ mount.stiffness @ U, D + U.T @ mount.damping @ U
+    return K, D
+
+
+def _motion(value: ArrayLike, name: str, size: int) -> np.ndarray:
+    motion = checks.array(value, name)
+    if motion.shape not in ((3, size), (6, size)):
+        raise ValueError(
+            f"{name}: needs an array of shape (6, {size}) or (3, {size}): displacement, and "
+            f"rotation, per coordinate; got shape {motion.shape}"
+        )
+    return checks.read_only(np.vstack([motion, np.zeros((6 - len(motion), size))]))
+
+
+def _least(matrix: np.ndarray) -> float:
+    """Return the least eigenvalue of a symmetric matrix scaled to a diagonal of ones."""
+    size = np.abs(matrix).max()
+    diagonal = np.diag(matrix)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, size if size > 0.0 else 1.0))
+    return float(np.linalg.eigvalsh(scale[:, None] * matrix * scale)[0])
+
+
+def _lowest(matrix: np.ndarray) -> str:
+    return f"one with the eigenvalue {np.linalg.eigvalsh(matrix)[0]:.3g}"
+
+
+def _check_definite(matrix: np.ndarray, needed: str) -> None:
+    if np.any(np.diag(matrix) <= 0.0) or _least(matrix) < _SINGULAR:
+        raise ValueError(f"{needed} got {_lowest(matrix)}")

@@ -1,0 +1,392 @@
+"""Rotors on foundations: against closed forms, against scenes, and against a rigid body."""
+
+from dataclasses import replace
+
+import exudyn as exu
+import ngsolve
+import numpy as np
+import pytest
+import scipy.linalg
+from netgen.occ import Box, OCCGeometry, Pnt, Y, Z
+from point_rotors import ring_rotor
+from test_supports_in_scenes import KINDS, SKEW, TO_X, TO_Y, distance, rings
+
+from exudyn_rotor import (
+    BaseAcceleration,
+    Formulation,
+    Foundation,
+    HarmonicForce,
+    Mount,
+    ShortJournalBearing,
+    SolidRotor,
+    Support,
+    Unbalance,
+    add_foundation,
+    add_rotor,
+    add_supports,
+    bearing_loads,
+    campbell,
+    critical_speeds,
+    harmonic_response,
+    linear_model,
+    select_modes,
+    stability,
+    unbalance_response,
+)
+from exudyn_rotor.linear.periodic.exponents import constant_exponents
+from exudyn_rotor.reduction.mode_kind import ModeKind
+
+SPEED = 200.0
+POINTS = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
+CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.2, 0.3)]
+STIFFNESS = np.diag([1e6, 2e6, 1e6]) + 1e5
+BLOCK = Foundation.rigid(
+    30.0,
+    [[2.0, 0.1, 0.05], [0.1, 2.0, 0.0], [0.05, 0.0, 1.0]],
+    [0.05, -0.2, 0.02],
+    [Mount(corner, STIFFNESS, 100.0) for corner in CORNERS],
+    POINTS,
+)
+HELD = Support("right", np.diag([1e6, 2e6, 5e5]), 150.0)
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+def two_masses(mass=5.0, stiffness=2e6, damping=0.0, own=(0.0, 0.0), ratio=1.0):
+    """Return a rigid rotor on alike bearings and a foundation of `ratio` times its mass.
+
+    The foundation translates only, with the stiffness `own` along x and y: in each direction two
+    masses in a row.
+    """
+    supports = [Support(name, np.eye(3) * stiffness / 2, damping / 2) for name in POINTS]
+    m = ratio * mass
+    foundation = Foundation(
+        m * np.eye(3),
+        np.diag([30.0, 50.0, 10.0]),
+        np.diag([*own, 1e6]),
+        dict.fromkeys(POINTS, np.eye(3)),
+        participation=m * np.eye(3),
+    )
+    rotor = ring_rotor(0.1, 0.15, mass)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor.reduce(0), supports, foundation
+
+
+def in_a_row(frequency, own, loads, damping=0.0, foundation_damping=0.0, **given):
+    """Return the motion of rotor and foundation in one direction under loads on them [N]."""
+    k, m = given.get("stiffness", 2e6), 5.0
+    bearing = k + 1j * frequency * damping
+    ground = own + 1j * frequency * foundation_damping
+    Z = np.array([[bearing, -bearing], [-bearing, bearing + ground]]) - frequency**2 * m * np.eye(2)
+    return np.linalg.solve(Z, loads)
+
+
+OWN = (1.5e6, 4e6)
+
+
+def frequencies_in_a_row(own):
+    K = np.array([[2e6, -2e6], [-2e6, 2e6 + own]])
+    return np.sqrt(scipy.linalg.eigvalsh(K, 5.0 * np.eye(2)))
+
+
+def test_natural_frequencies_are_those_of_two_masses_at_any_speed():
+    """Rotor on a foundation of its own mass: both planes by hand, and unmoved by the spin."""
+    rotor, supports, foundation = two_masses(own=OWN)
+    model = linear_model(rotor, supports=supports, foundation=foundation.undamped())
+    result = campbell(model, [0.0, SPEED])
+    expected = np.sort(np.concatenate([frequencies_in_a_row(own) for own in OWN]))
+    for row in result.frequencies_inertial:
+        apart = np.abs(row[:, None] - expected).min(axis=0)
+        np.testing.assert_allclose(apart / expected, 0.0, atol=1e-9)
+    lower = [np.argmin(np.abs(result.frequencies_inertial[1] - expected[i])) for i in (0, 1)]
+    assert set(result.whirl[1, lower]) <= {"foundation", "mixed"}
+
+
+def test_a_mode_is_named_by_what_moves():
+    """A soft foundation below a stiff rotor and the reverse."""
+    rotor, supports, foundation = two_masses(own=(2e5, 2e5), ratio=20.0)
+    found = campbell(linear_model(rotor, supports=supports, foundation=foundation), [SPEED])
+    slow = found.frequencies_inertial[0] < 60.0
+    assert slow.sum() >= 2
+    moving = slow & (found.frequencies_inertial[0] > 10.0)
+    assert set(found.whirl[0, moving]) == {"foundation"}
+    growth = stability(linear_model(rotor, supports=supports, foundation=foundation), [SPEED])
+    assert np.all(growth.growth_of("foundation") < 0.0)
+    assert "foundation" not in campbell(rotor, [SPEED], supports=supports).whirl
+
+
+@pytest.mark.parametrize("speed", [0.3, 0.9, 1.7])
+def test_unbalance_response_is_that_of_two_masses(speed):
+    """Isotropic foundation: circular orbits of rotor and foundation, amplitude and phase."""
+    own, omega = 1.5e6, speed * np.sqrt(1.5e6 / 5.0)
+    rotor, supports, foundation = two_masses(own=(own, own), damping=400.0)
+    foundation = replace(foundation, damping=30.0 * np.eye(3))
+    unbalances = [Unbalance(name, 1e-4) for name in POINTS]
+    model = linear_model(rotor, supports=supports, foundation=foundation)
+    at = ["left", "left (foundation)"]
+    found = unbalance_response(model, [omega], unbalances, at=at)
+    expected = in_a_row(omega, own, [2e-4 * omega**2, 0.0], 400.0, 30.0)
+    ours = [found.phasor(place, "n1")[0] for place in at]
+    np.testing.assert_allclose(ours, expected, rtol=1e-9)
+    turning = unbalance_response(model, [omega], unbalances, at=at, frame="rotor")
+    row = turning.motion[0, :, turning.orders.tolist().index(0)]
+    np.testing.assert_allclose(np.hypot(*row[:, :2].real.T), np.abs(expected), rtol=1e-9)
+
+
+def test_loads_on_the_foundation_and_its_ground():
+    """A force on the foundation, one that turns with the rotor, and shaken ground."""
+    rotor, supports, foundation = two_masses(own=OWN, damping=400.0)
+    model = linear_model(rotor, supports=supports, foundation=foundation)
+    at = ["right", "right (foundation)"]
+    w = 700.0
+    forced = harmonic_response(model, [w], HarmonicForce(at[1], (3.0, 0.0)), speed=SPEED, at=at)
+    expected = in_a_row(w, OWN[0], [0.0, 3.0], 400.0, 30.0)
+    np.testing.assert_allclose([forced.phasor(p, "n1")[0] for p in at], expected, rtol=1e-9)
+    shaken = harmonic_response(model, [w], BaseAcceleration((0.0, 2.0)), speed=SPEED, at=at)
+    expected = in_a_row(w, OWN[1], [-10.0, -10.0], 400.0, 50.0)
+    np.testing.assert_allclose([shaken.phasor(p, "n2")[0] for p in at], expected, rtol=1e-9)
+    # a force of frequency 0 in the rotor frame is a rotating one of frequency Ω outside
+    load = HarmonicForce(at[1], (3.0, 0.0), frame="rotor")
+    turned = harmonic_response(model, [0.0], load, speed=SPEED, at=at)
+    row = turned.motion[0, 1]
+    along = in_a_row(SPEED, OWN[0], [0.0, 3.0], 400.0, 30.0)[1]
+    both = sum(
+        row[turned.orders.tolist().index(n), 0] if n > 0 else
+        row[turned.orders.tolist().index(n), 0].conj()
+        for n in (-1, 1)
+    )  # fmt: skip
+    assert both == pytest.approx(along, rel=1e-9)
+
+
+def test_a_nearly_rigid_foundation_is_the_ground():
+    """The error of exponents falls with the foundation's stiffness."""
+    rotor = rings()
+    supports = [KINDS["cross-coupled"], HELD]
+    ground = linear_model(rotor, supports=supports).at(0.0)
+    expected = constant_exponents(ground)
+    errors = []
+    for stiffness in (1e10, 1e11, 1e12):
+        mounts = [Mount(corner, stiffness) for corner in CORNERS]
+        block = Foundation.rigid(30.0, [2.0, 2.0, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
+        found = linear_model(rotor, supports=supports, foundation=block).at(0.0)
+        apart = np.abs(constant_exponents(found)[:, None] - expected).min(axis=0)
+        errors.append(apart.max())
+    ratios = np.array(errors[:-1]) / errors[1:]
+    np.testing.assert_allclose(ratios, 10.0, rtol=0.03)
+
+
+def test_critical_speeds_are_resonances_of_the_response():
+    """The peaks of a lightly damped response over the speed."""
+    rotor, supports, foundation = two_masses(own=OWN)
+    foundation = replace(foundation, damping=np.eye(3))
+    model = linear_model(rotor, supports=supports, foundation=foundation)
+    speeds = critical_speeds(model, nodal_diameters=[1]).speeds
+    for own in OWN:
+        for expected in frequencies_in_a_row(own):
+            assert np.abs(speeds - expected).min() < 1e-7 * expected
+
+
+# ------------------------------------------------------------------ scenes
+
+
+def compared(supports, turn=None, rotation=None, block=BLOCK, **options):
+    """Return the distance between the exponents of a scene and of the linear model."""
+    rotor = rings(turn)
+    block = block if turn is None else block.turned(turn)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, rotation=rotation, **options)
+    add_supports(body, supports, add_foundation(mbs, block, rotation=rotation))
+    mbs.Assemble()
+    found = linear_model(mbs, body=body, about="given").at(SPEED)
+    # a frame holds the mean rotation, and leaves nothing out of its coupling by unbalance
+    kinds = [ModeKind.FREE if kind is ModeKind.SPIN else kind for kind in rotor.rigid_kinds]
+    model = linear_model(replace(rotor, rigid_kinds=kinds), supports=supports, foundation=block)
+    T = select_modes(rotor, Formulation("none", SPEED)).T
+    T = scipy.linalg.block_diag(T, np.eye(block.size))
+    return distance(found, model.at(SPEED).projected(T))
+
+
+CHOSEN = ["2 x 2", "3 x 3", "tilt, damped", "about the axis", "rotor frame", "table", "tilt table"]
+
+
+@pytest.mark.parametrize("kind", [*CHOSEN, "rotor frame, tilts"])
+def test_scene_and_linear_model_have_the_same_exponents(kind):
+    held = {"spin": SPEED} if kind in ("about the axis", "rotor frame, tilts") else {}
+    assert compared([KINDS[kind], HELD], **held) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("turn", "rotation", "options"),
+    [
+        (TO_X, None, {"translation": "in-plane"}),
+        (TO_Y, None, {"spin": SPEED, "translation": "none"}),
+        (SKEW, TO_X, {"initial_angle": 0.4}),
+    ],
+    ids=["x", "y", "skew"],
+)
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+def test_axes_change_nothing(turn, rotation, options):
+    supports = [KINDS["tilt, damped"], replace(KINDS["3 x 3"], frame="rotor"), HELD]
+    assert compared(supports, turn, rotation, **options) < 1e-9
+
+
+def test_a_block_is_exudyns_rigid_body():
+    """The same mass, inertia and springs as plain items of Exudyn."""
+    mbs = exu.SystemContainer().AddSystem()
+    supports = [KINDS["3 x 3"], KINDS["tilt"], HELD]
+    body = add_rotor(mbs, rings(), spin=SPEED)
+    inertia = exu.utilities.RigidBodyInertia(mass=30.0, inertiaTensor=np.diag([2.0, 2.5, 1.0]))
+    base = mbs.CreateRigidBody(
+        inertia=inertia, referencePosition=[0, -0.2, 0], nodeType=exu.NodeType.RotationRxyz
+    )
+    ground = mbs.CreateGround()
+    for corner in np.array(CORNERS):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, base],
+            localPosition0=list(corner),
+            localPosition1=list(corner - [0.0, -0.2, 0.0]),
+            stiffness=[1e6, 2e6, 3e6],
+            damping=[100.0] * 3,
+        )
+    add_supports(body, supports, base)
+    mbs.Assemble()
+    expected = linear_model(mbs, body=body, about="given").at(SPEED)
+    mounts = [Mount(corner, [1e6, 2e6, 3e6], 100.0) for corner in CORNERS]
+    block = Foundation.rigid(30.0, [2.0, 2.5, 1.0], [0.0, -0.2, 0.0], mounts, POINTS)
+    scene = exu.SystemContainer().AddSystem()
+    body = add_rotor(scene, rings(), spin=SPEED)
+    add_supports(body, supports, add_foundation(scene, block))
+    scene.Assemble()
+    found = linear_model(scene, body=body, about="given").at(SPEED)
+    # differences of Exudyn's forces give K to 4e-8 of its largest entry
+    assert distance(found, expected) < 1e-6
+
+
+def test_a_film_bearing_and_unbalance_on_a_foundation():
+    """Linearised about the steady state of the scene: loaded journals, a foundation that sags."""
+    rotor, gravity = rings(heavy=0.0), [0.0, -9.81, 0.0]
+    loads = dict(zip(POINTS, bearing_loads(rotor, list(POINTS), gravity), strict=True))
+    film = {"radius": 0.02, "length": 0.015, "clearance": 5e-5, "viscosity": 0.02}
+    bearings = [ShortJournalBearing(interface=n, load=loads[n], **film) for n in POINTS]
+    supports = [*bearings, Support("left", np.diag([0.0, 0.0, 1e6]), 50.0)]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=SPEED, gravity=gravity)
+    add_supports(body, supports, add_foundation(mbs, BLOCK, gravity=gravity))
+    mbs.Assemble()
+    model = linear_model(rotor, supports=supports, foundation=BLOCK)
+    scene = linear_model(mbs, body=body)
+    worst = [stability(each, [SPEED], accuracy=None).growth[0].max() for each in (model, scene)]
+    # differences of forces over a share of the clearance
+    assert worst[0] == pytest.approx(worst[1], rel=1e-5)
+    at, unbalance = ["left", "right"], [Unbalance("left", 1e-6)]
+    ours, theirs = (
+        unbalance_response(each, [SPEED], unbalance, at=at, accuracy=None)
+        for each in (model, scene)
+    )
+    first = [each.motion[0, :, each.orders.tolist().index(1), :2] for each in (ours, theirs)]
+    np.testing.assert_allclose(*first, rtol=0.0, atol=1e-5 * np.abs(first[0]).max())
+
+
+# ------------------------------------------------------------------ other descriptions
+
+
+def test_modes_of_a_block_are_the_block():
+    values, T = scipy.linalg.eigh(BLOCK.stiffness, BLOCK.mass)
+    mass = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    shapes = {name: motion @ T * np.sqrt(mass) for name, motion in BLOCK.points.items()}
+    undamped = BLOCK.undamped().with_damping_ratio(0.02)
+    modes = Foundation.from_modes(np.sqrt(values), 0.02, shapes, masses=mass)
+    rotor, supports = rings(), [KINDS["3 x 3"], HELD]
+    found, expected = (
+        linear_model(rotor, supports=supports, foundation=each).at(SPEED)
+        for each in (modes, undamped)
+    )
+    assert distance(found, expected) < 1e-10
+
+
+def test_a_stiff_solid_is_a_rigid_block():
+    """A meshed box on mounts becomes the rigid one as its elasticity grows: errors with 1/E."""
+    solid = Box(Pnt(-0.1, -0.3, -0.2), Pnt(0.1, -0.1, 0.2))
+    for name, face in (("left", solid.faces.Min(Z)), ("right", solid.faces.Max(Z))):
+        face.name = name
+    solid.faces.Min(Y).name = "floor"
+    mesh = ngsolve.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.3))
+    places = {"left": [0.0, -0.2, -0.2], "right": [0.0, -0.2, 0.2], "floor": [0.0, -0.3, 0.0]}
+    springs = [4e6, 3e6, 2e6], 100.0
+    mass = 7850.0 * 0.2 * 0.2 * 0.4
+    across = mass / 12.0 * (0.2**2 + 0.4**2)
+    inertia = [across, across, mass / 12.0 * (2 * 0.2**2)]
+    mounts = [Mount(place, *springs) for place in places.values()]
+    block = Foundation.rigid(mass, inertia, [0.0, -0.2, 0.0], mounts, POINTS)
+    rotor, supports = rings(), [KINDS["3 x 3"], HELD]
+    expected = constant_exponents(linear_model(rotor, supports=supports, foundation=block).at(0.0))
+    errors = []
+    for modulus in (2e13, 2e14):
+        steel = {"youngsModulus": modulus, "poissonsRatio": 0.3, "density": 7850.0}
+        box = SolidRotor.from_ngsolve(mesh, steel, axis="z", check_units=False)
+        named = [Mount(name, *springs) for name in places]
+        elastic = Foundation.from_solid(box, POINTS, mounts=named, modes=0)
+        found = linear_model(rotor, supports=supports, foundation=elastic).at(0.0)
+        apart = np.abs(constant_exponents(found)[:, None] - expected).min(axis=0)
+        errors.append((apart / np.abs(expected).max()).max())
+    assert errors[1] < 1e-4
+    assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
+
+
+# ------------------------------------------------------------------ bad input
+
+
+def test_bad_foundations_are_refused():
+    unit, points = np.eye(2), {"left": np.ones((3, 2))}
+    for error, match, arguments in (
+        (ValueError, "mass: needs a symmetric", ([[1.0, 2.0], [0.0, 1.0]], unit, unit, points)),
+        (ValueError, "mass: needs a positive definite", (0.0 * unit, unit, unit, points)),
+        (ValueError, "stiffness: needs a symmetric", (unit, unit, [[1.0, 2.0], [0, 1]], points)),
+        (ValueError, "the ground holds every", (unit, unit, np.diag([1.0, 0.0]), points)),
+        (ValueError, "the ground holds every", (unit, unit, np.ones((2, 2)), points)),
+        (ValueError, "damping: needs a matrix ≥ 0", (unit, -unit, unit, points)),
+        (ValueError, "damping: needs", (unit, np.eye(3), unit, points)),
+        (ValueError, r"needs an array of shape \(6, 2\)", (unit, unit, unit, {"left": unit})),
+        (ValueError, "points: needs the motion", (unit, unit, unit, {})),
+        (ValueError, "places: 'top' is none", (unit, unit, unit, points, {"top": [0, 0, 0]})),
+        (ValueError, "participation: needs", (unit, unit, unit, points, {}, unit)),
+    ):  # fmt: skip
+        with pytest.raises(error, match=match):
+            Foundation(*arguments)
+    with pytest.raises(ValueError, match="frequencies: needs numbers > 0"):
+        Foundation.from_modes([-1.0], 0.01, {"left": [[1.0], [0.0], [0.0]]})
+    with pytest.raises(ValueError, match="damping_ratios: needs numbers from 0 to 1"):
+        Foundation.from_modes([1.0], 2.0, {"left": [[1.0], [0.0], [0.0]]})
+    with pytest.raises(ValueError, match="stiffness: needs values ≥ 0"):
+        Mount("left", -1.0)
+    with pytest.raises(ValueError, match="'left' is no interface of the solid"):
+        Foundation.from_solid(replace(rings(), interfaces={}), POINTS)
+
+
+def test_a_support_without_its_point_is_refused_everywhere():
+    rotor, there = rings(), KINDS["number"]
+    alone = Foundation(np.eye(1), np.eye(1), np.eye(1), {"right": np.ones((3, 1))})
+    off = replace(BLOCK, places={"left": [0.0, 0.0, 0.2]})
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor)
+    for block, match in ((alone, "has no point for the support at 'left'"), (off, "0.35 m off")):
+        base = add_foundation(mbs, block)
+        before = mbs.systemData.NumberOfObjects()
+        with pytest.raises(ValueError, match=match):
+            linear_model(rotor, supports=there, foundation=block)
+        with pytest.raises(ValueError, match=match):
+            add_supports(body, there, base)
+        assert mbs.systemData.NumberOfObjects() == before
+    with pytest.raises(ValueError, match="in another mbs"):
+        add_supports(body, there, add_foundation(exu.SystemContainer().AddSystem(), BLOCK))
+    with pytest.raises(ValueError, match="gravity: needs a foundation with its participation"):
+        add_foundation(mbs, alone, gravity=[0.0, -9.81, 0.0])
+    model = linear_model(rotor, supports=there, foundation=BLOCK)
+    with pytest.raises(ValueError, match="a linear model has its own"):
+        linear_model(model, foundation=BLOCK)
+    turning = Support("left", 1e6, tilt_stiffness=np.diag([1.0, 1.0, 1e3]), frame="rotor")
+    with pytest.raises(ValueError, match="can stand on the ground only"):
+        linear_model(rotor, supports=turning, foundation=BLOCK)
+    with pytest.raises(ValueError, match="a foundation does not turn"):
+        unbalance_response(model, [1.0], Unbalance("left (foundation)", 1e-4))

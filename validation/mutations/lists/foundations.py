@@ -1,0 +1,124 @@
+"""Foundations and motions of the ground, in scenes and linear analyses."""
+
+from validation.mutations.mutation import mutations
+
+_TWO_MASSES = "test_foundations.py::test_natural_frequencies_are_those_of_two_masses_at_any_speed"
+_SCENE = "test_foundations.py::test_scene_and_linear_model_have_the_same_exponents"
+
+FOUNDATIONS = [
+    *mutations(
+        "linear/models/rotor_on_foundation.py",
+        _TWO_MASSES,
+        ("supports push the foundation their own way", "-back.get(n,", "back.get(n,"),
+        ("supports do not hold the foundation", "X[6:, 6:] = alone", "X[6:, 6:] = 0.0 * alone"),
+    ),
+    *mutations(
+        "linear/models/rotor_on_foundation.py",
+        _SCENE,
+        (
+            "motion of the foundation not carried into the rotor's frame",
+            "across = _add(across, _product(u, carried, rate[0]))",
+            "across = _add(across, {})",
+        ),
+        (
+            "damping does not see the rotor turn",
+            "back = _add(back, _product(w, carried, rate[1]))",
+            "back = _add(back, {})",
+        ),
+        (
+            "damping that turns does not see the foundation stand",
+            "alone = _add(alone, _product(w, carried, rate[0]))",
+            "alone = _add(alone, {})",
+        ),
+        (
+            "cross-coupling of the reaction with the other sign",
+            "_product(u, -skew, w)",
+            "_product(u, skew, w)",
+        ),
+        ("supports in the rotor's frame turn the other way", "n: R.T for n, R", "-n: R.T for n, R"),
+    ),
+    *mutations(
+        "linear/models/rotor_on_foundation.py",
+        "test_foundations.py::test_loads_on_the_foundation_and_its_ground",
+        (
+            "the ground shakes the foundation the other way",
+            "-self.foundation.participation]",
+            "self.foundation.participation]",
+        ),
+    ),
+    *mutations(
+        "linear/response/harmonic_loads.py",
+        "test_foundations.py::test_loads_on_the_foundation_and_its_ground",
+        (
+            "loads that turn with the rotor turn against it on a foundation",
+            "{-n: amplitude for n",
+            "{n: amplitude for n",
+        ),
+        (
+            "the ground does not shake the foundation",
+            "np.where(standing, loads @ self",
+            "0.0 * np.where(standing, loads @ self",
+        ),
+    ),
+    *mutations(
+        "linear/response/steady_response.py",
+        "test_foundations.py::test_unbalance_response_is_that_of_two_masses",
+        (
+            "motions of a foundation turned",
+            "into_inertial_frame, ~self.stands",
+            "into_inertial_frame, self.stands",
+        ),
+    ),
+    *mutations(
+        "linear/modal/whirl.py",
+        "test_foundations.py::test_a_mode_is_named_by_what_moves",
+        ("foundations are not named", "code[stands] = FOUNDATION", "code[stands] = UNKNOWN"),
+    ),
+    *mutations(
+        "linear/modal/resonance.py",
+        "test_foundations.py::test_critical_speeds_are_resonances_of_the_response",
+        ("unbalance does not shake foundations", "turning += answers", "turning += 0.0 * answers"),
+    ),
+    *mutations(
+        "foundations/foundation.py",
+        "test_foundations.py::test_a_block_is_exudyns_rigid_body",
+        ("arms of a rigid block point the other way", "= -skew(arm)", "= skew(arm)"),
+        (
+            "mounts without damping",
+            "D + U.T @ mount.damping @ U",
+            "D + 0.0 * U.T @ mount.damping @ U",
+        ),
+    ),
+    *mutations(
+        "foundations/foundation.py",
+        "test_foundations.py::test_a_stiff_solid_is_a_rigid_block",
+        (
+            "arms of a structure point the other way",
+            "_of_rigid(place - solid.interfaces[name].reference)",
+            "_of_rigid(solid.interfaces[name].reference - place)",
+        ),
+    ),
+    *mutations(
+        "foundations/foundation.py",
+        "test_foundations.py::test_modes_of_a_block_are_the_block",
+        ("damping ratios halved", "2.0 * zeta * omega * m", "zeta * omega * m"),
+    ),
+    *mutations(
+        "foundations/foundation.py",
+        "test_foundations.py::test_axes_change_nothing",
+        (
+            "motions not turned with the axes",
+            "np.kron(np.eye(2), rotation) @ U for",
+            "np.kron(np.eye(2), rotation.T) @ U for",
+        ),
+    ),
+    *mutations(
+        "multibody/foundation_body.py",
+        _SCENE,
+        (
+            "scenes without the foundation's damping",
+            "dampingMatrix=placed.damping",
+            "dampingMatrix=0.0 * placed.damping",
+        ),
+    ),
+]
