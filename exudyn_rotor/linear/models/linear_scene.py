@@ -25,7 +25,7 @@ from exudyn_rotor.linear.models.journal_start import journal_start
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
-from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.hill import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
@@ -105,7 +105,7 @@ class LinearScene(SceneCoordinates):
                 "linear scene: a constraint turns with the rotor; hold the rotor by springs "
                 "(bearings) instead of joints"
             )
-        return cls(body, free, _nullspace(C[0]), rest, about)
+        return cls(body, free, nullspace(C[0]), rest, about)
 
     @property
     def interfaces(self) -> tuple[str, ...]:
@@ -351,21 +351,6 @@ def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> Terms | No
         if sizes[n] > _NOISE * largest:
             terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
     return terms
-
-
-def _nullspace(C: np.ndarray) -> np.ndarray:
-    """Return orthonormal motions that C allows; coordinates that it leaves alone stay as they are.
-
-    C has shape (constraints, coordinates).
-    """
-    size = C.shape[1]
-    touched = np.flatnonzero(np.abs(C).max(axis=0, initial=0.0) > 1e-14)
-    untouched = np.setdiff1d(np.arange(size), touched)
-    kernel = scipy.linalg.null_space(C[:, touched]) if touched.size else np.zeros((0, 0))
-    N = np.zeros((size, len(untouched) + kernel.shape[1]))
-    N[untouched, np.arange(len(untouched))] = 1.0
-    N[touched, len(untouched) :] = kernel
-    return N
 
 
 def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg
 
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
@@ -129,3 +130,18 @@ def without_spin(body: RotorBody) -> np.ndarray:
     """Return the rotor's unknowns among its node coordinates: translations, then modes."""
     count = body.motion.formulation.translation_count
     return np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
+
+
+def nullspace(C: np.ndarray) -> np.ndarray:
+    """Return orthonormal motions that C allows; coordinates that it leaves alone stay as they are.
+
+    C has shape (constraints, coordinates).
+    """
+    size = C.shape[1]
+    touched = np.flatnonzero(np.abs(C).max(axis=0, initial=0.0) > 1e-14)
+    untouched = np.setdiff1d(np.arange(size), touched)
+    kernel = scipy.linalg.null_space(C[:, touched]) if touched.size else np.zeros((0, 0))
+    N = np.zeros((size, len(untouched) + kernel.shape[1]))
+    N[untouched, np.arange(len(untouched))] = 1.0
+    N[touched, len(untouched) :] = kernel
+    return N

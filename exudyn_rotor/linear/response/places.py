@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.theory.rotating_axes import into_inertial_frame, out_of_inertial_frame
 
 At = str | int | Sequence[float]
+Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,3 +102,37 @@ def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
             raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
         return at
     return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
+
+
+def in_frame(motion: Motion, stands: np.ndarray, frame: str) -> Motion:
+    """Return motions (p, 6) of the rotor seen in its frame, and of what `stands`, in the frame."""
+    turn, turns = into_inertial_frame, ~stands
+    if frame == "rotor":
+        turn, turns = out_of_inertial_frame, stands
+    if not np.any(turns):
+        return motion
+    turned = turn({n: a * turns[:, None] for n, a in motion.items()})
+    if not np.all(turns):
+        for n, a in motion.items():
+            turned[n] = turned.get(n, 0.0) + a * ~turns[:, None]
+    return turned
+
+
+def collected(
+    motions: Sequence[Motion], observed: Sequence[Place], tolerance: float, length: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
+    orders = sorted({n for motion in motions for n in motion})
+    full = np.zeros((len(motions), len(observed), len(orders), 6), dtype=complex)
+    for row, motion in zip(full, motions, strict=True):
+        for n, amplitudes in motion.items():
+            row[:, orders.index(n)] = amplitudes
+    if not np.all(np.isfinite(full)):
+        raise ValueError("the response left the range of floats; check speeds and loads (SI units)")
+    # a rotation counts as the displacement that it makes at the rotor's radius of gyration
+    sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(0, 1, 3))
+    keep = sizes > tolerance * sizes.max()
+    if not np.any(keep):
+        keep[np.argmin(np.abs(orders))] = True
+    full[:, [one.is_node for one in observed], :, 3:] = np.nan
+    return np.array(orders)[keep], full[:, :, keep]

@@ -35,22 +35,24 @@ from exudyn_rotor.linear.response.harmonic_loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, checked_places, places
+from exudyn_rotor.linear.response.places import (
+    At,
+    Motion,
+    Place,
+    checked_places,
+    collected,
+    in_frame,
+    places,
+)
 from exudyn_rotor.linear.response.refinement import refined
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
-from exudyn_rotor.theory.rotating_axes import (
-    FRAMES,
-    into_inertial_frame,
-    out_of_inertial_frame,
-)
+from exudyn_rotor.theory.rotating_axes import FRAMES
 
 _MODES = 6  # that the subspace of a full rotor begins with
-
-Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 
 def unbalance_response(
@@ -161,7 +163,7 @@ def unbalance_response(
 
         values, solved = refined(solve, values, solved)
     labels = tuple(one.label for one in observed)
-    collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
+    found = collected([one.motion for one in solved], observed, tolerance, model.radius)
 
     def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
         load = unbalance_load(finer, unbalances, own)
@@ -172,7 +174,7 @@ def unbalance_response(
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
     extra = _kept(model, solved)
-    return UnbalanceResponse(labels, *collected, frame, values, basis_errors=errors, **extra)
+    return UnbalanceResponse(labels, *found, frame, values, basis_errors=errors, **extra)
 
 
 def harmonic_response(
@@ -252,7 +254,7 @@ def harmonic_response(
     if refine:
         values, solved = refined(partial(sweep, task, **given), values, solved)
     labels = tuple(one.label for one in observed)
-    collected = _collected([one.motion for one in solved], observed, tolerance, model.radius)
+    found = collected([one.motion for one in solved], observed, tolerance, model.radius)
 
     def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
         space = finer.space(_MODES, fastest, loads=list(load.values())).prepared([speed])
@@ -262,7 +264,7 @@ def harmonic_response(
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
     extra = _kept(model, solved)
-    return HarmonicResponse(labels, *collected, frame, values, speed, basis_errors=errors, **extra)
+    return HarmonicResponse(labels, *found, frame, values, speed, basis_errors=errors, **extra)
 
 
 def _basis_errors(
@@ -323,21 +325,8 @@ class _Observation:
         harmonics = space.steady_motion(speed, loads, rate, self.tolerance)
         seen = {n: self.rows @ x for n, x in harmonics.items()}
         if speed != 0.0:  # at θ = 0 the axes are the same
-            seen = self._in_frame(seen)
+            seen = in_frame(seen, self.stands, self.frame)
         return _Solved(seen, harmonics if self.keeps else {})
-
-    def _in_frame(self, motion: Motion) -> Motion:
-        """Return motions of the rotor seen in its frame, and of what stands, in the frame."""
-        turn, turns = into_inertial_frame, ~self.stands
-        if self.frame == "rotor":
-            turn, turns = out_of_inertial_frame, self.stands
-        if not np.any(turns):
-            return motion
-        turned = turn({n: a * turns[:, None] for n, a in motion.items()})
-        if not np.all(turns):
-            for n, a in motion.items():
-                turned[n] = turned.get(n, 0.0) + a * ~turns[:, None]
-        return turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -377,26 +366,6 @@ def _folded(motion: Motion) -> Motion:
     for n, a in motion.items():
         folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
     return folded
-
-
-def _collected(
-    motions: Sequence[Motion], observed: Sequence[Place], tolerance: float, length: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
-    orders = sorted({n for motion in motions for n in motion})
-    full = np.zeros((len(motions), len(observed), len(orders), 6), dtype=complex)
-    for row, motion in zip(full, motions, strict=True):
-        for n, amplitudes in motion.items():
-            row[:, orders.index(n)] = amplitudes
-    if not np.all(np.isfinite(full)):
-        raise ValueError("the response left the range of floats; check speeds and loads (SI units)")
-    # a rotation counts as the displacement that it makes at the rotor's radius of gyration
-    sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(0, 1, 3))
-    keep = sizes > tolerance * sizes.max()
-    if not np.any(keep):
-        keep[np.argmin(np.abs(orders))] = True
-    full[:, [one.is_node for one in observed], :, 3:] = np.nan
-    return np.array(orders)[keep], full[:, :, keep]
 
 
 def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray | str]:

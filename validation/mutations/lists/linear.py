@@ -225,14 +225,18 @@ LINEAR = [
             "loads = {0: speed * self.load + 0j}",
         ),
         (
-            "motion in the inertial frame as in the rotor frame",
-            'if self.frame == "rotor":',
-            'if self.frame == "inertial":',
-        ),
-        (
             "harmonics folded to the wrong sense",
             "(a if n > 0 else a.conj())",
             "(a.conj() if n > 0 else a)",
+        ),
+    ),
+    *mutations(
+        "linear/response/places.py",
+        "test_response.py",
+        (
+            "motion in the inertial frame as in the rotor frame",
+            'if frame == "rotor":',
+            'if frame == "inertial":',
         ),
     ),
     *mutations(
