@@ -200,7 +200,8 @@ class Foundation:
                     f"{checks.shown(values)}"
                 )
         matrices = m, 2.0 * zeta * omega * m, omega**2 * m
-        return cls(*map(np.diag, matrices), points, places or {}, participation)
+        known = {} if places is None else places
+        return cls(*map(np.diag, matrices), points, known, participation)
 
     @classmethod
     def from_solid(
