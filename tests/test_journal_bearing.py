@@ -20,6 +20,7 @@ from exudyn_rotor import (
     stability_threshold,
     steady_state,
 )
+from exudyn_rotor.bearings.film.reynolds import Equation
 
 SIZE = {"radius": 0.05, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
 SPEED = 1500.0 * np.pi / 30.0
@@ -302,3 +303,21 @@ def test_a_film_too_thin_at_slow_speeds_still_has_a_linear_model():
     assert state.critical_mass() == pytest.approx(53.5, rel=1e-4)
     with pytest.raises(ValueError, match="presses the film below"):
         stability(rotor, [1.0], supports=bearings)
+
+
+def test_a_law_in_a_scene_begins_with_the_voids_of_its_last_call(monkeypatch):
+    """In small steps each pressure needs little more than one solution, and stays what it is."""
+    one, solved = film_bearing(cavitation="reynolds", nodes=120), []
+    direct = Equation.direct
+    monkeypatch.setattr(Equation, "direct", lambda *a: solved.append(1) or direct(*a))
+    angles = np.linspace(0.0, 0.2, 40)
+    motions = [(8e-5 * np.cos(a), -8e-5 * np.sin(a), 1e-3, 2e-3, 0.0, SPEED) for a in angles]
+    alone = [one.law_with_torque(*each) for each in motions]
+    cold, law = len(solved), one.law_with_torque
+    solved.clear()
+    in_turn = [law(*each) for each in motions]
+    assert len(solved) < 2 * len(motions)
+    assert cold > 4 * len(motions)
+    backwards = [law(*each) for each in motions[::-1]][::-1]
+    np.testing.assert_allclose(in_turn, alone, rtol=1e-12)
+    np.testing.assert_allclose(backwards, alone, rtol=1e-12)

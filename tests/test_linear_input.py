@@ -193,6 +193,22 @@ def test_tables_and_matrices_are_told_apart():
         Support("left", lambda speed: "x").matrices(5.0)
 
 
+@pytest.mark.parametrize("kind", ["matrix", "table", "function"])
+def test_an_undamped_support_keeps_what_stores_energy(kind):
+    """The symmetric part of its stiffness, at every speed."""
+    K = np.array([[3.0, 2.0, 0.0], [-1.0, 5.0, 4.0], [0.0, 0.0, 7.0]])
+    given = {
+        "matrix": K,
+        "table": ([0.0, 20.0], [K, 3.0 * K]),
+        "function": lambda speed: (1.0 + 0.1 * speed) * K,
+    }[kind]
+    support = Support("left", given, 9.0, given, 9.0).undamped()
+    stiffness, damping = support.matrices(10.0)
+    expected = (1.0 if kind == "matrix" else 2.0) * 0.5 * (K + K.T)
+    np.testing.assert_allclose(stiffness, np.kron(np.eye(2), expected))
+    assert not damping.any()
+
+
 def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
     rotor = ROTOR.reduce(0)
     for table, speed in ((([5.0, 10.0], [1.0, 3.0]), 4.0), (([0.0, 10.0], [1.0, 3.0]), 11.0)):

@@ -158,7 +158,13 @@ class OilFilm(FilmData):
             move *= 0.5
         return found
 
-    def _state(self, position: np.ndarray, velocity: np.ndarray, speed: float) -> FilmState:
+    def _state(
+        self,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        speed: float,
+        empty: np.ndarray | None = None,
+    ) -> FilmState:
         heights = self._heights(position)
         if heights.min() <= 0.0:
             raise ValueError(
@@ -170,4 +176,4 @@ class OilFilm(FilmData):
         equation = Equation(
             self.grid, self.cavitation, source, self.supply_pressure, heights, rates, speed
         )
-        return FilmState(self, position, velocity, speed, equation.solve())
+        return FilmState(self, position, velocity, speed, equation.solve(empty))

@@ -17,6 +17,7 @@ what stands for it in a void, and changes sides when its unknown turns negative.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg.lapack import dgbsv
@@ -65,6 +66,10 @@ class Equation:
         rates: np.ndarray,
     ) -> np.ndarray:
         """Return the flow out of each volume, linear in the three last arguments."""
+        return self._pressed(pressure, cubes) + self._fed(void, heights, rates)
+
+    def _pressed(self, pressure: np.ndarray, cubes: np.ndarray) -> np.ndarray:
+        """Return the flow that the pressure drives out of each volume."""
         grid, axial = self.grid, self.grid.axial
         edge = self.edge * axial.weights / axial.mass
         left, right = (
@@ -76,10 +81,14 @@ class Equation:
         through = (
             axial.mass / step * (cubes[1, :, None] * drop_left + cubes[2, :, None] * drop_right)
         )
-        out = through + step * cubes[0, :, None] * (pressure @ axial.stiffness)
-        before, after = self._carried(void)
+        return through + step * cubes[0, :, None] * (pressure @ axial.stiffness)
+
+    def _fed(self, void: np.ndarray, heights: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Return what the surface carries out of each volume, and what its growth takes in."""
+        step, (before, after) = self.grid.step[:, None], self._carried(void)
         gain = 0.5 * self.speed * (heights[2, :, None] * after - heights[1, :, None] * before)
-        return out + self.source * axial.weights * (gain + step * rates[:, None] * (1.0 - void))
+        growth = step * rates[:, None] * (1.0 - void)
+        return self.source * self.grid.axial.weights * (gain + growth)
 
     def _carried(self, void: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the share of film that the surface carries through the left and right faces."""
@@ -98,7 +107,9 @@ class Equation:
         """
         shape = (len(self.grid.angle), self.grid.width)
         nothing = np.zeros(shape)
-        load = -self.residual(nothing, nothing, self.heights**3, self.heights, self.rates)
+        load = -self._fed(nothing, self.heights, self.rates)
+        if self.edge:
+            load -= self._pressed(nothing, self.heights**3)
         linear = self.cavitation in CAVITATION[:2]
         empty = np.zeros(shape, dtype=bool) if empty is None or linear else empty
         for _ in range(_ITERATIONS):
@@ -134,12 +145,7 @@ class Equation:
         """Return the matrix: columns of the pressure, in empty cells of what stands for it."""
         grid, axial = self.grid, self.grid.axial
         store = np.zeros(grid.unknown.size * grid.rows)
-        cubes = self.heights**3
-        across = axial.mass * (cubes[1:] / grid.step)[..., None]
-        along = (grid.step * cubes[0])[:, None]
-        own = across.sum(axis=0) + along * np.diag(axial.stiffness)
-        to_left, to_right = -across
-        side = along * np.diag(axial.stiffness, 1)
+        own, to_left, to_right, side = self._full
         above = np.where(empty[:, 1:], 0.0, side)
         below = np.where(empty[:, :-1], 0.0, side)
         if empty.any():
@@ -154,6 +160,16 @@ class Equation:
         store[grid.to_right] = to_right[grid.at_right]
         store[grid.to_above], store[grid.to_below] = above, below
         return store
+
+    @cached_property
+    def _full(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return what a film without voids couples: a node to itself, left, right and sideways."""
+        grid, axial = self.grid, self.grid.axial
+        cubes = self.heights**3
+        across = axial.mass * (cubes[1:] / grid.step)[..., None]
+        along = (grid.step * cubes[0])[:, None]
+        own = across.sum(axis=0) + along * np.diag(axial.stiffness)
+        return own, -across[0], -across[1], along * np.diag(axial.stiffness, 1)
 
     def _own_void(self) -> np.ndarray:
         """Return what a void adds to its own cell's residual per unit."""

@@ -7,11 +7,24 @@ BEARINGS = [
         "bearings/support.py",
         "test_stability.py::test_internal_damping_sets_in_at_the_closed_form_speed "
         "test_stability.py::test_a_symmetric_rotor_does_not_depend_on_the_frame",
+        ("circulatory part of a damper reversed", "damping @ _TURN", "-damping @ _TURN"),
+        ("rotor's frame taken for the inertial one", '== "rotor"', '== "other"'),
+    ),
+    *mutations(
+        "bearings/support.py",
+        "test_supports_in_scenes.py::test_scene_and_linear_rotor_have_the_same_exponents",
         (
-            "circulatory part of a damper reversed",
+            "circulatory part of a table's damper reversed",
             "both = {n: speed * X for n, X in carried.items()}",
             "both = {n: -speed * X for n, X in carried.items()}",
         ),
+        ("tilts not turned", "np.kron(np.eye(2), skew", "np.kron(np.diag([1.0, 0.0]), skew"),
+        (
+            "tilts without damping",
+            'damping[3:, 3:] = self._matrix("tilt_damping", speed)',
+            'damping[3:, 3:] = 0.0 * self._matrix("tilt_damping", speed)',
+        ),
+        ("table read at the speed above", "(1.0 - share) * values[above - 1] +", "0.0 +"),
     ),
     *mutations(
         "bearings/support.py",
@@ -31,12 +44,15 @@ BEARINGS = [
     ),
     *mutations(
         "bearings/support.py",
-        "test_advice_linear.py::test_resonances_are_those_without_damping_and_cross_coupling",
+        "test_linear_input.py::test_an_undamped_support_keeps_what_stores_energy",
         (
             "skew part kept in place of the symmetric one",
             "0.5 * (values + np.swapaxes",
             "0.5 * (values - np.swapaxes",
         ),
+        ("tables keep their skew part", "value[0], _symmetric_matrix(value[1])", "value"),
+        ("functions keep their skew part", "partial(_symmetric_value, value)", "value"),
+        ("tilt dampers kept", "damping=0.0, tilt_damping=0.0)", "damping=0.0)"),
     ),
     *mutations(
         "bearings/film/grid.py",
@@ -53,8 +69,8 @@ BEARINGS = [
         ("surface's speed in place of its half", "gain = 0.5 * self.speed", "gain = self.speed"),
         (
             "squeeze reversed",
-            "(gain + step * rates[:, None] * (1.0 - void))",
-            "(gain - step * rates[:, None] * (1.0 - void))",
+            "(gain + growth)",
+            "(gain - growth)",
         ),
         (
             "cube of the thickness not differentiated",
