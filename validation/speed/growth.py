@@ -1,7 +1,8 @@
 """Time and memory of a set-up over the size of the mesh, each in a process of its own.
 
 The rotor is the demonstration's disc on a shaft. Stages: mesh, mass and stiffness, prestress, 20
-free modes, attachment modes of both interfaces (12 static responses), reduction. Memory is the peak of the process so far, libraries included (0.25 GB).
+free modes, attachment modes of both interfaces (12 static responses), reduction. Memory is the peak
+of the process so far, libraries included (0.25 GB).
 
 python -m validation growth [--million] [--solvers auto direct iterative] [--json FILE]
     [--picture FILE]
