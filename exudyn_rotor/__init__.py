@@ -49,6 +49,7 @@ from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstab
 from exudyn_rotor.multibody.add_drive import add_drive
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.add_supports import add_supports
+from exudyn_rotor.multibody.connect_rotors import connect_rotors
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
 from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
@@ -154,6 +155,7 @@ __all__ = [
     "bearing_masses",
     "campbell",
     "check_run",
+    "connect_rotors",
     "craig_bampton_modes",
     "critical_speed_map",
     "critical_speeds",

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from point_rotors import ring_rotor
+from rings import J, Z, rings, run, speed_of
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -14,45 +14,15 @@ from exudyn_rotor import (
     Drag,
     InductionMotor,
     LimitedPower,
-    SolidRotor,
     Support,
     TorqueCurve,
     add_drive,
     add_rotor,
     add_supports,
     energy_balance,
-    recommended_settings,
 )
 
-J = 0.05  # of the rings below [kg m²]
-Z = [0.0, 0.0, 1.0]
 MOTOR = DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
-
-
-def rings(axis=Z, heavy=0.0):
-    """Return two rings of 5 kg together, J = m r², in full."""
-    upright = ring_rotor(0.1, 0.15, 5.0)
-    turn = Rotation.align_vectors([axis], [[0.0, 0.0, 1.0]])[0].as_matrix()
-    whole = np.kron(np.eye(10), turn)
-    stiffness = whole @ upright.stiffness @ whole.T
-    upright = SolidRotor.from_matrices(upright.mass, stiffness, upright.nodes @ turn.T, axis)
-    if heavy:
-        upright = upright.add_point_mass(turn @ [0.1, 0.0, 0.15], heavy)
-    return upright.with_interface("left", range(5)).with_interface("right", range(5, 10))
-
-
-def run(mbs, end_time, steps, body=None):
-    mbs.Assemble()
-    settings = recommended_settings(end_time, end_time / steps, accuracy=1e-6, body=body)
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = end_time / steps
-    assert mbs.SolveDynamic(settings)
-
-
-def speed_of(body):
-    place = body.formulation.translation_count
-    return body.coordinates()[1][place]
 
 
 def from_slip(slip, motor):

@@ -98,6 +98,7 @@ def test_tangent_is_the_derivative():
             ahead[place] = ahead[place] + move
             columns.append((gears.forces(x, x_t) - gears.forces(*ahead)) / step)
         np.testing.assert_allclose(np.transpose(columns), matrix, atol=1e-9 * matrix.max())
+    np.testing.assert_array_equal(mesh().law.tangent(0.0 * x, 0.0 * x)[0], mesh().matrices()[0])
     assert not np.any(mesh(backlash=1e-3).law.tangent(np.zeros(12), x_t))
 
 

@@ -16,7 +16,8 @@ class Law(NamedTuple):
     """The functions of a connection by motion x and rate ẋ, unchecked, for every time step.
 
     `forces` (12,), `tangent`: −∂f/∂x and −∂f/∂ẋ for Newton's method, `transmitted` load,
-    `energy` that is stored (of x alone), `loss` of power by damping.
+    `energy` that is stored (of x alone), `loss` of power by damping. `check_places` refuses rotors
+    that are mounted otherwise than needed, by the second's place from the first and its axis.
     """
 
     forces: Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -24,6 +25,7 @@ class Law(NamedTuple):
     transmitted: Callable[[np.ndarray, np.ndarray], float]
     energy: Callable[[np.ndarray], float]
     loss: Callable[[np.ndarray, np.ndarray], float]
+    check_places: Callable[[np.ndarray, np.ndarray], None]
 
 
 class Connection(ABC):
@@ -38,7 +40,14 @@ class Connection(ABC):
     @property
     def law(self) -> Law:
         """For scenes: forces, tangent, transmitted load, energy and loss, unchecked."""
-        return Law(self._forces, self._tangent, self._transmitted, self._energy, self._loss)
+        return Law(
+            self._forces,
+            self._tangent,
+            self._transmitted,
+            self._energy,
+            self._loss,
+            self._check_places,
+        )
 
     def forces(self, motion: ArrayLike, rate: ArrayLike) -> np.ndarray:
         """Return forces and moments on both interfaces, shape (12,).
@@ -84,6 +93,9 @@ class Connection(ABC):
 
     @abstractmethod
     def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float: ...
+
+    @abstractmethod
+    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None: ...
 
 
 def _checked(motion: ArrayLike, rate: ArrayLike) -> tuple[np.ndarray, np.ndarray]:

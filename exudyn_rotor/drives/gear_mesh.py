@@ -30,6 +30,7 @@ from exudyn_rotor.drives.connection import Connection
 
 ABOUT_AXIS = 5  # row of the first gear's rotation about e
 _SAME_RATIO = 1e-6  # of radii and numbers of teeth
+_SAME_PLACE = 1e-3  # of the centre distance
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -212,7 +213,8 @@ class GearMesh(Connection):
     def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Leave out how the stiffness varies: it is small beside the stiffness itself."""
         k, _ = self._stiffness_at(x)
-        touching = (v for v, *_, push in self._contacts(x, x_t, k) if push)
+        each, always = self._contacts(x, x_t, k), self.backlash is None
+        touching = (v for v, *_, push in each if always or push)
         both = sum((np.outer(v, v) for v in touching), np.zeros((12, 12)))
         return k * both, self.damping * both
 
@@ -230,3 +232,21 @@ class GearMesh(Connection):
         k, _ = self._stiffness_at(x)
         each = self._contacts(x, x_t, k)
         return sum(((push - k * depth) * rate for _, depth, rate, push in each), start=0.0)
+
+    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
+        """Refuse axes that are not parallel, or elsewhere than the gears say."""
+        if np.hypot(axis[0], axis[1]) > _SAME_PLACE:
+            raise ValueError("other: gears need parallel axes, and those of the rotors are skew")
+        distance, off = self.center_distance, _SAME_PLACE * self.center_distance
+        if abs(apart[2]) > off:
+            raise ValueError(
+                f"other: its gear is {apart[2]:.4g} m along the axis from that of the first rotor; "
+                "give the rotors positions with both gears in one plane"
+            )
+        expected = distance * np.array([cos(self.line_angle), sin(self.line_angle)])
+        if np.hypot(*(apart[:2] - expected)) > off:
+            raise ValueError(
+                f"other: its axis is {np.hypot(*apart[:2]):.6g} m from that of the first rotor, at "
+                f"{np.arctan2(apart[1], apart[0]):.4g} rad; the gears need {distance:.6g} m "
+                f"(center_distance) at line_angle, {self.line_angle:.4g} rad"
+            )

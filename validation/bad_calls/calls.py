@@ -202,6 +202,12 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "foundation": w.foundation,
         "rotation": np.eye(3),
     },
+    "connect_rotors": lambda w: {
+        "connection": w.gears,
+        "body": er.add_rotor(SystemContainer().AddSystem(), w.reduced),
+        "at": "left",
+        "other": er.ConstantSpeed(10.0),
+    },
     "add_supports": lambda w: {"body": w.body, "supports": w.supports},
     "linear_model": lambda w: _rotor(w),
     "load_result": lambda w: {"path": w.stored(w.campbell)},

@@ -365,6 +365,20 @@ MULTIBODY = [
         ),
     ),
     *mutations(
+        "multibody/interface_coordinates.py",
+        "test_geared_rotors.py::test_axes_and_senses_change_nothing "
+        "test_geared_rotors.py::test_energy_goes_into_drives_springs_and_losses",
+        ("node's sense of the spin", "theta = self.sign * q[self.spin]", "theta = q[self.spin]"),
+        ("arm without the spin", "self.sign * (_TURN @ arm)", "0.0 * (_TURN @ arm)"),
+        ("modes do not turn", "R @ self.modes[:3], R @", "self.modes[:3], R @"),
+    ),
+    *mutations(
+        "multibody/connect_rotors.py",
+        "test_geared_rotors.py::test_axes_and_senses_change_nothing",
+        ("second rotor in its own axes", "np.concatenate([x, into @ y])", "np.concatenate([x, y])"),
+        ("forces in axes of the second", "own, into @ others", "own, others"),
+    ),
+    *mutations(
         "multibody/add_drive.py",
         "test_drives.py::test_axes_change_nothing "
         "test_drives.py::test_energy_is_what_the_drives_give",

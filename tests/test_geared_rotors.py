@@ -1,0 +1,245 @@
+"""Gears between rotors in a scene: ratios, frequencies, energy, backlash, mesh frequency, axes."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scipy.linalg
+from rings import J, Z, rings, run, speed_of
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from exudyn_rotor import (
+    DirectCurrentMotor,
+    Drag,
+    GearMesh,
+    Support,
+    TorqueCurve,
+    add_drive,
+    add_rotor,
+    add_supports,
+    connect_rotors,
+)
+
+RADII = (0.06, 0.09)
+ENDS = ("left", "right")
+
+
+def mesh(**changes):
+    return GearMesh(**({"radii": RADII, "stiffness": 2e6, "line_angle": 0.4} | changes))
+
+
+def pair(
+    gears,
+    axis=Z,
+    rotation=None,
+    support=2e6,
+    heavy=0.0,
+    flip=False,
+    full=False,
+    first=None,
+    second=None,
+    damping=0.0,
+):
+    """Return a scene of two geared rotors, the bodies and the connection.
+
+    `flip` mounts the second one with its axis the other way.
+    """
+    mbs = exu.SystemContainer().AddSystem()
+    rotor = rings(axis, heavy)
+    rotation = np.eye(3) if rotation is None else rotation
+    n = np.column_stack([rotor.axis.plane, rotor.axis.direction])
+    apart = gears.center_distance * n @ [np.cos(gears.line_angle), np.sin(gears.line_angle), 0.0]
+    turn = Rotation.from_rotvec(np.pi * n[:, 0]).as_matrix() if flip else np.eye(3)
+    reduced = rotor.reduce(0)
+    one = add_rotor(mbs, reduced, name="one", rotation=rotation, **(first or {}))
+    two = add_rotor(
+        mbs, rotor if full else reduced, name="two", rotation=rotation @ turn,
+        position=rotation @ apart, **(second or {}),
+    )  # fmt: skip
+    for body in (one, two):
+        add_supports(
+            body, [Support(name, support * np.eye(3), damping * np.eye(3)) for name in ENDS]
+        )
+    # turned over, the right ring is where the left one was
+    connection = connect_rotors(gears, one, "left", two, "right" if flip else "left")
+    return mbs, (one, two), connection
+
+
+def closed_form(gears, support):
+    """Return the frequencies of two rigid rotors at rest [rad/s]: masses, springs and k v vᵀ."""
+    mass, across = 5.0, 5.0 * (0.5 * 0.1**2 + 0.15**2)
+    M = np.diag([mass] * 3 + [across] * 2 + [J])
+    arm = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]) * 0.15
+    K, gear = np.zeros((6, 6)), np.eye(6)
+    for side in (-1, 1):  # u of a ring is u + φ × (side · 0.15 e)
+        move = np.hstack([np.eye(3), -side * arm])
+        K += support * move.T @ move
+        if side < 0:
+            gear[:3] = move
+    v = np.hstack([gears.direction[:6] @ gear, gears.direction[6:] @ gear])
+    K = scipy.linalg.block_diag(K, K) + gears.stiffness * np.outer(v, v)
+    return np.sqrt(np.abs(scipy.linalg.eigvalsh(K, scipy.linalg.block_diag(M, M))))
+
+
+@pytest.mark.parametrize("helix_angle", [0.0, 0.3])
+def test_frequencies_at_rest_are_those_of_masses_and_springs(helix_angle):
+    gears = mesh(helix_angle=helix_angle)
+    options = {"locking": "constraints"}
+    mbs, _, _ = pair(gears, first=options, second=options)
+    mbs.Assemble()
+    squares = mbs.ComputeODE2Eigenvalues()[0]
+    expected = closed_form(gears, 2e6)
+    found = np.sqrt(np.abs(np.sort(squares)))[-len(expected) + 1 :]
+    np.testing.assert_allclose(found, expected[1:], rtol=1e-5)
+
+
+MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)
+
+
+def driven(steps=100, end_time=0.1, **options):
+    """Run a motor on the first rotor against drag on the second; return all that was added."""
+    mbs, bodies, gears = pair(**options)
+    drives = [add_drive(bodies[0], MOTOR), add_drive(bodies[1], Drag(linear=0.05))]
+    sensors = [each.add_sensor() for each in (*drives, gears)]
+    energies = [body.add_energy_sensor() for body in bodies]
+    run(mbs, end_time, steps, accuracy=1e-7)
+    return mbs, bodies, [mbs.GetSensorStoredData(n) for n in (*sensors, *energies)]
+
+
+def test_speeds_and_torques_are_in_the_ratio_of_the_radii():
+    """Steady at T(Ω) r₂/r₁ = c Ω r₁/r₂; stiff bearings, or the gears would move apart."""
+    _, bodies, (motor, drag, gear, *_) = driven(200, 4.0, gears=mesh(damping=500.0), support=1e8)
+    speeds = [speed_of(body) for body in bodies]
+    assert speeds[1] / speeds[0] == pytest.approx(-RADII[0] / RADII[1], rel=1e-5)
+    back = 0.05 * (RADII[0] / RADII[1]) ** 2
+    assert speeds[0] == pytest.approx(9.0 / (9.0 / 60.0 + back), rel=1e-4)
+    assert drag[-1, 1] / motor[-1, 1] == pytest.approx(RADII[1] / RADII[0], rel=1e-3)
+    assert gear[-1, 1] == pytest.approx(motor[-1, 1] / RADII[0], rel=1e-3)
+
+
+@pytest.mark.parametrize("backlash", [None, 2e-5])
+def test_energy_goes_into_drives_springs_and_losses(backlash):
+    """The integrals over the steps are of second order."""
+    gears = mesh(damping=300.0, helix_angle=0.2, backlash=backlash, teeth=[20, 30], variation=[0.2])
+    left = []
+    for steps in (150, 300):
+        mbs, bodies, (motor, drag, gear, *energies) = driven(steps, gears=gears, heavy=0.02)
+        time = motor[:, 0]
+        work = np.trapezoid(motor[:, 2] + drag[:, 2] - gear[:, 3], time)
+        gained = sum(rows[-1, 1:].sum() - rows[0, 1:].sum() for rows in energies) + gear[-1, 2]
+        for body in bodies:
+            for support in body.supports:
+                for item in support.objects:
+                    u = mbs.GetObjectOutput(item, exu.OutputVariableType.Displacement)
+                    gained += 0.5 * 2e6 * u @ u
+        left.append((gained - work) / work)
+    assert abs(left[1]) < 2e-3
+    if backlash is None:
+        assert abs(left[1]) < 0.35 * abs(left[0])
+
+
+PLACES = {
+    "x": {"axis": [1.0, 0.0, 0.0]},
+    "y": {"axis": [0.0, 1.0, 0.0]},
+    "skew": {
+        "axis": [2.0, -1.0, 2.0],
+        "rotation": Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix(),
+    },
+    "second turned over": {"flip": True},
+}
+
+
+@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.filterwarnings("ignore:rotor '.*'. no node of Exudyn turns")
+def test_axes_and_senses_change_nothing(name):
+    gears, heavy = mesh(helix_angle=0.2, damping=300.0), 0.0 if "turned" in name else 0.02
+    first = driven(gears=gears, heavy=heavy)
+    other = driven(gears=gears, heavy=heavy, **PLACES[name])
+    expected, found = ([speed_of(body) for body in result[1]] for result in (first, other))
+    found[1] *= -1.0 if "turned" in name else 1.0
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+    np.testing.assert_allclose(other[2][2][-1, 1:], first[2][2][-1, 1:], rtol=1e-4)
+
+
+def test_a_full_body_meshes():
+    """Ten masses on stiff springs, beside their rigid motions alone."""
+    found = [driven(gears=mesh(), full=full)[1] for full in (False, True)]
+    speeds = [[speed_of(body) for body in bodies] for bodies in found]
+    np.testing.assert_allclose(speeds[1], speeds[0], rtol=2e-2)
+
+
+def test_teeth_part_and_hit_as_two_inertias_do():
+    """A torque to and fro, by the scene and by an equation of two inertias on stiff bearings."""
+    gears = mesh(backlash=2e-4, stiffness=1e5, damping=20.0, pressure_angle=1e-3)
+    mbs, bodies, connection = pair(gears, support=1e9)
+    swing = lambda t: 6.0 * np.sin(80.0 * t)  # noqa: E731
+    add_drive(bodies[0], TorqueCurve(lambda speed, t: swing(t)))
+    sensor = connection.add_sensor()
+    run(mbs, 0.2, 1000)
+
+    def rates(t, y):
+        x, x_t = np.zeros(12), np.zeros(12)
+        x[[5, 11]], x_t[[5, 11]] = y[:2], y[2:]
+        force = gears.forces(x, x_t)
+        return [*y[2:], (force[5] + swing(t)) / J, force[11] / J]
+
+    force = mbs.GetSensorStoredData(sensor)[:, 1]
+    expected = solve_ivp(rates, (0.0, 0.2), np.zeros(4), rtol=1e-8, atol=1e-10, max_step=1e-3)
+    np.testing.assert_allclose(
+        [speed_of(body) for body in bodies], expected.y[2:, -1], rtol=5e-3, atol=2e-3
+    )
+    assert force.min() < -20.0
+    assert force.max() > 20.0
+    assert 0.05 < np.mean(force == 0.0) < 0.9
+
+
+def test_mesh_frequency_is_that_of_the_teeth():
+    """At a constant speed, 20 teeth and a stiffness that varies shake the mesh 20 times a turn."""
+    gears = mesh(teeth=[20, 30], variation=[0.1], damping=2e3)
+    mbs, bodies, connection = pair(
+        gears, first={"spin": 30.0}, second={"initial_speed": -20.0}, damping=3e3
+    )
+    add_drive(bodies[1], TorqueCurve(lambda speed, t: 10.0))
+    sensor = connection.add_sensor()
+    run(mbs, 0.4, 800)
+    time, force = mbs.GetSensorStoredData(sensor)[:, :2].T
+    late = force[time > 0.2]
+    share = np.abs(np.fft.rfft((late - late.mean()) * np.hanning(len(late))))
+    frequencies = 2.0 * np.pi * np.fft.rfftfreq(len(late), time[1] - time[0])
+    assert frequencies[share.argmax()] == pytest.approx(gears.mesh_frequency(30.0), rel=0.02)
+
+
+def test_refused_calls_leave_the_scene_as_it_was():
+    mbs = exu.SystemContainer().AddSystem()
+    gears = mesh(line_angle=0.0)
+    rotor, apart = rings().with_interface("point", [0]).reduce(0), [gears.center_distance, 0.0, 0.0]
+    one = add_rotor(mbs, rotor, name="one")
+    two = add_rotor(mbs, rotor, name="two", position=apart)
+    tilted = Rotation.from_euler("x", 0.1).as_matrix()
+    skew = add_rotor(mbs, rotor, name="skew", position=apart, rotation=tilted)
+    bare = add_rotor(mbs, rotor, name="bare", marker_body=False)
+    elsewhere = add_rotor(exu.SystemContainer().AddSystem(), rotor)
+
+    def counts():
+        data = mbs.systemData
+        return data.NumberOfObjects(), data.NumberOfMarkers(), data.NumberOfNodes()
+
+    before = counts()
+    for error, match, arguments in (
+        (TypeError, "connection: needs Connection", (MOTOR, one, "left", two, "left")),
+        (TypeError, "body: needs RotorBody", (gears, mbs, "left", two, "left")),
+        (TypeError, "other: needs RotorBody", (gears, one, "left", "two", "left")),
+        (ValueError, "at: 'top' is unknown", (gears, one, "top", two, "left")),
+        (ValueError, "other_at: 'point' is a single node", (gears, one, "left", two, "point")),
+        (TypeError, "other_at: needs a name", (gears, one, "left", two)),
+        (ValueError, "other: rotor 'bare' was added with", (gears, one, "left", bare, "left")),
+        (ValueError, "other: needs another rotor", (gears, one, "left", one, "right")),
+        (ValueError, "other: needs another rotor", (gears, one, "left", elsewhere, "left")),
+        (ValueError, "other: gears need parallel axes", (gears, one, "left", skew, "left")),
+        (ValueError, "other: its gear is 0.3 m along", (gears, one, "left", two, "right")),
+        (ValueError, "other: its axis is 0.1596", (mesh(), one, "left", two, "left")),
+    ):
+        with pytest.raises(error, match=match):
+            connect_rotors(*arguments)
+        assert counts() == before
+        assert one.drives == []
