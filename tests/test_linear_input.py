@@ -193,6 +193,16 @@ def test_tables_and_matrices_are_told_apart():
         Support("left", lambda speed: "x").matrices(5.0)
 
 
+def test_coefficients_stand_in_their_blocks():
+    """Displacements first, rotations after them; a table in the middle of two speeds."""
+    tilting = ([0.0, 10.0], [[[3.0, 1.0], [0.0, 4.0]], [[5.0, 1.0], [0.0, 8.0]]])
+    stiffness, damping = Support("left", 2.0, 7.0, 9.0, tilting).matrices(5.0)
+    np.testing.assert_allclose(stiffness, np.diag([2.0, 2.0, 0.0, 9.0, 9.0, 0.0]))
+    expected = np.diag([7.0, 7.0, 0.0, 4.0, 6.0, 0.0])
+    expected[3, 4] = 1.0
+    np.testing.assert_allclose(damping, expected)
+
+
 @pytest.mark.parametrize("kind", ["matrix", "table", "function"])
 def test_an_undamped_support_keeps_what_stores_energy(kind):
     """The symmetric part of its stiffness, at every speed."""

@@ -19,17 +19,18 @@ BEARINGS = [
             "both = {n: -speed * X for n, X in carried.items()}",
         ),
         ("tilts not turned", "np.kron(np.eye(2), skew", "np.kron(np.diag([1.0, 0.0]), skew"),
+    ),
+    *mutations(
+        "bearings/support.py",
+        "test_linear_input.py::test_coefficients_stand_in_their_blocks "
+        "test_linear_input.py::test_tables_and_matrices_are_told_apart "
+        "test_linear_input.py::test_a_table_is_not_used_beyond_its_ends_unless_asked_for",
         (
             "tilts without damping",
             'damping[3:, 3:] = self._matrix("tilt_damping", speed)',
             'damping[3:, 3:] = 0.0 * self._matrix("tilt_damping", speed)',
         ),
         ("table read at the speed above", "(1.0 - share) * values[above - 1] +", "0.0 +"),
-    ),
-    *mutations(
-        "bearings/support.py",
-        "test_linear_input.py::test_tables_and_matrices_are_told_apart "
-        "test_linear_input.py::test_a_table_is_not_used_beyond_its_ends_unless_asked_for",
         ("table read at its start", "share = (speed - ", "share = 0.0 * (speed - "),
         ("ends of a table taken for its inside", "if not least <= speed <= most:", "if False:"),
     ),
