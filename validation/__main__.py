@@ -35,6 +35,7 @@ SCRIPTS = {
     "timoshenko": Script("references.timoshenko", "Timoshenko beam"),
     "benchmarks": Script("references.benchmarks", "published and independently computed rotors"),
     "film": Script("references.film", "oil films of finite length"),
+    "bearings": Script("bearings", "cost of bearings in scenes, loss of their linear models"),
     "nonlinear": Script("stiffening.nonlinear", "nonlinear solid, clamped blade"),
     "spun_up_blade": Script("stiffening.spun_up_blade", "blade spun up"),
     "blade": Script("stiffening.blade", "rotating beams"),
