@@ -35,7 +35,9 @@ from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
 from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.links import Link
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
@@ -108,6 +110,7 @@ __all__ = [
     "JournalBearing",
     "LimitedPower",
     "LinearModel",
+    "Link",
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
     "Motion",
@@ -125,6 +128,7 @@ __all__ = [
     "RigidDisc",
     "RollingBearing",
     "RotorBody",
+    "RotorTrain",
     "RunCheck",
     "SceneFoundation",
     "SeparationMargins",

@@ -59,14 +59,14 @@ def out_of_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndar
 def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
 
-    R turns both triples of a (6, 6) matrix X about e by θ; the result holds the harmonics
-    −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
+    R turns all triples of a matrix X, (6, 6) or (12, 12), about e by θ; the result holds the
+    harmonics −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
     """
     if not np.any(matrix):
         return {}
-    R = _turns()
+    R = _turns(len(matrix))
     products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  # R is real: Rᵀ has the terms R_nᵀ
-    spectrum = {n: np.zeros((6, 6), dtype=complex) for n in range(-2, 3)}
+    spectrum = {n: np.zeros(matrix.shape, dtype=complex) for n in range(-2, 3)}
     for n, row in enumerate(products):
         for m, product in enumerate(row):
             spectrum[n + m - 2] += product
@@ -75,6 +75,6 @@ def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
 
 
 @cache
-def _turns() -> np.ndarray:
-    """Return R_n for n = −1, 0, 1, shape (3, 6, 6)."""
-    return np.stack(list(turning_harmonics(6).values()))
+def _turns(size: int) -> np.ndarray:
+    """Return R_n for n = −1, 0, 1, shape (3, size, size)."""
+    return np.stack(list(turning_harmonics(size).values()))

@@ -37,6 +37,8 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "GearMesh": lambda w: w.gears,
     "Foundation": lambda w: w.foundation,
     "HarmonicForce": lambda w: er.HarmonicForce("left", [1.0, 0.0, 0.0]),
+    "Link": lambda w: w.train.links[0],
+    "RotorTrain": lambda w: w.train,
     "HarmonicResponse": lambda w: w.harmonic,
     "InductionMotor": lambda w: er.InductionMotor(
         breakdown_torque=5.0, breakdown_slip=0.2, synchronous_speed=90.0
@@ -404,6 +406,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "GearMesh.forces": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
     "GearMesh.transmitted": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
     "*.torque": lambda w: {"speed": 10.0},
+    "RotorTrain.relative_to": lambda w: {"rotor": "second"},
     "MotionShapes.animate": lambda w: {"path": w.folder / "shape.gif", "frames": 2},
     "MotionShapes.displacement": lambda w: {"index": 0, "time": 0.1},
     "MotionShapes.orbits": lambda w: {"index": 0},

@@ -144,6 +144,16 @@ class World:
         return er.GearMesh(radii=[0.05, 0.1], stiffness=1e8, teeth=[20, 40], variation=[0.1])
 
     @cached_property
+    def train(self) -> er.RotorTrain:
+        """The reduced rotor twice, the second turning the other way on the first."""
+        return er.RotorTrain(
+            {"first": self.reduced, "second": self.reduced},
+            {"first": 1.0, "second": -1.0},
+            {"first": self.supports},
+            [er.Link("first:left", "second:left", er.Support("left", 1e6))],
+        )
+
+    @cached_property
     def isotropic(self) -> tuple[er.Support, ...]:
         """Bearings whose damper turns with the rotor, too: unstable above some speed."""
         return (

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
+from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes, wave_fits
 from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
@@ -40,12 +41,7 @@ DIAMETER_SHARE = 0.7
 _STATIC = 1e-7
 # share of |λ| below which a frequency is that of critical damping
 _NO_OSCILLATION = 1e-6
-_HIGHEST = 4
 _SAMPLES = 800
-_AXIAL_TERMS = 6
-_RADIAL_TERMS = 2
-# share of a field that others must leave over to count as new
-_NEW_SHARE = 1e-2
 _MANY = 100_000  # entries of vectors
 
 
@@ -96,11 +92,16 @@ class WhirlContent:
     @one_thread()
     def from_points(cls, points: PointMotions) -> WhirlContent:
         """Build the content from points and their motions."""
-        standing = points.standing
-        if standing is None:
-            standing = np.zeros((0, points.motion.shape[1]))
-        operators = _operators(points.points, points.motion, standing)
-        return cls(*operators, standing, points.rows, points.is_mesh)
+        none = np.zeros((0, points.motion.shape[1]))
+        standing = none if points.standing is None else points.standing
+        starts = points.ends[:-1]
+        coordinates = np.split(points.points, starts)
+        motions = np.split(points.motion, [3 * start for start in starts])
+        still = [standing, *[none] * len(starts)]
+        orders, *each = zip(*map(_operators, coordinates, motions, still), strict=True)
+        # the energies of several rotors add up
+        operators = (np.concatenate(parts, axis=-2) for parts in each)
+        return cls(orders[0], *operators, standing, points.rows, points.is_mesh)
 
     def within(self, basis: np.ndarray | None) -> WhirlContent:
         """Return the content of a basis (c, r) of the coordinates; None for all of them."""
@@ -311,14 +312,11 @@ def _gram(amplitudes: np.ndarray, vectors: np.ndarray, weights: np.ndarray) -> n
 
 def _operators(points: np.ndarray, motion: np.ndarray, standing: np.ndarray) -> tuple:
     """Return the fields of :class:`WhirlContent` up to `whole`."""
+    fits = wave_fits(points, HIGHEST + 1)
+    orders, amplitudes = wave_amplitudes(fits, motion)
+    amplitudes[HIGHEST] = np.vstack([amplitudes[HIGHEST], standing])
+    waves = _alike(amplitudes)
     u1, u2, ue = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
-    a, b = np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)
-    fits = wave_fits(points, _HIGHEST + 1)
-    orders = np.arange(-_HIGHEST, _HIGHEST + 1)
-    # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
-    waves = [[fits[1 - n] @ a, fits[-1 - n] @ b, fits[-n] @ ue] for n in orders]
-    waves[_HIGHEST].append(standing)
-    waves = _alike([np.vstack(parts) for parts in waves])
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
     radial = np.cos(angle) * u1 + np.sin(angle) * u2
     tangential = np.cos(angle) * u2 - np.sin(angle) * u1
@@ -341,56 +339,3 @@ def _alike(matrices: Sequence[np.ndarray]) -> np.ndarray:
     for rows, X in zip(result, small, strict=True):
         rows[: len(X)] = X
     return result
-
-
-def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
-    """Return the operators (p, s) that fit waves ``exp(ilα)`` to values at points, per l.
-
-    Least squares with the smooth fields ``r^|l| (1, r²) T_q(z) exp(ilα)``, all l together; the
-    squared norm of a wave's amplitudes is its energy, summed over the points. Where the points are
-    too few to tell waves apart, those of low |l| are taken.
-
-    Parameters
-    ----------
-    points : ndarray, shape (s, 3)
-        Coordinates along (n1, n2, e) from a point of the axis [m].
-    highest : int
-        Largest |l|.
-    """
-    x, y, z = points.T
-    radius = np.hypot(x, y)
-    length, widest = np.ptp(z), radius.max(initial=0.0)
-    # points that are on the axis to rounding have no angle
-    radius = np.where(radius <= 1e-9 * max(length, widest), 0.0, radius)
-    scaled = radius / (radius.max(initial=0.0) or 1.0)
-    along = np.polynomial.chebyshev.chebvander(
-        2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z), _AXIAL_TERMS - 1
-    )
-    direction = scaled * np.exp(1j * np.arctan2(y, x))
-    fields = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
-    spaces, known = [], np.zeros((len(points), 0))
-    for count in range(highest + 1):
-        forward = _new_fields(direction[:, None] ** count * fields, known)
-        # both senses at once, so that neither is preferred: one has the conjugate fields
-        both = np.hstack([forward.real, forward.imag]) * np.sqrt(2.0) if count else forward.real
-        spaces.append(both)
-        if count < highest:
-            known = np.linalg.qr(np.hstack([known, both]))[0]
-    ends = np.cumsum([space.shape[1] for space in spaces])
-    # in cosines and sines, which is real; exp(±ilα) is a unitary combination of them
-    fits = np.split(np.linalg.pinv(np.hstack(spaces), rcond=1e-6), ends[:-1])
-    result = {0: fits[0].astype(complex)}
-    for count, fit in enumerate(fits[1:], start=1):
-        cosine, sine = np.split(fit, 2)
-        forward = np.sqrt(0.5) * (cosine - 1j * sine)
-        result |= {count: forward, -count: forward.conj()}
-    return result
-
-
-def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of those `fields` that the columns `known` do not hold yet."""
-    scale = np.linalg.norm(fields, 2)
-    rest = fields - known @ (known.conj().T @ fields)
-    _, lengths, turn = np.linalg.svd(rest, full_matrices=False)
-    directions = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
-    return np.linalg.qr(fields @ directions)[0]

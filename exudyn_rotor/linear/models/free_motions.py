@@ -30,7 +30,7 @@ def free_motions_of_reduced(
     kinds = rotor.rigid_kinds
     turn = np.kron(np.eye(2), axes_of(rotor.axis).T)
     motions = [turn @ rotor.interfaces[s.interface].motion[:, : len(kinds)] for s in supports]
-    return _named(kinds, _stiffness(supports, motions, kinds, decoupled))
+    return named_motions(rigid_names(kinds), _stiffness(supports, motions, kinds, decoupled))
 
 
 def free_motions_of_solid(
@@ -51,12 +51,11 @@ def free_motions_of_solid(
     K = _stiffness(supports, motions, kinds, decoupled)
     if rotor.grounded:
         K = K + columns.T @ (rotor.stiffness @ columns)
-    return _named(kinds, K)
+    return named_motions(rigid_names(kinds), K)
 
 
-def _named(kinds: tuple[ModeKind, ...], K: np.ndarray) -> tuple[str, ...]:
-    """Name the motions that the stiffness K per unit mass leaves free."""
-    names = rigid_names(kinds)
+def named_motions(names: Sequence[str], K: np.ndarray) -> tuple[str, ...]:
+    """Name the rigid motions that the stiffness K per unit mass leaves free."""
     values, vectors = np.linalg.eigh(0.5 * (K + K.T))
     free = vectors[:, values <= _HELD * max(values.max(initial=0.0), 0.0)]
     share = np.sum(free**2, axis=1)

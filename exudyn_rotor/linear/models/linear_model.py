@@ -14,9 +14,11 @@ from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
+from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
@@ -28,8 +30,8 @@ from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 # full models up to this size are solved with dense matrices
 DENSE_SIZE = 600
 
-Target = LinearModel | ReducedRotor | SolidRotor | exudyn.MainSystem
-MODELS = (LinearRotor, FullRotor, LinearScene, RotorOnFoundation)
+Target = LinearModel | ReducedRotor | SolidRotor | RotorTrain | exudyn.MainSystem
+MODELS = (LinearRotor, FullRotor, LinearScene, LinearTrain, RotorOnFoundation)
 
 
 def linear_model(
@@ -49,7 +51,7 @@ def linear_model(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+    target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or linear model
         A linear model is returned as it is.
     supports : sequence of Support, optional
         Of a rotor; a scene has its own connectors.
@@ -117,13 +119,20 @@ def linear_model(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
             f"{checks.shown(body)}"
         )
+    if isinstance(target, RotorTrain):
+        if supports:
+            raise ValueError("supports: a RotorTrain has its own; leave them out")
+        return LinearTrain.of(target, stiffening)
     if isinstance(target, MODELS):
         if supports:
             raise ValueError("supports: a linear model has its own; leave them out")
         return target
     if isinstance(target, ReducedRotor):
         return _founded(LinearRotor.of(target, supports, stiffening), foundation)
-    how = "needs a ReducedRotor, a SolidRotor, a linear model, or an exudyn.MainSystem with body=…"
+    how = (
+        "needs a ReducedRotor, a SolidRotor, a RotorTrain, a linear model, or an exudyn.MainSystem "
+        "with body=…"
+    )
     if not isinstance(target, SolidRotor):
         raise TypeError(f"target: {how}, got {checks.shown(target)}")
     if stiffening == "auto":

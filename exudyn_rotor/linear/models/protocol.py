@@ -58,6 +58,8 @@ class PointMotions:
         False where rings that move with the interfaces stand for the mesh.
     standing : ndarray, shape (p, c), or None
         Amplitudes of what stands still beside the rotor; their squares count as those of points.
+    ends : tuple of int, optional
+        Where the points of each of several rotors end; one rotor by default.
     """
 
     points: np.ndarray
@@ -65,6 +67,7 @@ class PointMotions:
     rows: np.ndarray | None
     is_mesh: bool
     standing: np.ndarray | None = None
+    ends: tuple[int, ...] = ()
 
 
 class Space(Protocol):

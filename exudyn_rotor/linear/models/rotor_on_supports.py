@@ -141,7 +141,7 @@ class LinearRotor(SupportedRotor):
         return {}
 
     @cached_property
-    def _spin_terms(self) -> SpinTerms:
+    def spin_terms(self) -> SpinTerms:
         """The terms, of whose stiffness the spin feels nothing."""
         if self.spin is None:
             return self.terms
@@ -183,7 +183,7 @@ class LinearRotor(SupportedRotor):
         for n, X in carried.items():
             K[n] = K.get(n, 0.0) + speed * X
         D[0] = D[0] + self.terms.damping(speed)
-        K[0] = K[0] + self._spin_terms.stiffness(speed)
+        K[0] = K[0] + self.spin_terms.stiffness(speed)
         for support, U in zip(self.supports, self.supported_motions, strict=True):
             if support.varies:
                 for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
@@ -201,7 +201,7 @@ class LinearRotor(SupportedRotor):
         """
         motions = self.supported_motions
         pulls = [s.terms(speed)[1].get(0, np.zeros((6, 6))).real for s in self.supports]
-        K = self.invariants.K + self._spin_terms.stiffness(speed)
+        K = self.invariants.K + self.spin_terms.stiffness(speed)
         for U, pull in zip(motions, pulls, strict=True):
             K = K + U.T @ pull @ U
         rest = self.spin.rest()

@@ -15,6 +15,7 @@ from validation.mutations.lists.solvers import SOLVERS
 from validation.mutations.lists.strength import STRENGTH
 from validation.mutations.lists.theory import THEORY
 from validation.mutations.lists.top import TOP
+from validation.mutations.lists.trains import TRAINS
 
 ALL = (
     *THEORY,
@@ -27,6 +28,7 @@ ALL = (
     *FOUNDATIONS,
     *MULTIBODY,
     *LINEAR,
+    *TRAINS,
     *EVALUATION,
     *PICTURES,
     *STRENGTH,

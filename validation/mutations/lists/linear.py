@@ -78,7 +78,7 @@ LINEAR = [
         ),
         (
             "centrifugal stiffness grows with the speed",
-            "K[0] = K[0] + self._spin_terms.stiffness(speed)",
+            "K[0] = K[0] + self.spin_terms.stiffness(speed)",
             "K[0] = K[0] + self._spin_terms.stiffness(abs(speed) ** 0.5)",
         ),
     ),
@@ -177,6 +177,10 @@ LINEAR = [
             "seen = nu + (orders[:, None, None] + n) * speed",
             "seen = nu + (orders[:, None, None] - n) * speed",
         ),
+    ),
+    *mutations(
+        "linear/models/waves.py",
+        "test_campbell_frames.py",
         (
             "waves of the other sense",
             "np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)",
@@ -341,7 +345,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/modal/whirl.py",
+        "linear/models/waves.py",
         "test_campbell_frames.py",
         (
             "waves with the amplitudes of the other sense",

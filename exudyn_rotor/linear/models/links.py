@@ -1,0 +1,238 @@
+"""What stands between several rotors and the ground, as terms in axes that turn with the speed Ω.
+
+An element has stiffness K and damping D of the motion x of its ends, in axes (n1, n2, e) that turn
+with sΩ: s = 0 where it stands still. The coordinates are seen in axes that turn with Ω, so that
+``x = R(wθ) u``, w = 1 − s, and
+
+    K → Rᵀ K R + wΩ Rᵀ D R ẽ,    D → Rᵀ D R.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.drives.gear_mesh import GearMesh
+from exudyn_rotor.linear.models.rotor_on_supports import congruent
+from exudyn_rotor.linear.periodic.periodic_system import Terms
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import turned_harmonics
+
+_TURN = skew([0.0, 0.0, 1.0])
+_WHOLE = 1e-9  # distance of a multiple of the speed from a whole number
+_SAME = 1e-9  # relative slip of gears that is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """What connects two rotors: an inter-shaft bearing, a spring of their torsion, a gear mesh.
+
+    Parameters
+    ----------
+    first, second : str
+        Interfaces as 'rotor:interface'.
+    connection : Support or GearMesh
+        A support is at the interface of the first rotor and stands on the second instead of on the
+        ground: it acts on the difference of the two motions along (n1, n2, e), which are parallel
+        for all rotors. A tilt stiffness (3, 3) holds the torsion by its last entry. Tables are
+        over the relative speed of the rotors; frame 'rotor' is that of the first.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For names without a colon, two ends of one rotor, or a support at another interface.
+
+    Examples
+    --------
+    >>> from exudyn_rotor import Link, Support
+    >>> Link("LP:rear", "HP:rear", Support("rear", 2e7, damping=500.0)).ends
+    (('LP', 'rear'), ('HP', 'rear'))
+    """
+
+    first: str
+    second: str
+    connection: Support | GearMesh
+
+    def __post_init__(self) -> None:
+        (rotor, interface), (other, _) = self.ends
+        checks.instance(self.connection, "connection", (Support, GearMesh))
+        if isinstance(self.connection, Support) and self.connection.interface != interface:
+            raise ValueError(
+                f"connection: is at {self.connection.interface!r}, and the first end of the link "
+                f"at {self.first!r}; give a Support({interface!r}, …)"
+            )
+        if rotor == other:
+            raise ValueError(
+                f"second: {self.second!r} is of the same rotor as {self.first!r}; a link is "
+                "between two"
+            )
+
+    @property
+    def ends(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Rotor and interface of both ends."""
+        return _end(self.first, "first"), _end(self.second, "second")
+
+
+def _end(name: str, label: str) -> tuple[str, str]:
+    rotor, colon, interface = checks.label(name, label).partition(":")
+    if not (rotor and colon and interface):
+        raise ValueError(f"{label}: needs 'rotor:interface', got {name!r}")
+    return rotor, interface
+
+
+@dataclass(frozen=True, eq=False)
+class Element:
+    """A support or a link of a train.
+
+    Attributes
+    ----------
+    ends : tuple of (str, str)
+        Rotor and interface: one, or two for a link.
+    connection : Support or GearMesh
+    turns : float
+        s, by which its axes turn.
+    rate : float
+        Speed over which its tables are, per Ω.
+    is_damped : bool
+        False where damping and the skew part of the stiffness are left out.
+    """
+
+    ends: tuple[tuple[str, str], ...]
+    connection: Support | GearMesh
+    turns: float
+    rate: float
+    is_damped: bool = True
+
+    @classmethod
+    def of_support(cls, rotor: str, ratio: float, support: Support) -> Element:
+        """Return a support of a rotor on the ground."""
+        turns = ratio if support.frame == "rotor" else 0.0
+        return cls(((rotor, support.interface),), support, turns, ratio)
+
+    @classmethod
+    def of_link(cls, link: Link, ratios: Mapping[str, float]) -> Element:
+        """Return a link between two rotors.
+
+        Raises
+        ------
+        ValueError
+            For gears whose speeds are not in the ratio of their radii.
+        """
+        first, second = (ratios[rotor] for rotor, _ in link.ends)
+        given = link.connection
+        if isinstance(given, Support):
+            turns = first if given.frame == "rotor" else 0.0
+            return cls(link.ends, given, turns, first - second)
+        slip = given.radii @ [first, second]
+        if abs(slip) > _SAME * np.abs(given.radii * [first, second]).max():
+            raise ValueError(
+                f"ratios: gears of radii {given.radii[0]:g} and {given.radii[1]:g} m turn with "
+                f"{first:g} and {-first * given.radii[0] / given.radii[1]:.9g}, not {second:g}, "
+                f"times the speed: {link.first} – {link.second}"
+            )
+        return cls(link.ends, given, 0.0, first)
+
+    @property
+    def what(self) -> str:
+        """The element, for messages."""
+        return " – ".join(map(":".join, self.ends))
+
+    @property
+    def varies(self) -> bool:
+        """True when a coefficient depends on the speed."""
+        return isinstance(self.connection, Support) and self.connection.varies
+
+    @property
+    def stiffness_varies(self) -> bool:
+        """True when a stiffness depends on the speed."""
+        return isinstance(self.connection, Support) and self.connection.stiffness_varies
+
+    def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping of the motion of the ends at Ω, in the element's axes."""
+        if isinstance(self.connection, Support):
+            self.connection.check_range(self.rate * speed)
+        return self._matrices(speed)
+
+    @property
+    def at_rest(self) -> np.ndarray:
+        """Stiffness at rest."""
+        return self._matrices(0.0)[0]
+
+    def _matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        if isinstance(self.connection, Support):
+            sides = [[1.0]] if len(self.ends) == 1 else [[1.0, -1.0], [-1.0, 1.0]]
+            both = self.connection.matrices(self.rate * speed)
+            K, D = (np.kron(sides, X) for X in both)
+        else:
+            K, D = self.connection.matrices()
+        return (K, D) if self.is_damped else (0.5 * (K + K.T), 0.0 * D)
+
+    def parts(self, speed: float) -> tuple[Terms, Terms, Terms]:
+        """Return Fourier terms of damping, stiffness, and stiffness per Ω, seen with Ω."""
+        stiffness, damping = self.matrices(speed)
+        turn = np.kron(np.eye(len(stiffness) // 3), self.drift * _TURN)
+        return self._turned(damping), self._turned(stiffness), self._turned(damping @ turn)
+
+    @property
+    def drift(self) -> float:
+        """w."""
+        return 1.0 - self.turns
+
+    def check(self) -> None:
+        """Refuse directions in which the equations do not repeat with θ."""
+        for X in self._matrices(0.0):
+            self._turned(X)
+
+    def _turned(self, X: np.ndarray) -> dict[int, np.ndarray]:
+        """Return the Fourier terms of ``Rᵀ(wθ) X R(wθ)``, by multiples of θ."""
+        terms: dict[int, np.ndarray] = {}
+        for n, part in turned_harmonics(X).items():
+            add(terms, whole(n * self.drift, self.what), part)
+        return terms
+
+
+def whole(multiple: float, what: str) -> int:
+    """Return a multiple of the speed as a whole number.
+
+    Raises
+    ------
+    ValueError
+        Where it is none: the equations do not repeat with θ then.
+    """
+    nearest = round(multiple)
+    if abs(multiple - nearest) > _WHOLE * max(1.0, abs(multiple)):
+        raise ValueError(
+            f"ratios: {what} is not the same in all directions, so that the equations repeat with "
+            f"{abs(multiple):.6g} times the angle of the speed, which is no whole number; give "
+            "what is uneven the ratio 1, or ratios that are whole numbers, 2 and 3 for 1 and 1.5"
+        )
+    return nearest
+
+
+def turning_congruence(U: Terms, X: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X(θ) U(θ)``."""
+    terms: dict[int, np.ndarray] = {}
+    for n, part in X.items():
+        for a, left in U.items():
+            for b, right in U.items():
+                if n == a == b == 0:
+                    add(terms, 0, congruent(part.real, left))
+                else:
+                    add(terms, n + a + b, left.T @ part @ right)
+    return terms
+
+
+def add(terms: dict[int, np.ndarray], n: int, X: np.ndarray) -> None:
+    """Add a Fourier term; that of n = 0 is real."""
+    terms[n] = terms.get(n, 0.0) + (X.real if n == 0 else X)
+
+
+def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
+    """Return the motions (6, k) of several ends one below the other."""
+    keys = sorted({n for motion in motions for n in motion})
+    shape = next(iter(motions[0].values())).shape
+    return {n: np.vstack([motion.get(n, np.zeros(shape)) for motion in motions]) for n in keys}

@@ -1,0 +1,314 @@
+"""Several rotors in linear analyses: against closed forms, ROSS, and one rotor of their parts."""
+
+import itertools
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+from netgen import occ
+from point_rotors import free_stiffness, ring_rotor
+
+from exudyn_rotor import (
+    Link,
+    ReducedRotor,
+    RotorTrain,
+    SolidRotor,
+    Support,
+    campbell,
+    craig_bampton_modes,
+    critical_speeds,
+    linear_model,
+    stability,
+)
+from validation.references.benchmark_rotors import meshed
+
+ROSS = json.loads(
+    (Path(__file__).parents[1] / "validation/references/rotor_trains_ross.json").read_text()
+)
+LATERAL = ("forward", "backward", "mixed")
+AXIS = {"x": [1.0, 0.0, 0.0], "z": [0.0, 0.0, 1.0]}
+# radius, half length and mass of two rigid rotors; stiffness and damping of springs
+FIRST, SECOND = (0.2, 0.05, 4.0), (0.15, 0.08, 3.0)
+GROUND, BETWEEN = (3e5, 20.0), (2e5, 15.0)
+UNEVEN = np.array([[3e5, 2e4], [-1e4, 2e5]])
+
+
+def rings(radius: float, half: float, mass: float, axis: str = "z") -> SolidRotor:
+    """Return two rings of masses with the interfaces 'a' (lower) and 'b'."""
+    made = ring_rotor(radius, half, mass)
+    turned = np.roll(np.array(made.nodes), 1 if axis == "x" else 0, axis=1)
+    made = SolidRotor.from_matrices(
+        made.mass, free_stiffness(turned, 1e8 * np.eye(30)), turned, axis
+    )
+    along = turned @ AXIS[axis]
+    return made.with_interface("a", np.flatnonzero(along < 0)).with_interface(
+        "b", np.flatnonzero(along > 0)
+    )
+
+
+@cache
+def rigid(*dimensions: float, axis: str = "z") -> ReducedRotor:
+    """Return a rigid rotor."""
+    return rings(*dimensions, axis).reduce(0)
+
+
+def two_discs(ratio: float, ground=GROUND[0], axis: str = "z", **changes) -> RotorTrain:
+    """Return two rigid rotors, the second on the first and softly on the ground."""
+    k, c = BETWEEN
+    links = [Link(f"A:{n}", f"B:{n}", Support(n, f * k, c)) for n, f in (("a", 1.0), ("b", 1.5))]
+    stiff = np.asarray(ground) * np.ones((2, 2)) if np.ndim(ground) else ground * np.eye(2)
+    supports = {
+        "A": [Support("a", stiff, GROUND[1]), Support("b", 1.3 * stiff, GROUND[1])],
+        "B": [Support("b", 5e4)],
+    }
+    rotors = {"A": rigid(*FIRST), "B": rigid(*SECOND, axis=axis)}
+    return RotorTrain(rotors, {"A": 1.0, "B": ratio}, supports, links, **changes)
+
+
+def two_discs_exactly(
+    ratio: float, speed: float, ground=GROUND[0], damped: bool = True
+) -> np.ndarray:
+    """Return exponents by hand: per rotor x, y and the tilts α, β about them.
+
+    ``I_t α̈ + I_p Ω β̇ = M_α, I_t β̈ − I_p Ω α̇ = M_β``; displacement at z: x + βz, y − αz.
+    """
+    M, D, K = np.zeros((8, 8)), np.zeros((8, 8)), np.zeros((8, 8))
+    for o, (r, half, m), rate in ((0, FIRST, speed), (4, SECOND, ratio * speed)):
+        polar, transverse = m * r**2, m * (0.5 * r**2 + half**2)
+        M[range(o, o + 4), range(o, o + 4)] = m, m, transverse, transverse
+        D[o + 2, o + 3], D[o + 3, o + 2] = polar * rate, -polar * rate
+
+    def at(rotor: int, z: float) -> np.ndarray:
+        rows = np.zeros((2, 8))
+        rows[:, 4 * rotor : 4 * rotor + 4] = [[1.0, 0.0, 0.0, z], [0.0, 1.0, -z, 0.0]]
+        return rows
+
+    stiff = ground if np.ndim(ground) else ground * np.eye(2)
+    (za, zb), (k, c) = (FIRST[1], SECOND[1]), BETWEEN
+    for rows, spring, damper in (
+        (at(0, -za), stiff, GROUND[1]),
+        (at(0, za), 1.3 * stiff, GROUND[1]),
+        (at(1, zb), 5e4 * np.eye(2), 0.0),
+        (at(0, -za) - at(1, -zb), k * np.eye(2), c),
+        (at(0, za) - at(1, zb), 1.5 * k * np.eye(2), c),
+    ):
+        K += rows.T @ spring @ rows
+        D += damped * damper * rows.T @ rows
+    zero, one = np.zeros((8, 8)), np.eye(8)
+    values = la.eigvals(np.block([[zero, one], [-la.solve(M, K), -la.solve(M, D)]]))
+    return values[values.imag > 0.0]
+
+
+def lateral(result, row: int = -1) -> np.ndarray:
+    """Return growth + i inertial frequency of lateral modes, ascending in frequency."""
+    chosen = np.isin(result.whirl[row], LATERAL)
+    values = result.growth[row, chosen] + 1j * result.frequencies_inertial[row, chosen]
+    return values[np.argsort(values.imag)]
+
+
+@pytest.mark.parametrize("ratio", [1.7, -1.3, 1.0])
+@pytest.mark.parametrize("ground", [GROUND[0], UNEVEN], ids=["isotropic", "cross-coupled"])
+def test_two_rigid_discs_are_those_of_the_closed_form(ratio, ground):
+    """Constant equations, or Hill's method: both to the rounding of an eigenvalue."""
+    found = campbell(two_discs(ratio, ground), [0.0, 300.0])
+    for row, speed in enumerate(found.speeds):
+        exact = two_discs_exactly(ratio, speed, ground)
+        exact = exact[np.argsort(exact.imag)]
+        np.testing.assert_allclose(lateral(found, row), exact, rtol=1e-9, atol=1e-7)
+
+
+def test_axes_of_meshes_do_not_matter():
+    """Axes (n1, n2, e) of all rotors are parallel, wherever the axis is in the mesh."""
+    straight, turned = (
+        lateral(campbell(two_discs(1.7, axis=axis), [0.0, 300.0])) for axis in ("z", "x")
+    )
+    np.testing.assert_allclose(turned, straight, rtol=1e-9, atol=1e-7)
+
+
+def test_a_counter_rotating_pair_has_no_preferred_sense():
+    """Two equal rotors, one turning back: every frequency twice, forward and backward alike."""
+    rotor = rigid(*FIRST)
+    supports = {name: [Support("a", 3e5), Support("b", 3e5)] for name in "AB"}
+    links = [Link(f"A:{n}", f"B:{n}", Support(n, 2e5)) for n in "ab"]
+    train = RotorTrain({"A": rotor, "B": rotor}, {"A": 1.0, "B": -1.0}, supports, links)
+    values = lateral(campbell(train, [0.0, 400.0])).imag
+    np.testing.assert_allclose(values[::2], values[1::2], rtol=1e-9)
+    assert np.ptp(values[::2]) > 100.0
+
+
+@pytest.mark.parametrize("order", [1.0, 1.7])
+def test_critical_speeds_by_unbalance_of_either_rotor(order):
+    """``Im λ(Ω) = pΩ`` of the closed form without damping; relative to the rotor as well."""
+    train = two_discs(1.7)
+    found = critical_speeds(train, order=order, nodal_diameters=[1]).speeds
+    for speed in found:
+        exact = two_discs_exactly(1.7, speed, damped=False).imag
+        assert np.abs(exact / (order * speed) - 1.0).min() < 1e-9
+    if order != 1.0:
+        again = critical_speeds(train.relative_to("B"), nodal_diameters=[1]).speeds
+        np.testing.assert_allclose(again / order, found, rtol=1e-8)
+
+
+def test_rotors_of_one_speed_are_one_rotor():
+    """At the ratio 1, springs between two rotors are springs inside one."""
+    first, second = rings(*FIRST), rings(*SECOND)
+    K = la.block_diag(first.stiffness.toarray(), second.stiffness.toarray())
+    spring = np.diag([2e5, 2e5, 3e5])
+    for name in "ab":
+        U = np.hstack(
+            [s * r.interfaces[name].mean_motion(10).toarray()[:3]
+             for s, r in ((1.0, first), (-1.0, second))]
+        )  # fmt: skip
+        K += U.T @ spring @ U
+    mass = la.block_diag(first.mass.toarray(), second.mass.toarray())
+    joined = SolidRotor.from_matrices(mass, K, np.vstack([first.nodes, second.nodes]), "z")
+    ground = [Support("a", 3e5, 20.0), Support("b", 4e5, 5.0)]
+    inner = Support("b", damping=30.0, frame="rotor")
+    for n in "ab":
+        joined = joined.with_interface(n, first.interfaces[n].nodes)
+    single = stability(joined, [250.0], supports=[*ground, inner], stiffening="none")
+    rotors = {"A": first.reduce(24), "B": second.reduce(24)}
+    links = [Link(f"A:{n}", f"B:{n}", Support(n, spring)) for n in "ab"]
+    train = RotorTrain(rotors, {"A": 1.0, "B": 1.0}, {"A": [*ground, inner]}, links)
+    both = stability(train, [250.0], stiffening="none")
+    # the one rotor has more: the turn of its parts against each other, softened without a spring
+    exact, found = (r.exponents[0][np.abs(r.exponents[0]) < 2e3] for r in (single, both))
+    found = found[np.abs(found) > 0.1]
+    assert len(found) == 18
+    assert np.abs(found[:, None] - exact).min(axis=1).max() < 1e-6
+
+
+@cache
+def spool(name: str) -> ReducedRotor:
+    """Return a spool of the reference as a solid, its discs rigid."""
+    data, cut = ROSS["spools"][name], ROSS["between"]["position"]
+    start, end = data["start"], data["start"] + data["length"]
+    ends = [start, cut, end] if cut < end - 1e-9 else [start, end]
+    parts = []
+    for low, high in itertools.pairwise(ends):
+        tube = [
+            occ.Cylinder(occ.Pnt(0, 0, low), occ.Z, 0.5 * data[d], high - low)
+            for d in ("diameter", "bore")
+            if data[d] > 0.0
+        ]
+        parts.append(tube[0] - tube[1] if len(tube) == 2 else tube[0])
+    parts[0].faces.Max(occ.Z).name = "middle"
+    parts[0].faces.Min(occ.Z).name, parts[-1].faces.Max(occ.Z).name = "front", "rear"
+    rotor = meshed(occ.Glue(parts), 0.06, ROSS["material"], 1.0)
+    for disc in data["discs"]:
+        inertia = disc["polar"], disc["transverse"]
+        rotor = rotor.add_disc(disc["position"], disc["mass"], inertia, disc["width"])
+    return rotor.reduce(craig_bampton_modes(rotor, 8, coupling="RBE3"), prestress=True)
+
+
+def dual_spool(ratio: float) -> RotorTrain:
+    """Return the dual spool of the reference."""
+    (_, _, front), (_, _, rear), (_, _, outer) = ROSS["springs"]
+    between = Support("middle", ROSS["between"]["stiffness"], ROSS["between"]["damping"])
+    return RotorTrain(
+        {name: spool(name) for name in ("inner", "outer")},
+        {"inner": 1.0, "outer": ratio},
+        {"inner": [Support("front", front), Support("rear", rear)],
+         "outer": [Support("front", outer)]},
+        [Link("inner:middle", "outer:rear", between)],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("ratio", [1.5, -1.3])
+def test_dual_spool_against_ross(ratio):
+    """Frequencies of beams within the give of a solid's sections, which speed does not change."""
+    found = campbell(dual_spool(ratio), ROSS["speeds"], accuracy=None)
+    exact = ROSS["dual"][str(ratio)]
+    errors = []
+    for row, reference in enumerate(exact):
+        values = lateral(found, row)[: len(reference["frequencies"])]
+        errors.append(values.imag / reference["frequencies"] - 1.0)
+        np.testing.assert_allclose(values.real, reference["growth"], rtol=0.05, atol=0.1)
+    # the mesh of this test errs by 1 %, one with three times the nodes by half of that
+    assert np.abs(errors).max() < 1.2e-2
+    assert np.abs(np.diff(errors, axis=0)).max() < 2.5e-3
+
+
+@pytest.mark.parametrize(("name", "order"), [("inner", 1.0), ("outer", 1.5)])
+def test_critical_speeds_of_the_dual_spool_against_ross(name, order):
+    """By unbalance of each spool, in speeds of the inner one."""
+    found = critical_speeds(
+        dual_spool(1.5), order=order, nodal_diameters=[1], max_speed=4000.0, accuracy=None
+    )
+    forward = found.speeds[np.array(found.whirl) == "forward"][:4]
+    np.testing.assert_allclose(forward, ROSS["critical"][name], rtol=1.2e-2)
+
+
+def test_stiffness_of_a_link_moves_between_free_and_one():
+    """A link that gives way leaves two rotors alone; a stiff one makes them move as one."""
+    free = two_discs(1.7)
+    soft = [Link(link.first, link.second, Support(link.connection.interface, 1e-6))
+            for link in free.links]  # fmt: skip
+    parted = campbell(RotorTrain(free.rotors, free.ratios, free.supports, soft), [0.0, 300.0])
+    alone = campbell(free.rotors["A"], [0.0, 300.0], supports=free.supports["A"])
+    for value in lateral(alone):
+        assert np.abs(lateral(parted) - value).min() < 1e-5
+
+
+def test_axisymmetric_part_and_what_is_left():
+    """Mean over a turn: even to rounding for rings, of the mesh for a solid."""
+    assert linear_model(two_discs(1.7)).unevenness["B"] < 1e-12
+    train = dual_spool(1.5)
+    assert 1e-3 < linear_model(train).unevenness["outer"] < 2e-2
+    assert 1e-3 < linear_model(train.relative_to("outer")).unevenness["inner"] < 2e-2
+
+
+def bar() -> ReducedRotor:
+    """Return a rigid rotor whose transverse moments differ: four masses on two bars."""
+    nodes = np.array([[0.2, 0, -0.05], [-0.2, 0, -0.05], [0.2, 0, 0.05], [-0.2, 0, 0.05]])
+    K = free_stiffness(nodes, 1e8 * np.eye(12))
+    made = SolidRotor.from_matrices(np.eye(12), K, nodes, "z")
+    return made.with_interface("a", [0, 1]).with_interface("b", [2, 3]).reduce(0)
+
+
+def test_bad_trains_are_refused():
+    rotor, spring = rigid(*FIRST), Support("a", 1e5)
+    both, ratios = {"A": rotor, "B": rotor}, {"A": 1.0, "B": 1.5}
+    refused = [
+        ({"A": rings(*FIRST)}, {"A": 1.0}, {}, "reduce a SolidRotor"),
+        ({}, {}, {}, "at least one"),
+        ({"A:1": rotor}, {"A:1": 1.0}, {}, "without a colon"),
+        (both, {"A": 1.0}, {}, "one for each"),
+        (both, {"A": 1.0, "B": 0.0}, {}, "foundation"),
+        (both, ratios, {"supports": {"C": [spring]}}, "'C' is unknown"),
+        (both, ratios, {"supports": {"A": [Support("c", 1.0)]}}, "no such interface"),
+        (both, ratios, {"links": [Link("A:a", "C:a", spring)]}, "'C' is unknown"),
+        (both, ratios, {"links": [Link("A:a", "B:c", spring)]}, "'c' is unknown"),
+    ]
+    for rotors, speeds, more, words in refused:
+        with pytest.raises((TypeError, ValueError), match=words):
+            RotorTrain(rotors, speeds, **more)
+    with pytest.raises(ValueError, match="'rotor:interface', got 'Aa'"):
+        Link("Aa", "B:a", spring)
+    with pytest.raises(ValueError, match="is at 'a'"):
+        Link("A:b", "B:a", spring)
+    with pytest.raises(ValueError, match="same rotor"):
+        Link("A:a", "A:b", spring)
+    with pytest.raises(ValueError, match="'D' is unknown"):
+        two_discs(1.7).relative_to("D")
+
+
+def test_what_does_not_repeat_is_refused():
+    """Uneven rotors and supports that turn, at ratios that are no whole numbers."""
+    uneven = {"A": rigid(*FIRST), "B": bar()}
+    springs = {"B": [Support("a", 1e5)]}
+    with pytest.raises(ValueError, match=r"rotor 'B', by 0\.\d+ of its matrices"):
+        linear_model(RotorTrain(uneven, {"A": 1.0, "B": 1.7}, springs))
+    linear_model(RotorTrain(uneven, {"A": 1.7, "B": 1.0}, springs))
+    turning = Support("a", [[1e5, 0.0], [0.0, 2e5]], frame="rotor")
+    train = two_discs(1.7)
+    with pytest.raises(ValueError, match="B:a is not the same in all directions"):
+        linear_model(RotorTrain(train.rotors, train.ratios, {"B": [turning]}))
+    lossy = {"A": train.rotors["A"], "B": train.rotors["B"].with_damping(loss=0.01)}
+    with pytest.raises(ValueError, match="structural damping"):
+        linear_model(RotorTrain(lossy, train.ratios))
+    with pytest.raises(ValueError, match="has its own"):
+        linear_model(train, supports=[turning])

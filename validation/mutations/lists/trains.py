@@ -1,0 +1,62 @@
+"""Several rotors in linear analyses."""
+
+from validation.mutations.mutation import mutations
+
+_TESTS = "test_rotor_trains.py::"
+_DISCS = _TESTS + "test_two_rigid_discs_are_those_of_the_closed_form"
+_REFUSED = _TESTS + "test_what_does_not_repeat_is_refused"
+TRAINS = [
+    *mutations(
+        "linear/models/turned_rotor.py",
+        _DISCS,
+        (
+            "drift of turned coordinates reversed",
+            "return self.ratio - 1.0",
+            "return 1.0 - self.ratio",
+        ),
+        ("Coriolis term at the common speed", "2.0 * r * speed * X", "2.0 * speed * X"),
+        ("centrifugal term at the common speed", "-((r * speed) ** 2) * X", "-(speed**2) * X"),
+        (
+            "Coriolis of turned coordinates reversed",
+            "-2.0 * w * speed * MG",
+            "2.0 * w * speed * MG",
+        ),
+        (
+            "centripetal of turned coordinates reversed",
+            "(w * speed) ** 2 * MG",
+            "-((w * speed) ** 2) * MG",
+        ),
+        ("damping of turned coordinates reversed", "-w * speed * X @ G", "w * speed * X @ G"),
+    ),
+    *mutations(
+        "linear/models/links.py",
+        _DISCS,
+        ("links without reaction", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, -1.0], [0.0, 0.0]]"),
+        ("damping of supports turned back", "self.drift * _TURN", "-self.drift * _TURN"),
+    ),
+    *mutations(
+        "linear/models/links.py",
+        _REFUSED,
+        (
+            "supports in the rotor's frame stand still",
+            "turns = ratio if support",
+            "turns = 0.0 if support",
+        ),
+    ),
+    *mutations(
+        "linear/models/turning.py",
+        _DISCS,
+        ("waves turn back", "(1j * self.waves)", "(-1j * self.waves)"),
+        ("places turn with the waves", "n - self.waves[None, :]", "n + self.waves[None, :]"),
+    ),
+    *mutations(
+        "linear/models/turning.py",
+        _TESTS + "test_axisymmetric_part_and_what_is_left",
+        ("unevenness of fast motions", "1.0 + (omega / first) ** 2", "1.0 + 0.0 * omega"),
+    ),
+    *mutations(
+        "linear/models/linear_train.py",
+        _TESTS + "test_critical_speeds_by_unbalance_of_either_rotor",
+        ("damping in critical speeds", "is_damped=False", "is_damped=True"),
+    ),
+]

@@ -1,0 +1,162 @@
+"""Reference numbers of a dual spool, by matrices of the package ROSS.
+
+Run it in an environment with ``ross-rotordynamics`` (not needed by anything else here); it writes
+``rotor_trains_ross.json``, which the tests read:
+
+    python validation/references/rotor_trains_ross.py
+
+Steel shafts of Timoshenko elements with rotatory inertia and gyroscopics; discs are rigid, and so
+is the shaft inside them. The spools are hollow about solid, with a bearing between them; ROSS gives
+the matrices of each, and here their gyroscopic matrices are multiplied by speeds of their own.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import ross
+import scipy.linalg as la
+
+YOUNG, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
+ELEMENT = 0.02
+RATIOS = [1.5, -1.3]  # of the outer spool
+SPEEDS = [0.0, 300.0, 700.0]  # of the inner one
+MODES = 8
+SPOOLS = {
+    "inner": {
+        "start": 0.0, "length": 0.8, "bore": 0.0, "diameter": 0.04,
+        "discs": [
+            {"position": 0.1, "width": 0.04, "mass": 8.0, "polar": 0.06, "transverse": 0.032},
+            {"position": 0.7, "width": 0.04, "mass": 6.0, "polar": 0.04, "transverse": 0.022},
+        ],
+    },
+    "outer": {
+        "start": 0.24, "length": 0.36, "bore": 0.06, "diameter": 0.08,
+        "discs": [
+            {"position": 0.32, "width": 0.04, "mass": 5.0, "polar": 0.04, "transverse": 0.022},
+            {"position": 0.52, "width": 0.04, "mass": 5.0, "polar": 0.04, "transverse": 0.022},
+        ],
+    },
+}  # fmt: skip
+# from position to position along z; the last is between the spools
+SPRINGS = [("inner", 0.0, 2e7), ("inner", 0.8, 1e7), ("outer", 0.24, 1.5e7)]
+BETWEEN = {"position": 0.6, "stiffness": 2e7, "damping": 800.0}
+
+
+def shaft(length: float, bore: float, diameter: float, discs: list[dict], start: float) -> list:
+    """Return elements, those inside discs stiffened."""
+    elements = []
+    for index in range(round(length / ELEMENT)):
+        middle = start + (index + 0.5) * ELEMENT
+        inside = any(abs(middle - d["position"]) < 0.5 * d["width"] for d in discs)
+        young = (1e3 if inside else 1.0) * YOUNG
+        material = ross.Material(
+            name="steel", rho=DENSITY, E=young, G_s=young / (2.0 * (1.0 + POISSON))
+        )
+        elements.append(
+            ross.ShaftElement(
+                L=ELEMENT, idl=bore, odl=diameter, material=material,
+                shear_effects=True, rotary_inertia=True, gyroscopic=True,
+            )
+        )  # fmt: skip
+    return elements
+
+
+def spool(data: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, G per speed and K of the lateral coordinates of one spool without bearings."""
+    names = ("length", "bore", "diameter", "discs", "start")
+    elements = shaft(*(data[name] for name in names))
+    discs = [
+        ross.DiskElement(
+            n=node(data, d["position"]), m=d["mass"], Id=d["transverse"], Ip=d["polar"]
+        )
+        for d in data["discs"]
+    ]
+    made = ross.Rotor(elements, discs, [ross.BearingElement(n=0, kxx=0.0, cxx=0.0)])
+    count = made.number_dof
+    lateral = [count * n + i for n in range(len(made.nodes)) for i in (0, 1, 3, 4)]
+    cut = np.ix_(lateral, lateral)
+    return made.M(0.0)[cut], made.G()[cut], made.K(0.0)[cut]
+
+
+def node(data: dict, position: float) -> int:
+    """Return the node of a spool at a position."""
+    return round((position - data["start"]) / ELEMENT)
+
+
+def dual(ratio: float, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, damping with gyroscopics, and K of both spools."""
+    parts = [spool(data) for data in SPOOLS.values()]
+    rates = [speed, ratio * speed]
+    M = la.block_diag(*(part[0] for part in parts))
+    D = la.block_diag(*(rate * part[1] for rate, part in zip(rates, parts, strict=True)))
+    K = la.block_diag(*(part[2] for part in parts))
+    first = {"inner": 0, "outer": len(parts[0][0])}
+
+    def row(name: str, position: float) -> int:
+        return first[name] + 4 * node(SPOOLS[name], position)
+
+    for name, position, stiffness in SPRINGS:
+        for i in range(2):
+            K[row(name, position) + i, row(name, position) + i] += stiffness
+    for i in range(2):
+        ends = [row(name, BETWEEN["position"]) + i for name in SPOOLS]
+        between = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        K[np.ix_(ends, ends)] += BETWEEN["stiffness"] * between
+        D[np.ix_(ends, ends)] += BETWEEN["damping"] * between
+    return M, D, K
+
+
+def exponents(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> dict[str, list[float]]:
+    """Return the lowest frequencies [rad/s] and their growth [1/s]."""
+    zero, one = np.zeros_like(M), np.eye(len(M))
+    values = la.eigvals(np.block([[zero, one], [-la.solve(M, K), -la.solve(M, D)]]))
+    values = values[values.imag > 1.0]
+    values = values[np.argsort(values.imag)][:MODES]
+    return {"frequencies": values.imag.tolist(), "growth": values.real.tolist()}
+
+
+def critical(ratio: float, order: float) -> list[float]:
+    """Return the undamped speeds [rad/s] of the inner spool that an order of it excites forward.
+
+    ``(K − Ω²(p²M + p i G′)) x = 0`` with the gyroscopic matrix G′ per speed, for x e^{ipΩt}.
+    """
+    M, D, K = dual(ratio, 1.0)
+    G = 0.5 * (D - D.T)
+    values, vectors = la.eig(K, order**2 * M - 1j * order * G)
+    found = []
+    for value, x in zip(values, vectors.T, strict=True):
+        circling = np.sum(np.imag(np.conj(x[0::4]) * x[1::4]))  # < 0 for x = (1, −i): forward
+        if (
+            value.real > 0.0
+            and abs(value.imag) < 1e-6 * value.real
+            and np.sign(order) * circling < 0
+        ):
+            found.append(float(np.sqrt(value.real)))
+    return sorted(found)[:4]
+
+
+def main() -> None:
+    """Write the reference file."""
+    data = {
+        "source": f"ross-rotordynamics {ross.__version__}, "
+        "validation/references/rotor_trains_ross.py",
+        "material": {"youngsModulus": YOUNG, "poissonsRatio": POISSON, "density": DENSITY},
+        "spools": SPOOLS,
+        "springs": SPRINGS,
+        "between": BETWEEN,
+        "speeds": SPEEDS,
+        "dual": {
+            str(ratio): [exponents(*dual(ratio, speed)) for speed in SPEEDS] for ratio in RATIOS
+        },
+        "critical": {"inner": critical(1.5, 1.0), "outer": critical(1.5, 1.5)},
+    }
+    target = Path(__file__).with_suffix(".json")
+    target.write_text(json.dumps(data, indent=1) + "\n")
+    print(target.read_text())
+
+
+if __name__ == "__main__":
+    main()
