@@ -30,6 +30,7 @@ from exudyn_rotor.evaluation.placement import bearing_loads, bearing_masses, sta
 from exudyn_rotor.evaluation.separation import SeparationMargins, separation_margins
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.foundations.mount import Mount
+from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.html_report import report
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
@@ -38,6 +39,7 @@ from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.links import Link
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.response.base_response import BaseResponse, base_response
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
@@ -51,6 +53,7 @@ from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstab
 from exudyn_rotor.multibody.add_drive import add_drive
 from exudyn_rotor.multibody.add_rotor import add_rotor
 from exudyn_rotor.multibody.add_supports import add_supports
+from exudyn_rotor.multibody.base_motion import add_base_motion
 from exudyn_rotor.multibody.connect_rotors import connect_rotors
 from exudyn_rotor.multibody.connections import ConnectionWarning
 from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
@@ -89,6 +92,8 @@ __version__ = "0.2.0.dev0"
 __all__ = [
     "AssumptionWarning",
     "BaseAcceleration",
+    "BaseRecord",
+    "BaseResponse",
     "Campbell",
     "ClearanceStop",
     "ConnectionWarning",
@@ -150,11 +155,13 @@ __all__ = [
     "TorqueCurve",
     "Unbalance",
     "UnbalanceResponse",
+    "add_base_motion",
     "add_drive",
     "add_foundation",
     "add_rotor",
     "add_supports",
     "anticipated_cross_coupling",
+    "base_response",
     "bearing_loads",
     "bearing_masses",
     "campbell",

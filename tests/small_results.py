@@ -6,6 +6,7 @@ import numpy as np
 from point_rotors import SKEW_AXIS, random_rotor
 
 from exudyn_rotor import (
+    BaseResponse,
     Campbell,
     CriticalSpeedMap,
     CriticalSpeeds,
@@ -66,6 +67,7 @@ def results() -> list:
         CriticalSpeedMap(speeds, table, codes, 1.0, "none"),
         UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
+        BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         EnergyBalance(speeds, *RNG.uniform(size=(6, 3))),
         Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, *[table] * 2,
                   codes, codes, 1e-9, "tilt"),

@@ -27,6 +27,8 @@ LEFT_OUT = {
 # their arguments
 INSTANCES: dict[str, Callable[[World], Any]] = {
     "BaseAcceleration": lambda w: er.BaseAcceleration([1.0, 0.0, 0.0]),
+    "BaseRecord": lambda w: w.record,
+    "BaseResponse": lambda w: er.base_response(w.reduced, w.record, supports=w.supports),
     "Campbell": lambda w: w.campbell,
     "ConstantSpeed": lambda w: er.ConstantSpeed(10.0, 0.1),
     "CriticalSpeedMap": lambda w: w.critical_map,
@@ -169,6 +171,26 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "body": er.add_rotor(SystemContainer().AddSystem(), w.reduced),
         "drive": er.Drag(linear=0.1),
         "at": "left",
+    },
+    "BaseRecord.at": lambda w: {"time": 0.015},
+    "BaseRecord.from_csv": lambda w: {"path": w.table, "unit": "g"},
+    "BaseRecord.integrals": lambda w: {"times": np.array([0.0, 0.02])},
+    "BaseRecord.turned": lambda w: {"rotation": np.eye(3)},
+    "BaseResponse.between": lambda w: {"place": "left", "other": "right"},
+    "BaseResponse.displacement": lambda w: {"place": "left"},
+    "BaseResponse.peak": lambda w: {"place": "left", "other": "right"},
+    "add_base_motion": lambda w: {
+        "mbs": w.mbs,
+        "record": w.record,
+        "bodies": er.add_foundation(w.mbs, w.foundation),
+        "rotation": np.eye(3),
+    },
+    "base_response": lambda w: {
+        "target": w.reduced,
+        "record": w.record,
+        "supports": w.supports,
+        "at": ["left"],
+        "end_time": 0.04,
     },
     "Foundation.from_modes": lambda w: {
         "frequencies": [300.0, 500.0],

@@ -44,6 +44,18 @@ class World:
         return er.SolidRotor.from_ngsolve(self.mesh, STEEL, "z", order=1)
 
     @cached_property
+    def table(self) -> Path:
+        """A file with times and accelerations."""
+        path = self.folder / "record.csv"
+        path.write_text("time,x,y,z\n0.0,1,0,0\n0.1,0,1,0\n", encoding="utf-8")
+        return path
+
+    @cached_property
+    def record(self) -> er.BaseRecord:
+        """A ground that shakes for three hundredths of a second."""
+        return er.BaseRecord([0.0, 0.01, 0.02, 0.03], np.eye(4)[:, :3])
+
+    @cached_property
     def foundation(self) -> er.Foundation:
         """Two modes below its ends."""
         points = {"left": np.ones((6, 2)), "right": np.ones((6, 2)) - np.eye(6)[:, :2]}

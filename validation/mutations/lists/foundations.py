@@ -121,4 +121,30 @@ FOUNDATIONS = [
             "dampingMatrix=0.0 * placed.damping",
         ),
     ),
+    *mutations(
+        "foundations/record.py",
+        "test_base_motion.py::test_baseline_and_integrals",
+        (
+            "displacement of the ground by half its slope",
+            "s**3 / 6.0 * slope",
+            "s**3 / 3.0 * slope",
+        ),
+        ("slope of the drift halved", "- 2.0 * np.outer(t, drift[1])", "- np.outer(t, drift[1])"),
+    ),
+    *mutations(
+        "multibody/base_motion.py",
+        "test_base_motion.py::test_loads_are_a_base_that_moves",
+        (
+            "bodies follow the ground twice",
+            "(-record.accelerations).tolist()",
+            "record.accelerations.tolist()",
+        ),
+    ),
+    *mutations(
+        "linear/response/base_response.py",
+        "test_base_motion.py",
+        ("ground turns with the rotor", "R.transpose(0, 2, 1) + self", "R + self"),
+        ("first moment of the record left out", "12.0 * moment", "0.0 * moment"),
+        ("commutator with the other sign", "- np.sqrt(3.0) / 12.0", "+ np.sqrt(3.0) / 12.0"),
+    ),
 ]

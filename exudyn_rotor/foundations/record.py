@@ -1,0 +1,177 @@
+"""Records of the ground's acceleration: earthquakes, vehicles, shocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+
+UNITS = {"m/s²": 1.0, "g": 9.80665, "gal": 1e-2, "mm/s²": 1e-3}
+_UNEVEN = 1e-3  # of a step: records print their times with some digits
+
+
+@dataclass(frozen=True, eq=False)
+class BaseRecord:
+    """Acceleration of the whole ground over time; linear in between, zero before and after.
+
+    The same for scenes (:func:`exudyn_rotor.add_base_motion`) and linear analyses
+    (:func:`exudyn_rotor.base_response`). Motions are then those relative to the ground, so an
+    acceleration whose velocity does not end at zero does no harm; see :attr:`end_velocity`.
+
+    Parameters
+    ----------
+    times : array_like, shape (n,)
+        Ascending in even steps [s].
+    accelerations : array_like, shape (n, 3)
+        Along x, y, z of the rotor's mesh at the spin angle 0 [m/s²].
+
+    Raises
+    ------
+    TypeError, ValueError
+        For times that run backwards or unevenly, fewer than two of them, and other shapes.
+
+    Examples
+    --------
+    A half-sine shock of 5 g along x in 11 ms:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import BaseRecord
+    >>> t = np.linspace(0.0, 0.011, 111)
+    >>> pulse = 5.0 * 9.80665 * np.sin(np.pi * t / 0.011)
+    >>> BaseRecord(t, np.outer(pulse, [1.0, 0.0, 0.0]))
+    BaseRecord(111 samples in 0.011 s, peak 49.03 m/s², the ground ends at 0.3433 m/s)
+    """
+
+    times: np.ndarray
+    accelerations: np.ndarray
+
+    def __post_init__(self) -> None:
+        times = checks.vector(self.times, "times", "s", size=None)
+        if times.size < 2:
+            raise ValueError(f"times: needs two or more [s], got {checks.shown(times)}")
+        steps = np.diff(times)
+        if np.any(steps <= 0.0):
+            at = int(np.argmax(steps <= 0.0))
+            raise ValueError(
+                f"times: needs ascending times [s], got {times[at]:g} and then {times[at + 1]:g}"
+            )
+        uneven = np.abs(steps - steps.mean()).max()
+        if uneven > _UNEVEN * steps.mean():
+            raise ValueError(
+                f"times: needs even steps [s], got {steps.min():g} to {steps.max():g}; resample "
+                "the record"
+            )
+        shape = (times.size, 3)
+        given = checks.array(self.accelerations, "accelerations", "m/s²", shape=shape)
+        even = checks.read_only(np.linspace(times[0], times[-1], times.size))
+        object.__setattr__(self, "times", even)
+        object.__setattr__(self, "accelerations", given)
+
+    @classmethod
+    def from_csv(cls, path: str | PathLike, unit: str) -> BaseRecord:
+        """Read lines of time [s] and three accelerations, parted by comma, semicolon or space.
+
+        Lines that begin with ``#``, and one line of names at the beginning, are left out.
+
+        Parameters
+        ----------
+        path : path-like
+        unit : {'m/s²', 'g', 'gal', 'mm/s²'}
+            Of the accelerations.
+        """
+        factor = UNITS[checks.choice(unit, "unit", UNITS)]
+        with open(checks.path(path), encoding="utf-8") as file:
+            lines = [line.split("#")[0].replace(";", ",") for line in file]
+        filled = [(n, line) for n, line in enumerate(lines, 1) if line.strip()]
+        rows = []
+        for index, (number, line) in enumerate(filled):
+            words = line.split(",") if "," in line else line.split()
+            try:
+                rows.append([float(word) for word in words])
+            except ValueError as error:
+                if index > 0:
+                    raise ValueError(f"{path}, line {number}: {error}") from error
+                continue
+            if len(rows[-1]) != 4:
+                raise ValueError(
+                    f"{path}, line {number}: needs time and three accelerations, got "
+                    f"{len(rows[-1])} numbers"
+                )
+        table = np.array(rows).reshape(-1, 4)
+        return cls(table[:, 0], factor * table[:, 1:])
+
+    def __repr__(self) -> str:
+        """Return length, peak and where the velocity ends."""
+        end = np.linalg.norm(self.end_velocity)
+        return (
+            f"BaseRecord({len(self.times)} samples in {np.ptp(self.times):.4g} s, peak "
+            f"{self.peak:.4g} m/s², the ground ends at {end:.4g} m/s)"
+        )
+
+    @property
+    def step(self) -> float:
+        """Time between samples [s]."""
+        return float(np.ptp(self.times) / (len(self.times) - 1))
+
+    @property
+    def peak(self) -> float:
+        """Largest size of the acceleration [m/s²]."""
+        return float(np.linalg.norm(self.accelerations, axis=1).max())
+
+    @property
+    def end_velocity(self) -> np.ndarray:
+        """Velocity of the ground at the end, from rest, shape (3,) [m/s]."""
+        return np.trapezoid(self.accelerations, self.times, axis=0)
+
+    def at(self, time: ArrayLike) -> np.ndarray:
+        """Return the acceleration at one time or several [s], shape (…, 3)."""
+        return _at(self, checks.array(time, "time", "s"))
+
+    def with_baseline(self) -> BaseRecord:
+        """Return the record less a constant and a slope, with which the ground ends at rest.
+
+        They are those of least squares in the velocity.
+        """
+        t = self.times - self.times[0]
+        velocity = np.vstack([np.zeros(3), np.cumsum(_mean_steps(self), axis=0)])
+        drift = np.linalg.lstsq(np.column_stack([t, t**2]), velocity, rcond=None)[0]
+        smooth = self.accelerations - drift[0] - 2.0 * np.outer(t, drift[1])
+        corrected = BaseRecord(self.times, smooth)
+        return BaseRecord(self.times, smooth - corrected.end_velocity / t[-1])
+
+    def turned(self, rotation: ArrayLike) -> BaseRecord:
+        """Return the record in other axes, into which `rotation` (3, 3) leads."""
+        return BaseRecord(self.times, self.accelerations @ checks.rotation(rotation).T)
+
+    def integrals(self, times: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """Return velocity and displacement of the ground, from rest, each (t, 3)."""
+        times = checks.vector(times, "times", "s", size=None)
+        a, h = self.accelerations, self.step
+        v = np.vstack([np.zeros(3), np.cumsum(_mean_steps(self), axis=0)])
+        moved = h * v[:-1] + h**2 * (a[:-1] / 3.0 + a[1:] / 6.0)
+        u = np.vstack([np.zeros(3), np.cumsum(moved, axis=0)])
+        past = np.maximum(times - self.times[-1], 0.0)[:, None]
+        inside = np.clip(times, self.times[0], self.times[-1]) - self.times[0]
+        index = np.minimum((inside / h).astype(int), len(a) - 2)
+        s = (inside - index * h)[:, None]
+        slope = (a[index + 1] - a[index]) / h
+        velocity = v[index] + s * a[index] + s**2 / 2.0 * slope
+        place = u[index] + s * v[index] + s**2 / 2.0 * a[index] + s**3 / 6.0 * slope
+        return velocity, place + past * velocity
+
+
+def _at(record: BaseRecord, time: np.ndarray) -> np.ndarray:
+    columns = [
+        np.interp(time, record.times, column, left=0.0, right=0.0)
+        for column in record.accelerations.T
+    ]
+    return np.stack(columns, axis=-1)
+
+
+def _mean_steps(record: BaseRecord) -> np.ndarray:
+    """Return the change of velocity in every step, shape (n − 1, 3)."""
+    return 0.5 * record.step * (record.accelerations[1:] + record.accelerations[:-1])

@@ -1,0 +1,226 @@
+"""Ground that shakes: closed forms of one mass, scenes, and a base that really moves."""
+
+from dataclasses import replace
+from functools import cache
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass, SensorBody
+from point_rotors import ring_rotor
+from scipy.interpolate import CubicSpline
+from test_foundations import BLOCK, HELD
+from test_supports_in_scenes import KINDS, SKEW
+
+from exudyn_rotor import (
+    BaseRecord,
+    Support,
+    add_base_motion,
+    add_foundation,
+    add_rotor,
+    add_supports,
+    base_response,
+    linear_model,
+    recommended_settings,
+)
+from exudyn_rotor.theory.rotating_axes import axes_of
+
+ENDS = ("left", "right")
+
+
+@cache
+def rigid():
+    rotor = ring_rotor(0.1, 0.15, 5.0)
+    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+
+
+def springs(omega, ratio=0.0):
+    """Return supports on which the rotor's 5 kg have a natural frequency [rad/s]."""
+    k = 2.5 * omega**2 * np.eye(3)
+    return [Support(name, k, 5.0 * ratio * omega * np.eye(3)) for name in ENDS]
+
+
+def record(function, end, step, direction=(1.0, 0.0, 0.0)):
+    t = np.linspace(0.0, end, round(end / step) + 1)
+    return BaseRecord(t, np.outer(function(t), direction))
+
+
+@pytest.mark.parametrize("speed", [0.0, 180.0])
+def test_harmonic_ground_from_rest(speed):
+    """One mass: u = −A (sin νt − (ν/ω) sin ωt) / (ω² − ν²), whatever the spin."""
+    omega, nu = 120.0, 70.0
+    shaken = record(lambda t: 2.0 * np.sin(nu * t), 0.3, 2e-4)
+    found = base_response(rigid(), shaken, speed=speed, supports=springs(omega), tolerance=1e-7)
+    t = found.time
+    expected = -2.0 * (np.sin(nu * t) - nu / omega * np.sin(omega * t)) / (omega**2 - nu**2)
+    # straight lines between samples: (ν h)² / 12 of the load
+    scale = np.abs(expected).max()
+    along = axes_of(rigid().axis).T[:, 0]
+    np.testing.assert_allclose(
+        found.displacement("left"), np.outer(expected, along), rtol=0.0, atol=3e-5 * scale
+    )
+
+
+@pytest.mark.parametrize("omega", [20.0, 100.0, 200.0])
+def test_half_sine_shock_spectrum(omega):
+    """Residual response of one mass: 2β cos(π/2β) / |1 − β²| of a/ω², β = T/(2τ) > 1.
+
+    Chopra, Dynamics of Structures (2012), Eq. (4.8.4).
+    """
+    duration, beta = 0.01, np.pi / (0.01 * omega)
+    shock = record(lambda t: 40.0 * np.sin(np.pi * t / duration), duration, 5e-5)
+    given = {"speed": 300.0, "supports": springs(omega), "at": "right"}
+    found = base_response(rigid(), shock, end_time=duration + 7.0 / omega, **given)
+    expected = 40.0 / omega**2 * 2.0 * beta * np.cos(np.pi / 2.0 / beta) / (beta**2 - 1.0)
+    assert found.peak("right")[0] == pytest.approx(expected, rel=3e-4)
+
+
+def test_damped_rest_under_a_lasting_acceleration():
+    """Half a critical damping, a long step: the mass ends at −a/ω², along the axis, too."""
+    step = record(lambda t: np.ones_like(t), 1.0, 0.01, (1.0, 2.0, 3.0))
+    found = base_response(rigid(), step, speed=50.0, supports=springs(100.0, 0.5))
+    ends = -np.array([1.0, 2.0, 3.0]) @ axes_of(rigid().axis) / 100.0**2
+    np.testing.assert_allclose(found.displacement("left")[-1], ends, rtol=1e-6)
+
+
+# ------------------------------------------------------------------ scenes
+
+SHAKEN = BaseRecord(
+    np.linspace(0.0, 0.05, 51),
+    3.0 * np.column_stack([np.sin(40.0 * (t := np.linspace(0.0, 0.05, 51))),
+                           np.cos(70.0 * t), np.sin(90.0 * t)]),
+)  # fmt: skip
+SUPPORTS = [replace(KINDS["2 x 2"], tilt_stiffness=2e3), KINDS["3 x 3"], HELD]
+
+
+def run(step, turn=None, rotation=None, moved=False, block=BLOCK, end_time=0.04):
+    """Return time and displacement of a journal against the ground, global axes."""
+    rotor = rigid()
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, rotation=rotation, spin=200.0)
+    if moved:
+        heavy = exu.utilities.RigidBodyInertia(mass=1e6, inertiaTensor=1e6 * np.eye(3))
+        base = mbs.CreateRigidBody(inertia=heavy, nodeType=exu.NodeType.RotationRxyz)
+        pull = LoadMassProportional(
+            markerNumber=mbs.AddMarker(MarkerBodyMass(bodyNumber=base)),
+            loadVectorUserFunction=lambda mbs, t, load: SHAKEN.at(t).tolist(),
+        )
+        mbs.AddLoad(pull)
+        under = mbs.AddSensor(
+            SensorBody(
+                bodyNumber=base, outputVariableType=exu.OutputVariableType.Displacement,
+                storeInternal=True,
+            )
+        )  # fmt: skip
+    elif block is None:
+        base = None
+        add_base_motion(mbs, SHAKEN, body, rotation=rotation)
+    else:
+        base = add_foundation(mbs, block, rotation=rotation)
+        add_base_motion(mbs, SHAKEN, [body, base], rotation=rotation)
+    add_supports(body, SUPPORTS, base)
+    sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    settings = recommended_settings(end_time=end_time, step=step)
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-3
+    if moved:  # the base's inertia must not hide the rotor's
+        settings.timeIntegration.newton.relativeTolerance = 1e-12
+        settings.timeIntegration.newton.absoluteTolerance = 1e-12
+    mbs.SolveDynamic(settings)
+    data = mbs.GetSensorStoredData(sensor)
+    ground = mbs.GetSensorStoredData(under)[:, 1:4] if moved else 0.0
+    return data[:, 0], data[:, 1:4] - ground
+
+
+@pytest.mark.parametrize("rotation", [None, SKEW], ids=["upright", "skew"])
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+def test_scene_and_linear_response_agree(rotation):
+    """By the integrator's second order: two steps, and what they lead to."""
+    model = linear_model(rigid(), supports=SUPPORTS, foundation=BLOCK)
+    found = base_response(model, SHAKEN, speed=200.0, end_time=0.05, tolerance=1e-7, at="left")
+    to_scene = np.eye(3) if rotation is None else rotation
+    exact = CubicSpline(found.time, found.displacement("left") @ axes_of(rigid().axis).T)
+    (time, coarse), (_, fine) = (run(step, rotation=rotation) for step in (2e-4, 1e-4))
+    expected = exact(time) @ to_scene.T
+    errors = [
+        np.abs(x - expected).max() / np.abs(expected).max()
+        for x in (coarse, fine, (4.0 * fine - coarse) / 3.0)
+    ]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[2] < 1e-4
+
+
+def test_loads_are_a_base_that_moves():
+    """A base of a thousand tons that is driven by the record, seen from it."""
+    _, by_loads = run(1e-4, block=None)
+    _, by_motion = run(1e-4, moved=True)
+    # the rotor's reaction moves the base: their masses are as 5e-6 to 1
+    assert np.abs(by_loads - by_motion).max() < 1e-4 * np.abs(by_loads).max()
+
+
+# ------------------------------------------------------------------ records
+
+
+def test_a_record_from_a_file(tmp_path):
+    lines = "# made by hand\ntime;x;y;z\n0,0.1,0,0\n0.5, 0.2, 0, -1\n\n1.0 ,0,0,0  # end\n"
+    (tmp_path / "record.csv").write_text(lines, encoding="utf-8")
+    found = BaseRecord.from_csv(tmp_path / "record.csv", "g")
+    np.testing.assert_allclose(found.accelerations[1], [0.2 * 9.80665, 0.0, -9.80665])
+    np.testing.assert_allclose(found.at([0.25, 2.0])[:, 0], [0.15 * 9.80665, 0.0])
+    (tmp_path / "spaces.txt").write_text("0 1 2 3\n1 1 2 3\n", encoding="utf-8")
+    assert BaseRecord.from_csv(tmp_path / "spaces.txt", "gal").peak == pytest.approx(0.14**0.5 / 10)
+    for text, match in (
+        ("0,1,2\n1,1,2\n", "line 1: needs time and three"),
+        ("0,1,2,3\n1,a,2,3\n", "line 2: could not"),
+        ("t,x,y,z\n", "times: needs two or more"),
+    ):
+        (tmp_path / "bad.csv").write_text(text, encoding="utf-8")
+        with pytest.raises(ValueError, match=match):
+            BaseRecord.from_csv(tmp_path / "bad.csv", "g")
+
+
+def test_baseline_and_integrals():
+    """Of a record by polynomials: velocity and displacement exactly, and a ground that stops."""
+    t = np.linspace(1.0, 3.0, 5)
+    line = BaseRecord(t, np.outer(t - 1.0, [2.0, 0.0, 1.0]))
+    velocity, place = line.integrals(np.array([0.0, 2.3, 4.0]))
+    np.testing.assert_allclose(velocity[:, 0], [0.0, 1.3**2, 4.0], atol=1e-14)
+    np.testing.assert_allclose(place[:, 0], [0.0, 1.3**3 / 3.0, 8.0 / 3.0 + 4.0], atol=1e-14)
+    stops = line.with_baseline()
+    np.testing.assert_allclose(stops.end_velocity, 0.0, atol=1e-14)
+    assert stops.peak < 1e-12
+    np.testing.assert_allclose(line.turned(SKEW).end_velocity, SKEW @ line.end_velocity)
+
+
+def test_bad_records_and_calls_are_refused():
+    still = np.zeros((3, 3))
+    for times, match in (
+        ([0.0, 2.0, 1.0], "needs ascending times .*, got 2 and then 1"),
+        ([0.0, 1.0, 3.0], "needs even steps .*, got 1 to 2"),
+        ([0.0], "needs two or more"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            BaseRecord(times, still[: len(times)])
+    with pytest.raises(ValueError, match="accelerations: needs finite numbers"):
+        BaseRecord([0.0, 1.0, 2.0], still.T[:2])
+    mbs = exu.SystemContainer().AddSystem()
+    body, base = add_rotor(mbs, rigid()), add_foundation(mbs, BLOCK)
+    spinning = add_rotor(mbs, rigid(), name="b", translation="none")
+    blind = add_foundation(mbs, replace(BLOCK, participation=None))
+    loads = mbs.systemData.NumberOfLoads()
+    for bodies, match in (
+        ([body, base, body], "given twice"),
+        ([spinning], "part of its equations"),
+        ([blind], "needs its participation"),
+        ([exu.ObjectIndex(99)], "this system has no"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            add_base_motion(mbs, SHAKEN, bodies)
+        assert mbs.systemData.NumberOfLoads() == loads
+    model = linear_model(rigid(), supports=SUPPORTS, foundation=blind.foundation)
+    with pytest.raises(ValueError, match="with its participation"):
+        base_response(model, SHAKEN)
+    unstable = [*springs(100.0), Support("left", [[0.0, 1e5], [-1e5, 0.0]])]
+    with pytest.raises(ValueError, match="is the rotor unstable"):
+        base_response(rigid(), SHAKEN, supports=unstable, end_time=60.0)
