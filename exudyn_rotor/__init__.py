@@ -9,11 +9,14 @@ from exudyn_rotor.advice.energy_balance import EnergyBalance, energy_balance
 from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
+from exudyn_rotor.bearings.actuator import LinearActuator, SaturatingActuator
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
 from exudyn_rotor.bearings.film.picture import plot_pressure
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.pid_controller import PIDController
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
@@ -45,6 +48,8 @@ from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceRe
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.steady_state import SteadyState, steady_state
 from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
+from exudyn_rotor.linear.stability.sensitivity import sensitivity
+from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity
 from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.linear.stability.stability_result import Stability
@@ -114,8 +119,10 @@ __all__ = [
     "Invariants",
     "JournalBearing",
     "LimitedPower",
+    "LinearActuator",
     "LinearModel",
     "Link",
+    "MagneticBearing",
     "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "ModeBasis",
     "Motion",
@@ -123,6 +130,7 @@ __all__ = [
     "Mount",
     "ObjectFixedAxisFFRFreducedOrderInterface",
     "OilFilm",
+    "PIDController",
     "Pad",
     "PointMass",
     "PrescribedMotion",
@@ -135,7 +143,9 @@ __all__ = [
     "RotorBody",
     "RotorTrain",
     "RunCheck",
+    "SaturatingActuator",
     "SceneFoundation",
+    "Sensitivity",
     "SeparationMargins",
     "ShortJournalBearing",
     "SolidRotor",
@@ -186,6 +196,7 @@ __all__ = [
     "report",
     "response_shapes",
     "select_modes",
+    "sensitivity",
     "separation_margins",
     "spectra",
     "spinning_modes",

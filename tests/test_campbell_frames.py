@@ -403,7 +403,9 @@ def test_wrong_input_is_refused():
         campbell(rotor, [1.0, 0.0])
     with pytest.raises(ValueError, match="no such interface; the rotor has: all"):
         campbell(rotor.reduce(0), 0.0, supports=[Support("left", 1.0)])
-    with pytest.raises(TypeError, match=r"supports\[0\]: needs Support or Bearing, got 'all'"):
+    with pytest.raises(
+        TypeError, match=r"supports\[0\]: needs Support or Bearing or MagneticBearing, got 'all'"
+    ):
         campbell(rotor, 0.0, supports=["all"])
     with pytest.raises(TypeError, match="target: needs a ReducedRotor, a SolidRotor, a linear"):
         campbell(np.eye(3), 0.0)

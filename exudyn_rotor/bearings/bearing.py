@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 
+Kind = TypeVar("Kind", bound="LoadedBearing")
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
@@ -20,8 +22,8 @@ LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Bearing(ABC):
-    """A bearing across the axis: a force on the journal by its place, velocity and spin speed.
+class LoadedBearing(ABC):
+    """A bearing across the axis that holds its journal in an equilibrium under a static load.
 
     Components are along (n1, n2) of :attr:`SpinAxis.plane`, which stand still, from the centre of
     the bearing, where the axis of the rotor at rest passes.
@@ -44,6 +46,41 @@ class Bearing(ABC):
             load = checks.read_only(checks.vector(self.load, "load", "N", size=2))
             object.__setattr__(self, "load", load)
 
+    @abstractmethod
+    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return where the journal rests under a static load [N], the bearing's own by default."""
+
+    def with_load(self: Kind, load: ArrayLike) -> Kind:
+        """Return the bearing with a static load on the journal [N], shape (2,)."""
+        return replace(self, load=checks.vector(load, "load", "N", size=2))
+
+    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
+        """Check attributes, given with their units, and keep them as floats."""
+        for name, unit in units.items():
+            value = checks.number(getattr(self, name), name, unit, **bounds)
+            object.__setattr__(self, name, value)
+
+    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
+        if load is not None:
+            return checks.vector(load, "load", "N", size=2)
+        if self.load is None:
+            raise ValueError(
+                f"bearing at {self.interface!r}: linear analyses need its static load; give "
+                "load=…, e.g. of bearing_loads(rotor, interfaces, gravity)"
+            )
+        return self.load
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Bearing(LoadedBearing):
+    """A bearing whose force on the journal follows from its place, velocity and spin.
+
+    Attributes
+    ----------
+    interface, load
+        See :class:`LoadedBearing`.
+    """
+
     @property
     def law(self) -> Law:
         """For scenes: the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
@@ -64,18 +101,10 @@ class Bearing(ABC):
         """Return the force on the journal [N]."""
 
     @abstractmethod
-    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
-        """Return where the journal rests under a static load [N], the bearing's own by default."""
-
-    @abstractmethod
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness [N/m] and damping [N s/m], each (2, 2), about the equilibrium."""
-
-    def with_load(self, load: ArrayLike) -> Bearing:
-        """Return the bearing with a static load on the journal [N], shape (2,)."""
-        return replace(self, load=checks.vector(load, "load", "N", size=2))
 
     def linearised(self) -> Support:
         """Return the support for linear analyses: the coefficients under the load at every speed.
@@ -87,22 +116,6 @@ class Bearing(ABC):
         """
         self._static_load(None)
         return Support(self.interface, Linearised(self, 0), Linearised(self, 1))
-
-    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
-        """Check attributes, given with their units, and keep them as floats."""
-        for name, unit in units.items():
-            value = checks.number(getattr(self, name), name, unit, **bounds)
-            object.__setattr__(self, name, value)
-
-    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
-        if load is not None:
-            return checks.vector(load, "load", "N", size=2)
-        if self.load is None:
-            raise ValueError(
-                f"bearing at {self.interface!r}: linear analyses need its static load; give "
-                "load=…, e.g. of bearing_loads(rotor, interfaces, gravity)"
-            )
-        return self.load
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,17 +6,19 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.solid.interface import Interface
 
-Given = Support | Bearing
+Given = Support | Bearing | MagneticBearing
 _TILTING = ("tilt_stiffness", "tilt_damping")
 
 
 def given_supports(supports: Sequence[Given] | Given) -> tuple[Given, ...]:
     """Return supports and bearings as a tuple; TypeError for anything else."""
-    return checks.instances(supports, "supports", (Support, Bearing))
+    return checks.instances(supports, "supports", (Support, Bearing, MagneticBearing))
 
 
 def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
@@ -25,16 +27,37 @@ def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
     Raises
     ------
     TypeError, ValueError
-        For anything else, and a bearing without a load.
+        For anything else, a bearing without a load, and a magnetic one.
     """
-    return tuple(
-        given.linearised() if isinstance(given, Bearing) else given
-        for given in given_supports(supports)
-    )
+    linear, controlled = linear_supports(supports)
+    if controlled:
+        raise ValueError(
+            f"supports: the magnetic bearing at {controlled[0].interface!r} has states of its own, "
+            "which this analysis does not take; give a Support with its stiffness and damping"
+        )
+    return linear
+
+
+def linear_supports(
+    supports: Sequence[Given] | Given,
+) -> tuple[tuple[Support, ...], tuple[ControlledSupport, ...]]:
+    """Return supports for linear analyses, those without and with coordinates of their own.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For anything else, and a bearing without a load that needs one.
+    """
+    linear: list[Support] = []
+    controlled: list[ControlledSupport] = []
+    for given in given_supports(supports):
+        one = given if isinstance(given, Support) else given.linearised()
+        (controlled if isinstance(one, ControlledSupport) else linear).append(one)
+    return tuple(linear), tuple(controlled)
 
 
 def check_interfaces(
-    supports: Iterable[Given], known: Mapping[str, Interface | ReducedInterface]
+    supports: Iterable[Given | ControlledSupport], known: Mapping[str, Interface | ReducedInterface]
 ) -> None:
     """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
 
@@ -43,11 +66,12 @@ def check_interfaces(
     ValueError
     """
     for support in supports:
-        if support.interface not in known:
-            raise ValueError(
-                f"support at {support.interface!r}: no such interface; the rotor has: "
-                f"{', '.join(known) or 'none'}"
-            )
+        for place in {support.interface, getattr(support, "sensor", None) or support.interface}:
+            if place not in known:
+                raise ValueError(
+                    f"support at {support.interface!r}: no such interface{_asked(place, support)}; "
+                    f"the rotor has: {', '.join(known) or 'none'}"
+                )
         for name in _TILTING if known[support.interface].radius == 0.0 else ():
             if acts(getattr(support, name, 0.0)):
                 raise ValueError(
@@ -55,3 +79,7 @@ def check_interfaces(
                     "interface is a single node, which has no rotation; make the interface of "
                     "three nodes or more, or leave this out"
                 )
+
+
+def _asked(place: str, support: Given | ControlledSupport) -> str:
+    return "" if place == support.interface else f" as that of its sensor, {place!r}"

@@ -16,8 +16,10 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import acts
 from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.magnetic_connectors import add_magnetic
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.seats import Base, Seat
 from exudyn_rotor.multibody.support_connectors import (
@@ -36,7 +38,8 @@ class SceneSupport:
     ----------
     support : Support or bearing
     objects : tuple of ObjectIndex
-        Its connectors: for displacements, for tilts, where it acts on them.
+        Its connectors: for displacements, for tilts, where it acts on them; of a magnetic bearing
+        that of the magnets and the controller.
     evaluation : tuple of str
         Who evaluates each of them in a time step.
     """
@@ -126,8 +129,10 @@ def add_supports(
     for support in supports:
         _check_about_the_axis(body, support)
     seats = [Seat.of(body, support.interface, base) for support in supports]
+    sensed = [_seat_of_sensor(body, support, base) for support in supports]
     added = tuple(
-        _added(body, support, seat) for support, seat in zip(supports, seats, strict=True)
+        _added(body, support, *places)
+        for support, *places in zip(supports, seats, sensed, strict=True)
     )
     body.supports.extend(added)
     return added
@@ -135,7 +140,7 @@ def add_supports(
 
 def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Given) -> None:
     """Refuse what acts against the rotation of a frame whose spin is free, or cannot brake it."""
-    if not body.formulation.has_spin:
+    if isinstance(support, MagneticBearing) or not body.formulation.has_spin:
         return
     if isinstance(support, Bearing):
         interface = body.selection.source.interfaces[support.interface]
@@ -159,8 +164,29 @@ def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Given) -> No
             )
 
 
-def _added(body: RotorBody | FullRotorBody, support: Given, seat: Seat) -> SceneSupport:
+def _seat_of_sensor(
+    body: RotorBody | FullRotorBody, support: Given, base: Base | Mapping[str, Base] | None
+) -> Seat | None:
+    """Return where the sensors of a magnetic bearing are; the bearing's base carries them."""
+    if not isinstance(support, MagneticBearing):
+        return None
+    given = base.get(support.interface) if isinstance(base, Mapping) else base
+    apart = support.sensor_interface != support.interface
+    if apart and isinstance(given, exudyn.MarkerIndex):
+        raise ValueError(
+            f"base: the magnetic bearing at {support.interface!r} has its sensors at "
+            f"{support.sensor!r}, where a marker has no place; give the rigid body itself"
+        )
+    return Seat.of(body, support.sensor_interface, given)
+
+
+def _added(
+    body: RotorBody | FullRotorBody, support: Given, seat: Seat, sensed: Seat | None
+) -> SceneSupport:
     mbs, parts = body.mbs, []
+    if isinstance(support, MagneticBearing):
+        items = add_magnetic(body, support, seat, seat.marker(mbs), sensed.marker(mbs))
+        return SceneSupport(support, items, (PYTHON, PYTHON))
     if isinstance(support, Bearing):
         item = bearing_connector(body, support, seat, seat.marker(mbs))
         return SceneSupport(support, (item,), (PYTHON,))

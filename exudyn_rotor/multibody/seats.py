@@ -48,6 +48,7 @@ class Seat:
 
     @classmethod
     def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
+        """Return the place of an interface on its base."""
         setup = body.plan.setup.placement
         on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
         place = setup.position + setup.rotation @ on_axis

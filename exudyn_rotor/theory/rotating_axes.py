@@ -23,7 +23,7 @@ def axes_of(axis: SpinAxis) -> np.ndarray:
 
 @cache
 def turning_harmonics(size: int) -> dict[int, np.ndarray]:
-    """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, (3, 3) or twice that, axes (n1, n2, e).
+    """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, of whole triples of rows, axes (n1, n2, e).
 
     R turns rotor axes into inertial axes; ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
     """
@@ -33,7 +33,7 @@ def turning_harmonics(size: int) -> dict[int, np.ndarray]:
 
 
 def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the harmonics of ``Rᵀ(θ) v`` for v (3,) or (6,) fixed in space; none that is zero."""
+    """Return the harmonics of ``Rᵀ(θ) v`` for triples v (3n,) fixed in space; none that is zero."""
     turned = {-n: R @ vector for n, R in turning_harmonics(len(vector)).items()}
     return {n: term for n, term in turned.items() if np.any(term)}
 
@@ -59,8 +59,8 @@ def out_of_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndar
 def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
     """Return the Fourier terms of ``Rᵀ(θ) X R(θ)`` for a support seen from the rotor.
 
-    R turns all triples of a matrix X, (6, 6) or (12, 12), about e by θ; the result holds the
-    harmonics −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
+    R turns all triples of a (6, 6) or larger matrix X about e by θ; the result holds the harmonics
+    −2 … 2 of ``Σ X_n exp(i n θ)`` that are not zero.
     """
     if not np.any(matrix):
         return {}

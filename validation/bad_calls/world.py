@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import tempfile
 import warnings
 from dataclasses import fields
@@ -144,6 +145,24 @@ class World:
         """A squeeze-film damper with a spring that carries the loads of the calls."""
         size = {"radius": 0.06, "length": 0.02, "clearance": 1e-3, "viscosity": 0.01}
         return er.SqueezeFilmDamper(interface="left", centring_stiffness=5e6, **size)
+
+    @cached_property
+    def magnetic(self) -> er.MagneticBearing:
+        """A magnetic bearing that carries the loads of the calls."""
+        magnets = {"constant": 1e-3, "bias_current": 2.0, "gap": 4e-3, "current_limit": 6.0}
+        gains = {"proportional": 2e4, "integral": 1e3, "derivative": 20.0, "delay": 1e-5}
+        return er.MagneticBearing(
+            interface="left",
+            sensor="left",
+            actuator=er.SaturatingActuator(**magnets),
+            controller=er.PIDController(**gains, filter_frequency=2e4, amplifier_frequency=1e4),
+            load=[0.0, -500.0],
+        )
+
+    @cached_property
+    def magnetic_right(self) -> er.MagneticBearing:
+        """The same at the other end."""
+        return dataclasses.replace(self.magnetic, interface="right", sensor="right")
 
     @cached_property
     def stop(self) -> er.ClearanceStop:

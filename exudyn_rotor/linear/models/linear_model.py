@@ -8,10 +8,11 @@ from collections.abc import Sequence
 import exudyn
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import checked_supports
+from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.linear_train import LinearTrain
@@ -31,7 +32,7 @@ from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 DENSE_SIZE = 600
 
 Target = LinearModel | ReducedRotor | SolidRotor | RotorTrain | exudyn.MainSystem
-MODELS = (LinearRotor, FullRotor, LinearScene, LinearTrain, RotorOnFoundation)
+MODELS = (LinearRotor, FullRotor, LinearScene, LinearTrain, RotorOnFoundation, ControlledRotor)
 
 
 def linear_model(
@@ -97,7 +98,7 @@ def linear_model(
     >>> stability(model, [0.0, 50.0]).stable.tolist()
     [True, True]
     """
-    supports = checked_supports(supports)
+    linear, controlled = linear_supports(supports)
     checks.choice(stiffening, "stiffening", CHOICES)
     checks.choice(about, "about", ABOUT)
     if dense is not None:
@@ -110,7 +111,7 @@ def linear_model(
                 "add_foundation adds one"
             )
     if isinstance(target, exudyn.MainSystem):
-        if supports:
+        if linear or controlled:
             raise ValueError("supports: are for a rotor; a scene has its own connectors")
         how = "the rotor in the scene, which add_rotor returned"
         return LinearScene.of(target, reduced_body(body, how=how), about=about)
@@ -120,15 +121,18 @@ def linear_model(
             f"{checks.shown(body)}"
         )
     if isinstance(target, RotorTrain):
-        if supports:
+        if linear or controlled:
             raise ValueError("supports: a RotorTrain has its own; leave them out")
         return LinearTrain.of(target, stiffening)
     if isinstance(target, MODELS):
-        if supports:
+        if linear or controlled:
             raise ValueError("supports: a linear model has its own; leave them out")
         return target
     if isinstance(target, ReducedRotor):
-        return _founded(LinearRotor.of(target, supports, stiffening), foundation)
+        if controlled:
+            _check_without_foundation(foundation)
+            return ControlledRotor.of(target, linear, controlled, stiffening)
+        return _founded(LinearRotor.of(target, linear, stiffening), foundation)
     how = (
         "needs a ReducedRotor, a SolidRotor, a RotorTrain, a linear model, or an exudyn.MainSystem "
         "with body=…"
@@ -138,10 +142,25 @@ def linear_model(
     if stiffening == "auto":
         target = with_chosen_prestress(target, None)
     if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
-        return _founded(LinearRotor.of_solid(target, supports, stiffening), foundation)
+        if controlled:
+            _check_without_foundation(foundation)
+            return ControlledRotor.of(target, linear, controlled, stiffening)
+        return _founded(LinearRotor.of_solid(target, linear, stiffening), foundation)
     if foundation is not None:
         raise ValueError("foundation: needs a reduced rotor: give rotor.reduce(…)")
-    return FullRotor.of(target, supports, stiffening).with_spin()
+    if controlled:
+        raise ValueError(
+            f"target: a SolidRotor of more than {DENSE_SIZE} degrees of freedom on magnetic "
+            "bearings needs dense=True, or to be reduced"
+        )
+    return FullRotor.of(target, linear, stiffening).with_spin()
+
+
+def _check_without_foundation(foundation: Foundation | None) -> None:
+    if foundation is not None:
+        raise ValueError(
+            "foundation: not with magnetic bearings; linearise a scene of add_foundation with them"
+        )
 
 
 def _founded(model: LinearRotor, foundation: Foundation | None) -> LinearModel:
@@ -156,5 +175,7 @@ def warn_of_structural_damping(model: LinearModel, what: str) -> None:
 
 def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
     """Warn where the level 'tilt', which nobody asked for, errs much at a speed [rad/s]."""
+    if isinstance(model, ControlledRotor):
+        model = model.plain
     if isinstance(model, LinearRotor | RotorOnFoundation):
         warn_of_left_out(model.invariants, speed, user_level() + 1)

@@ -114,8 +114,9 @@ class LinearScene(SceneCoordinates):
 
     @cached_property
     def standing(self) -> np.ndarray:
-        """Coordinates of everything but the rotor."""
-        return np.flatnonzero(~np.any(self.N[: self.modal.stop], axis=0))
+        """Coordinates of everything but the rotor and what turns with it."""
+        turning = [*range(self.modal.stop), *self.pairs.ravel()]
+        return np.flatnonzero(~np.any(self.N[turning], axis=0))
 
     @property
     def mass_matrix(self) -> np.ndarray:

@@ -174,7 +174,7 @@ class LinearRotor(SupportedRotor):
         for support, U in zip(self.supports, self.supported_motions, strict=True):
             if not support.varies:
                 for terms, harmonics in zip((D, K, carried), support.parts(0.0), strict=True):
-                    _add(terms, harmonics, U)
+                    add_terms(terms, harmonics, U)
         return D, K, carried
 
     def at(self, speed: float) -> PeriodicSystem:
@@ -187,7 +187,7 @@ class LinearRotor(SupportedRotor):
         for support, U in zip(self.supports, self.supported_motions, strict=True):
             if support.varies:
                 for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
-                    _add(terms, harmonics, U)
+                    add_terms(terms, harmonics, U)
         if self.spin is not None and self.spin.coupled:
             torsion = self.steady_torsion(speed)
             K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)
@@ -264,7 +264,8 @@ def _without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants,
     return known[stiffening]
 
 
-def _add(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
+def add_terms(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
+    """Add Fourier terms that act on the motion U."""
     for n, X in harmonics.items():
         block = congruent(X.real, U) if n == 0 else U.T @ X @ U
         terms[n] = terms.get(n, 0.0) + block

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
@@ -18,6 +19,9 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 @dataclass(frozen=True, eq=False)
 class SceneCoordinates:
     """The unknowns: the rotor's in axes that turn with it, those of everything else as they are.
+
+    Pairs of a magnetic bearing's controller turn, too: with control axes that are alike, all
+    coefficients are constant then.
 
     Attributes
     ----------
@@ -94,15 +98,31 @@ class SceneCoordinates:
         """``(n1, n2, e)`` in mesh axes."""
         return axes_of(SpinAxis(self.body.motion.invariants.direction))
 
+    @cached_property
+    def pairs(self) -> np.ndarray:
+        """Where controllers' coordinates along (n1, n2) stand among the free ones, shape (p, 2)."""
+        data, found = self.body.mbs.systemData, []
+        for one in self.body.supports:
+            if isinstance(one.support, MagneticBearing):
+                found.extend(data.GetObjectLTGODE2(one.objects[1]))
+        places = [np.flatnonzero(self.free == number) for number in found]
+        return np.concatenate([*places, np.zeros(0)]).astype(int).reshape(-1, 2)
+
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
         motion, c = self.body.motion, self.count
         A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
         e = skew(motion.invariants.direction)
+        R, quarter = np.array(_rotation(theta)), np.array(_rotation(0.5 * np.pi))
         blocks = []
-        for full, turned in ((1.0, A), (0.0, A @ e), (0.0, A @ e @ e)):
+        for full, turned, pair in (
+            (1.0, A, R),
+            (0.0, A @ e, R @ quarter),
+            (0.0, A @ e @ e, -R),
+        ):
             T = full * np.eye(len(self.free))
             T[:c, :c] = motion.free_directions.T @ turned @ self.axes[:, :c]
+            T[self.pairs[:, :, None], self.pairs[:, None]] = pair
             blocks.append(T @ self.N)
         return tuple(blocks)
 
@@ -124,6 +144,11 @@ class SceneCoordinates:
         if spin is not None:
             q[spin], q_t[spin] = self.spin_sign * angle, self.spin_sign * speed
         return StartState(q, q_t, angle, speed)
+
+
+def _rotation(theta: float) -> list[list[float]]:
+    c, s = np.cos(theta), np.sin(theta)
+    return [[c, -s], [s, c]]
 
 
 def without_spin(body: RotorBody) -> np.ndarray:

@@ -172,6 +172,44 @@ BEARINGS = [
         ("tangent pulls outwards", "(eccentricity - most) / step", "(most - eccentricity) / step"),
     ),
     *mutations(
+        "bearings/actuator.py",
+        "test_magnetic_bearing.py::test_magnets_pull_by_the_square_of_current_over_gap",
+        ("both magnets pull the same way", "** 2 - (push / far)", "** 2 + (push / far)"),
+        ("magnets that push", "min(max(bias + current, 0.0), limit)", "min(bias + current, limit)"),
+        (
+            "gap widens on the near side",
+            "max(self.gap - place, least)",
+            "max(self.gap + place, least)",
+        ),
+        ("slope by place of a constant current", "current**2 / gap**3", "current**2 / gap**2"),
+    ),
+    *mutations(
+        "bearings/pid_controller.py",
+        "test_magnetic_bearing.py::test_realisation_is_the_transfer_function",
+        ("delay that leads", "damping[1, 0] = tau", "damping[1, 0] = -tau"),
+        ("proportional part without the derivative's", "[0.0, P / w_a - D]", "[0.0, P / w_a]"),
+        ("integral after the amplifier", "self.integral / w_a]", "self.integral]"),
+        ("extra pole seen", "[0.0, 0.5 * (P / w_a - D)]", "[0.0, P / w_a - D]"),
+    ),
+    *mutations(
+        "bearings/magnetic.py",
+        "test_magnetic_bearing.py::test_flexible_rotor_with_sensors_elsewhere "
+        "test_magnetic_bearing.py::test_magnets_under_weight_are_stiffer_in_one_direction",
+        ("magnets centre the rotor", "= -by_place", "= by_place"),
+        ("controller measures nothing", "stiffness[4:, 2:4] = -", "stiffness[4:, 2:4] = 0.0 * "),
+        (
+            "sensors where the magnets are",
+            "return self.interface if self.sensor is None else self.sensor",
+            "return self.interface",
+        ),
+        ("weight left out of the slopes", "states = self._states(None)", "pass"),
+        (
+            "control axes turned the other way",
+            "np.array([[c, s], [-s, c]])",
+            "np.array([[c, -s], [s, c]])",
+        ),
+    ),
+    *mutations(
         "bearings/rolling.py",
         "test_rolling_bearing.py",
         ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),

@@ -4,6 +4,23 @@ from validation.mutations.mutation import mutations
 
 LINEAR = [
     *mutations(
+        "linear/models/controlled_rotor.py",
+        "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
+        ("controllers turn without Coriolis", "+= 2.0 * speed * own", "+= 0.0 * speed * own"),
+        ("controllers pulled inwards", "-= speed**2 * np.diag(own)", "+= speed**2 * np.diag(own)"),
+        (
+            "damping of what stands still carries nothing",
+            "factor = speed if",
+            "factor = 0.0 if",
+        ),
+    ),
+    *mutations(
+        "linear/stability/sensitivity.py",
+        "test_magnetic_bearing.py::test_sensitivity_of_a_spinning_rotor_is_that_of_both_senses",
+        ("complementary in place of the sensitivity", "append(1.0 + place", "append(place"),
+        ("signal with the wrong sign", "(-one.stiffness[4:, 2:4]", "(one.stiffness[4:, 2:4]"),
+    ),
+    *mutations(
         "linear/models/left_out.py",
         "test_basis_error.py::test_estimates_are_the_errors_against_the_full_model",
         (

@@ -1,0 +1,221 @@
+"""Actuators of magnetic bearings: the force of one control axis by its current and the place.
+
+Linear, about the centre:
+
+    F = K_i i + K_s x                                                                      (1)
+
+Two opposite magnets, driven in differential mode with the bias current i_0:
+
+    F = k [I₊²/(s_0 − x)² − I₋²/(s_0 + x)²],   I± = i_0 ± i, between 0 and the limit,      (2)
+
+with ``k = ¼ μ_0 N² A cos α`` of N turns, the pole area A and the angle α between pole and axis. In
+the centre its derivatives are ``K_i = 4 k i_0/s_0²`` and ``K_s = 4 k i_0²/s_0³``. G. Schweitzer,
+E. H. Maslen (eds.), *Magnetic Bearings* (Springer, 2009), Sect. 4.1. Iron that saturates
+magnetically, hysteresis, eddy currents and leakage are left out: a limit of the current stands for
+the first. The voltage that limits the rate of the current is left out, too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from exudyn_rotor import checks
+
+_LEAST_GAP = 0.05  # of the gap in the centre: the magnets do not come closer
+_PLACES = np.linspace(
+    0.0, 1.0 - _LEAST_GAP, 200
+)  # over the gap, where an equilibrium is looked for
+
+
+@dataclass(frozen=True)
+class LinearActuator:
+    """Actuator (1) of a control axis.
+
+    Parameters
+    ----------
+    force_current : float
+        K_i [N/A], above zero.
+    negative_stiffness : float
+        K_s [N/m], zero or above: a displacement is pulled further.
+
+    Raises
+    ------
+    TypeError, ValueError
+
+    Examples
+    --------
+    >>> from exudyn_rotor import LinearActuator
+    >>> LinearActuator(force_current=80.0, negative_stiffness=3e5).force(1.0, 1e-4)
+    110.0
+    """
+
+    force_current: float
+    negative_stiffness: float
+
+    def __post_init__(self) -> None:
+        checks.number(self.force_current, "force_current", "N/A", above=0.0)
+        checks.number(self.negative_stiffness, "negative_stiffness", "N/m", least=0.0)
+
+    def force(self, current: float, place: float) -> float:
+        """Return the force along the control axis [N] by current [A] and place [m]."""
+        return self.force_current * current + self.negative_stiffness * place
+
+    def slopes(self, current: float, place: float) -> tuple[float, float]:
+        """Return the derivatives of the force by current [N/A] and place [N/m]."""
+        return self.force_current, self.negative_stiffness
+
+    def current_for(self, force: float, place: float) -> float:
+        """Return the current [A] that makes a force [N] at a place [m]."""
+        return (force - self.negative_stiffness * place) / self.force_current
+
+    def place_under(self, load: float, gain: float, offset: float) -> float:
+        """Return where ``F(−gain (x + offset), x) + load = 0`` [m].
+
+        Raises
+        ------
+        ValueError
+                Where the gain does not hold against the negative stiffness.
+        """
+        check_hold(self, gain)
+        held = self.force_current * gain
+        return (load - held * offset) / (held - self.negative_stiffness)
+
+
+@dataclass(frozen=True)
+class SaturatingActuator:
+    """Two opposite magnets (2) of a control axis.
+
+    Parameters
+    ----------
+    constant : float
+        k [N m²/A²].
+    bias_current : float
+        i_0 [A].
+    gap : float
+        Air gap s_0 in the centre [m]. In the law, no gap gets smaller than a twentieth of it: a
+        back-up bearing (:class:`ClearanceStop`) holds the rotor off.
+    current_limit : float
+        Largest current of a magnet [A], above the bias.
+
+    Raises
+    ------
+    TypeError, ValueError
+
+    Examples
+    --------
+    >>> from exudyn_rotor import SaturatingActuator
+    >>> magnets = SaturatingActuator(
+    ...     constant=1e-5, bias_current=2.0, gap=4e-4, current_limit=6.0
+    ... )
+    >>> print(round(magnets.force_current), round(magnets.negative_stiffness))
+    500 2500000
+    >>> round(magnets.force(2.0, 0.0)), round(magnets.force(9.0, 0.0))  # the latter at the limit
+    (1000, 2250)
+    """
+
+    constant: float
+    bias_current: float
+    gap: float
+    current_limit: float
+
+    def __post_init__(self) -> None:
+        units = {"constant": "N m²/A²", "bias_current": "A", "gap": "m"}
+        for name, unit in units.items():
+            checks.number(getattr(self, name), name, unit, above=0.0)
+        checks.number(self.current_limit, "current_limit", "A", above=self.bias_current)
+
+    @property
+    def force_current(self) -> float:
+        """K_i in the centre [N/A]."""
+        return 4.0 * self.constant * self.bias_current / self.gap**2
+
+    @property
+    def negative_stiffness(self) -> float:
+        """K_s in the centre [N/m]."""
+        return 4.0 * self.constant * self.bias_current**2 / self.gap**3
+
+    def force(self, current: float, place: float) -> float:
+        """Return the force along the control axis [N] by current [A] and place [m]."""
+        (pull, near), (push, far) = self._magnets(current, place)
+        return self.constant * ((pull / near) ** 2 - (push / far) ** 2)
+
+    def slopes(self, current: float, place: float) -> tuple[float, float]:
+        """Return the derivatives of the force by current [N/A] and place [N/m].
+
+        That of a magnet without current, or at its limit, is zero.
+        """
+        magnets = self._magnets(current, place)
+        by_current = [
+            current / gap**2 for current, gap in magnets if 0.0 < current < self.current_limit
+        ]
+        by_place = [current**2 / gap**3 for current, gap in magnets]
+        return 2.0 * self.constant * sum(by_current), 2.0 * self.constant * sum(by_place)
+
+    def current_for(self, force: float, place: float) -> float:
+        """Return the current [A] that makes a force [N] at a place [m].
+
+        Raises
+        ------
+        ValueError
+            For a force beyond the limit of the current.
+        """
+        most = max(self.bias_current, self.current_limit - self.bias_current)
+        least, largest = self.force(-most, place), self.force(most, place)
+        if not least < force < largest:
+            raise ValueError(
+                f"load: the magnets pull between {least:.4g} N and {largest:.4g} N at "
+                f"{place:g} m from the centre, not {force:.4g} N; give a larger current_limit"
+            )
+        return brentq(lambda i: self.force(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
+
+    def place_under(self, load: float, gain: float, offset: float) -> float:
+        """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre.
+
+        Raises
+        ------
+        ValueError
+            Where the gain does not hold against the negative stiffness, and for a load beyond what
+            the magnets carry.
+        """
+        check_hold(self, gain)
+
+        def left(place: float) -> float:
+            return self.force(-gain * (place + offset), place) + load
+
+        side = 1.0 if left(0.0) >= 0.0 else -1.0
+        places = side * self.gap * _PLACES
+        beyond = [side * left(place) < 0.0 for place in places]
+        if not any(beyond):
+            raise ValueError(
+                f"load: a control axis of these magnets does not carry {abs(load):.4g} N with a "
+                f"gain of {gain:g} A/m; give a larger current_limit, or an integral"
+            )
+        first = beyond.index(True)
+        return brentq(left, places[first - 1], places[first], xtol=1e-15, rtol=1e-14)
+
+    def _magnets(
+        self, current: float, place: float
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return current [A] and air gap [m] of the magnets on the positive and negative side."""
+        bias, limit, least = self.bias_current, self.current_limit, _LEAST_GAP * self.gap
+        return (
+            (min(max(bias + current, 0.0), limit), max(self.gap - place, least)),
+            (min(max(bias - current, 0.0), limit), max(self.gap + place, least)),
+        )
+
+
+Actuator = LinearActuator | SaturatingActuator
+
+
+def check_hold(actuator: Actuator, gain: float) -> None:
+    """Refuse a gain that lets the negative stiffness pull the rotor away."""
+    held, pulled = actuator.force_current * gain, actuator.negative_stiffness
+    if held <= pulled:
+        raise ValueError(
+            f"controller: unstable: K_i P of {held:.4g} N/m is not above the negative "
+            f"stiffness K_s of {pulled:.4g} N/m, so that there is no equilibrium; give a larger "
+            "proportional gain"
+        )

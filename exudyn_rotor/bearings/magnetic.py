@@ -1,0 +1,189 @@
+"""Active magnetic bearing: actuators and controllers of two axes across the rotor.
+
+The control axes are n1 and n2 turned by an angle. On each, the sensor measures the displacement of
+its interface, plus an offset; the controller (:mod:`exudyn_rotor.bearings.pid_controller`) makes a
+current of it, the actuator (:mod:`exudyn_rotor.bearings.actuator`) a force,
+
+    y = u_sensor + offset,   i = −C(s) y,   F = F(i, u_actuator).                          (1)
+
+With its sensors at another interface than its magnets (non-collocation) the controller may drive
+bending modes unstable whose node is between the two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.actuator import (
+    Actuator,
+    LinearActuator,
+    SaturatingActuator,
+    check_hold,
+)
+from exudyn_rotor.bearings.bearing import LoadedBearing
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.pid_controller import PIDController
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MagneticBearing(LoadedBearing):
+    """Active magnetic bearing with two control axes.
+
+    In a scene the controller's states are coordinates of the scene; in linear analyses, which take
+    the actuators' slopes in the equilibrium, coordinates beside the rotor's.
+
+    Parameters
+    ----------
+    interface : str
+        Interface of the rotor on which the magnets act.
+    actuator : LinearActuator or SaturatingActuator
+        Of each axis.
+    controller : PIDController
+        Of each axis.
+    angle : float, optional
+        From n1 to the first control axis [rad].
+    sensor : str, optional
+        Interface whose displacement is measured; where the magnets act by default.
+    sensor_offset : array_like, shape (2,), optional
+        What sensors show along (n1, n2) of a rotor in the centre [m].
+    load : array_like, shape (2,), optional
+        Static load on the rotor along (n1, n2) [N], in whose equilibrium linear analyses take the
+        actuators; none by default. It makes a difference to saturating actuators only.
+
+    Raises
+    ------
+    TypeError, ValueError
+
+    Examples
+    --------
+    >>> from exudyn_rotor import MagneticBearing, PIDController, SaturatingActuator
+    >>> bearing = MagneticBearing(
+    ...     interface="left",
+    ...     actuator=SaturatingActuator(
+    ...         constant=1e-5, bias_current=2.0, gap=4e-4, current_limit=6.0
+    ...     ),
+    ...     controller=PIDController(
+    ...         proportional=2e4, derivative=20.0, filter_frequency=2e4, amplifier_frequency=1e4
+    ...     ),
+    ...     load=[0.0, -300.0],
+    ... )
+    >>> print(1e6 * bearing.equilibrium(speed=0.0).round(8))
+    [  0.   -40.88]
+    """
+
+    actuator: Actuator
+    controller: PIDController
+    angle: float = 0.0
+    sensor: str | None = None
+    sensor_offset: ArrayLike = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.instance(self.actuator, "actuator", (LinearActuator, SaturatingActuator))
+        checks.instance(self.controller, "controller", PIDController)
+        self._set_numbers({"angle": "rad"})
+        if self.sensor is not None:
+            checks.label(self.sensor, "sensor")
+        offset = checks.read_only(checks.vector(self.sensor_offset, "sensor_offset", "m", size=2))
+        object.__setattr__(self, "sensor_offset", offset)
+
+    @property
+    def sensor_interface(self) -> str:
+        """Interface whose displacement is measured."""
+        return self.interface if self.sensor is None else self.sensor
+
+    @property
+    def scale(self) -> float:
+        """Stiffness [N/m] with which own equations are multiplied, so that they are forces.
+
+        ``K_i (P + D ω_a)``, in the centre: both directions of the coupling are alike then.
+        """
+        one = self.controller
+        gain = one.proportional + one.derivative * one.amplifier_frequency
+        return self.actuator.force_current * gain
+
+    @property
+    def control_axes(self) -> np.ndarray:
+        """The control axes as rows along (n1, n2), shape (2, 2)."""
+        c, s = cos(self.angle), sin(self.angle)
+        return np.array([[c, s], [-s, c]])
+
+    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return where the journal rests under a static load [m], shape (2,).
+
+        As if the sensors were where the magnets are. An integral brings the journal to where the
+        sensors show zero.
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s], which plays no part.
+        load : array_like, shape (2,), optional
+            On the journal [N]; that of the bearing, or none, by default.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, a controller that does not hold against the negative stiffness, and a
+            load that the magnets do not carry.
+        """
+        checks.number(speed, "speed", "rad/s")
+        return self.control_axes.T @ [place for place, _ in self._states(load)]
+
+    def currents(self, load: ArrayLike | None = None) -> np.ndarray:
+        """Return the currents of both axes in the equilibrium [A], shape (2,).
+
+        Raises
+        ------
+        TypeError, ValueError
+            As :meth:`equilibrium`.
+        """
+        return np.array([current for _, current in self._states(load)])
+
+    def _states(self, load: ArrayLike | None) -> list[tuple[float, float]]:
+        """Return place [m] and current [A] of each control axis in the equilibrium."""
+        axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator
+        check_hold(actuator, gain)
+        pairs = zip(axes @ self._static_load(load), axes @ self.sensor_offset, strict=True)
+        if self.controller.integral:
+            return [(-offset, actuator.current_for(-pull, -offset)) for pull, offset in pairs]
+        pairs = [(actuator.place_under(pull, gain, offset), offset) for pull, offset in pairs]
+        return [(place, -gain * (place + offset)) for place, offset in pairs]
+
+    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
+        if load is None and self.load is None:
+            return np.zeros(2)
+        return super()._static_load(load)
+
+    def linearised(self) -> ControlledSupport:
+        """Return the equations for linear analyses, about the equilibrium under the load.
+
+        Without load and offset about the centre, also where a controller does not hold there.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`equilibrium`.
+        """
+        states = [(0.0, 0.0)] * 2
+        if np.any(self._static_load(None)) or np.any(self.sensor_offset):
+            states = self._states(None)
+        slopes = np.array([self.actuator.slopes(i, x) for x, i in states])
+        turn, own = self.control_axes, self.controller.realisation()
+        by_current, by_place = (turn.T @ (slopes[:, i, None] * turn) for i in (0, 1))
+        both, count = np.eye(2), len(own.inertia)
+        damping, stiffness = (np.zeros((4 + 2 * count, 4 + 2 * count)) for _ in range(2))
+        damping[4:, 4:] = self.scale * np.kron(own.damping, both)
+        stiffness[4:, 4:] = self.scale * np.kron(own.stiffness, both)
+        stiffness[4:, 2:4] = -self.scale * np.kron(own.place[:, None], both)
+        damping[:2, 4:] = np.kron(own.by_rate, by_current)
+        stiffness[:2, 4:] = np.kron(own.by_place, by_current)
+        stiffness[:2, :2] = -by_place
+        static = self.controller.proportional * by_current - by_place
+        sensor, inertia = self.sensor_interface, self.scale * own.inertia
+        return ControlledSupport(self.interface, sensor, inertia, damping, stiffness, static)

@@ -1,0 +1,263 @@
+"""A rotor on supports that have coordinates of their own: magnetic bearings.
+
+Own coordinates are pairs along (n1, n2). In the rotor frame, where all equations are, a pair with
+the inertia μ that stands still has those of a point mass beside the rotor,
+
+    μ (q̈ + 2Ω ẽ q̇ − Ω² q),
+
+and what is between rotor and controller turns as any support does: where both control axes are
+alike, all coefficients are constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.given import check_interfaces
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, add_terms
+from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import turned_harmonics
+
+_ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
+_LITTLE = 1e-3
+_TURN = skew([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class ControlledRotor:
+    """A rotor on supports, some of which have coordinates of their own; see :class:`LinearModel`.
+
+    Attributes
+    ----------
+    plain : LinearRotor
+        The rotor on all else, and on the stiffness that acts without controllers.
+    controlled : tuple of ControlledSupport
+    """
+
+    gives_all: ClassVar[bool] = True
+
+    plain: LinearRotor
+    controlled: tuple[ControlledSupport, ...]
+
+    @classmethod
+    def of(
+        cls,
+        rotor: ReducedRotor | SolidRotor,
+        supports: Sequence[Support],
+        controlled: Sequence[ControlledSupport],
+        stiffening: str = "auto",
+    ) -> ControlledRotor:
+        """Put a rotor on supports, those with coordinates of their own apart.
+
+        Raises
+        ------
+        ValueError
+            For an unknown interface.
+        """
+        made = LinearRotor.of if isinstance(rotor, ReducedRotor) else LinearRotor.of_solid
+        check_interfaces(controlled, rotor.interfaces)
+        places = [
+            support
+            for one in controlled
+            for support in (Support(one.interface, one.static_stiffness), Support(one.sensor))
+        ]
+        held = made(rotor, (*supports, *places), stiffening)
+        direct = [
+            support
+            for one in controlled
+            for support in (Support(one.interface, one.direct_stiffness), Support(one.sensor))
+        ]
+        return cls(replace(held, supports=(*supports, *direct)), tuple(controlled))
+
+    def undamped(self) -> LinearRotor:
+        """Return the rotor with the static stiffness of its controllers, and without damping."""
+        own = 2 * len(self.controlled)
+        supports = list(self.plain.supports)
+        supports[len(supports) - own :: 2] = [
+            Support(one.interface, one.static_stiffness) for one in self.controlled
+        ]
+        return replace(self.plain, supports=tuple(supports)).undamped()
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates, the controllers' last."""
+        return self.plain.size + sum(one.size for one in self.controlled)
+
+    @property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the rotor's interfaces."""
+        return self.plain.interfaces
+
+    @property
+    def standing(self) -> np.ndarray:
+        """No coordinates: the controllers' turn with the rotor."""
+        return self.plain.standing
+
+    @property
+    def standing_interfaces(self) -> tuple[str, ...]:
+        """No interfaces."""
+        return self.plain.standing_interfaces
+
+    @property
+    def free_motions(self) -> tuple[str, ...]:
+        """Rigid motions that neither springs nor controllers hold."""
+        return self.plain.free_motions
+
+    @property
+    def is_balanced(self) -> bool:
+        """True where centre of mass and principal axis are on the spin axis but for rounding."""
+        return self.plain.is_balanced
+
+    @property
+    def has_structural_damping(self) -> bool:
+        """True where steady motions have structural damping, which other analyses leave out."""
+        return self.plain.has_structural_damping
+
+    @property
+    def radius(self) -> float:
+        """The rotor's radius of gyration [m]."""
+        return self.plain.radius
+
+    @property
+    def is_full(self) -> bool:
+        """True where no basis leaves anything out."""
+        return self.plain.is_full
+
+    @property
+    def stiffening(self) -> str:
+        """Level of centrifugal stiffening."""
+        return self.plain.stiffening
+
+    @property
+    def stiffness_varies(self) -> bool:
+        """True where supports or a static displacement have a stiffness that is not in Ω²."""
+        return self.plain.stiffness_varies
+
+    @property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², rotor frame."""
+        return self._wide(self.plain.unit_unbalance)
+
+    @property
+    def base_loads(self) -> np.ndarray:
+        """Loads of unit accelerations of the ground, with all bearings and sensors on it."""
+        return self._wide(self.plain.base_loads)
+
+    @property
+    def mass_matrix(self) -> np.ndarray:
+        """Mass matrix, the controllers' inertia last."""
+        return la.block_diag(self.plain.mass_matrix, np.diag(self._inertia))
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """Nodes of the mesh; None where the rotor was stored without mode shapes."""
+        mesh = self.plain.mesh
+        return None if mesh is None else replace(mesh, columns=self._wide(mesh.columns))
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
+        return self._wide(self.plain.interface_motion(name))
+
+    def point_motions(self, most: int) -> PointMotions:
+        """Return up to `most` points spread over the rotor, and how they move.
+
+        With a point on the axis for each pair of the controllers, which moves little: it tells the
+        sense of motions in which the rotor itself rests.
+        """
+        given, own = self.plain.point_motions(most), len(self._inertia)
+        pairs = np.kron(np.eye(own // 2), _LITTLE * _ACROSS)
+        return replace(
+            given,
+            points=np.vstack([given.points, np.zeros((own // 2, 3))]),
+            motion=la.block_diag(given.motion, pairs),
+        )
+
+    def own_rows(self, index: int) -> slice:
+        """Return where the coordinates of a controller are."""
+        start = self.plain.size + sum(one.size for one in self.controlled[:index])
+        return slice(start, start + self.controlled[index].size)
+
+    def sensed(self, index: int) -> np.ndarray:
+        """Return the displacement along (n1, n2, e) that a controller measures, shape (3, k)."""
+        return self._wide(self.plain.supported_motions[self._place(index) + 1][:3])
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s]."""
+        plain, own = self.plain.at(speed), self._inertia
+        D, K = ({n: self._padded(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
+        beside = slice(self.plain.size, None)
+        gyroscopic = np.kron(np.eye(len(own) // 2), _TURN[:2, :2])
+        D[0][beside, beside] += 2.0 * speed * own[:, None] * gyroscopic
+        K[0][beside, beside] -= speed**2 * np.diag(own)
+        for terms, added in zip((D, K, K), self._between, strict=True):
+            factor = speed if added is self._between[2] else 1.0
+            for n, X in added.items():
+                terms[n] = terms.get(n, 0.0) + factor * X
+        H = None if plain.H is None else self._padded(plain.H)
+        return PeriodicSystem(plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding)
+
+    def space(
+        self,
+        count: int,
+        fastest: float,
+        *,
+        loads: Sequence[np.ndarray] = (),
+        held: bool = False,
+        residual: float = 1e-7,
+    ) -> WholeSpace:
+        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+        space = self.plain.space(count, fastest, loads=loads, held=held, residual=residual)
+        others = space.others
+        if others is not None:
+            others = la.block_diag(others, np.eye(len(self._inertia)))
+        light = replace(self, plain=space.equations)
+        return replace(space, equations=light, others=others)
+
+    @cached_property
+    def _inertia(self) -> np.ndarray:
+        """Inertia of the controllers' coordinates [kg]."""
+        return np.concatenate([np.repeat(one.inertia, 2) for one in self.controlled])
+
+    @cached_property
+    def _between(self) -> tuple[Terms, Terms, Terms]:
+        """Fourier terms of damping, stiffness and stiffness per Ω that controllers bring."""
+        damping, stiffness, carried = {}, {}, {}
+        for index, one in enumerate(self.controlled):
+            count = len(one.damping) // 2
+            lifted = np.kron(np.eye(count), _ACROSS)
+            D, K = (lifted @ X @ lifted.T for X in (one.damping, one.stiffness))
+            K[:3, :3] = 0.0  # of the plain rotor
+            own = np.zeros((one.size, self.size))
+            own[:, self.own_rows(index)] = np.eye(one.size)
+            own = np.kron(np.eye(count - 2), _ACROSS) @ own
+            acting = self._wide(self.plain.supported_motions[self._place(index)][:3])
+            ports = np.vstack([acting, self.sensed(index), own])
+            turning = D @ np.kron(np.eye(count), _TURN)
+            for terms, X in zip((damping, stiffness, carried), (D, K, turning), strict=True):
+                add_terms(terms, turned_harmonics(X), ports)
+        return damping, stiffness, carried
+
+    def _place(self, index: int) -> int:
+        """Return where a controller's pair of supports is among those of the plain rotor."""
+        return len(self.plain.supports) - 2 * len(self.controlled) + 2 * index
+
+    def _wide(self, rows: np.ndarray) -> np.ndarray:
+        """Return rows (…, k) of the rotor with zeros for the controllers."""
+        more = [(0, 0)] * (rows.ndim - 1) + [(0, self.size - self.plain.size)]
+        return np.pad(rows, more)
+
+    def _padded(self, X: np.ndarray) -> np.ndarray:
+        return np.pad(X, (0, self.size - self.plain.size))
