@@ -17,6 +17,7 @@ the first. The voltage that limits the rate of the current is left out, too.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,8 +31,27 @@ _PLACES = np.linspace(
 )  # over the gap, where an equilibrium is looked for
 
 
+class _Law:
+    """What the force of an actuator is asked by."""
+
+    @property
+    def law(self) -> Callable[[float, float], float]:
+        """For scenes: the force [N] by current and place, unchecked."""
+        return self._law
+
+    def force(self, current: float, place: float) -> float:
+        """Return the force along the control axis [N] by current [A] and place [m].
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        _check(current, place)
+        return self._law(current, place)
+
+
 @dataclass(frozen=True)
-class LinearActuator:
+class LinearActuator(_Law):
     """Actuator (1) of a control axis.
 
     Parameters
@@ -59,16 +79,28 @@ class LinearActuator:
         checks.number(self.force_current, "force_current", "N/A", above=0.0)
         checks.number(self.negative_stiffness, "negative_stiffness", "N/m", least=0.0)
 
-    def force(self, current: float, place: float) -> float:
-        """Return the force along the control axis [N] by current [A] and place [m]."""
+    def _law(self, current: float, place: float) -> float:
         return self.force_current * current + self.negative_stiffness * place
 
     def slopes(self, current: float, place: float) -> tuple[float, float]:
-        """Return the derivatives of the force by current [N/A] and place [N/m]."""
+        """Return the derivatives of the force by current [N/A] and place [N/m].
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        _check(current, place)
         return self.force_current, self.negative_stiffness
 
     def current_for(self, force: float, place: float) -> float:
-        """Return the current [A] that makes a force [N] at a place [m]."""
+        """Return the current [A] that makes a force [N] at a place [m].
+
+        Raises
+        ------
+        TypeError, ValueError
+        """
+        checks.number(force, "force", "N")
+        checks.number(place, "place", "m")
         return (force - self.negative_stiffness * place) / self.force_current
 
     def place_under(self, load: float, gain: float, offset: float) -> float:
@@ -79,13 +111,14 @@ class LinearActuator:
         ValueError
                 Where the gain does not hold against the negative stiffness.
         """
+        _check_balance(load, gain, offset)
         check_hold(self, gain)
         held = self.force_current * gain
         return (load - held * offset) / (held - self.negative_stiffness)
 
 
 @dataclass(frozen=True)
-class SaturatingActuator:
+class SaturatingActuator(_Law):
     """Two opposite magnets (2) of a control axis.
 
     Parameters
@@ -137,16 +170,20 @@ class SaturatingActuator:
         """K_s in the centre [N/m]."""
         return 4.0 * self.constant * self.bias_current**2 / self.gap**3
 
-    def force(self, current: float, place: float) -> float:
-        """Return the force along the control axis [N] by current [A] and place [m]."""
+    def _law(self, current: float, place: float) -> float:
         (pull, near), (push, far) = self._magnets(current, place)
         return self.constant * ((pull / near) ** 2 - (push / far) ** 2)
 
     def slopes(self, current: float, place: float) -> tuple[float, float]:
         """Return the derivatives of the force by current [N/A] and place [N/m].
 
-        That of a magnet without current, or at its limit, is zero.
+        That by the current is zero of a magnet without current, or at its limit.
+
+        Raises
+        ------
+        TypeError, ValueError
         """
+        _check(current, place)
         magnets = self._magnets(current, place)
         by_current = [
             current / gap**2 for current, gap in magnets if 0.0 < current < self.current_limit
@@ -159,31 +196,34 @@ class SaturatingActuator:
 
         Raises
         ------
-        ValueError
-            For a force beyond the limit of the current.
+        TypeError, ValueError
+            For bad input, and a force beyond the limit of the current.
         """
+        checks.number(force, "force", "N")
+        checks.number(place, "place", "m")
         most = max(self.bias_current, self.current_limit - self.bias_current)
-        least, largest = self.force(-most, place), self.force(most, place)
+        least, largest = self._law(-most, place), self._law(most, place)
         if not least < force < largest:
             raise ValueError(
                 f"load: the magnets pull between {least:.4g} N and {largest:.4g} N at "
                 f"{place:g} m from the centre, not {force:.4g} N; give a larger current_limit"
             )
-        return brentq(lambda i: self.force(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
+        return brentq(lambda i: self._law(i, place) - force, -most, most, xtol=1e-15, rtol=1e-14)
 
     def place_under(self, load: float, gain: float, offset: float) -> float:
         """Return where ``F(−gain (x + offset), x) + load = 0`` [m], next to the centre.
 
         Raises
         ------
-        ValueError
-            Where the gain does not hold against the negative stiffness, and for a load beyond what
-            the magnets carry.
+        TypeError, ValueError
+            For bad input, where the gain does not hold against the negative stiffness, and for a
+            load beyond what the magnets carry.
         """
+        _check_balance(load, gain, offset)
         check_hold(self, gain)
 
         def left(place: float) -> float:
-            return self.force(-gain * (place + offset), place) + load
+            return self._law(-gain * (place + offset), place) + load
 
         side = 1.0 if left(0.0) >= 0.0 else -1.0
         places = side * self.gap * _PLACES
@@ -208,6 +248,17 @@ class SaturatingActuator:
 
 
 Actuator = LinearActuator | SaturatingActuator
+
+
+def _check(current: float, place: float) -> None:
+    checks.number(current, "current", "A")
+    checks.number(place, "place", "m")
+
+
+def _check_balance(load: float, gain: float, offset: float) -> None:
+    checks.number(load, "load", "N")
+    checks.number(gain, "gain", "A/m")
+    checks.number(offset, "offset", "m")
 
 
 def check_hold(actuator: Actuator, gain: float) -> None:

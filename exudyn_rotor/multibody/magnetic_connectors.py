@@ -77,7 +77,7 @@ def _pulled(bearing: MagneticBearing, seat: Seat, node: exudyn.NodeIndex) -> Cal
     own, turn, force_of = (
         bearing.controller.realisation(),
         bearing.control_axes,
-        bearing.actuator.force,
+        bearing.actuator.law,
     )
     axes = turn @ seat.axes[:, :2].T  # rows: the control axes
     by_place, by_rate = (np.kron(part, turn) for part in (own.by_place, own.by_rate))

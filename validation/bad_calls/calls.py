@@ -160,7 +160,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "sensitivity": lambda w: {
         "rotor": w.reduced,
         "frequencies": [10.0, 90.0],
-        "supports": [w.magnetic, w.magnetic_right, w.supports[0]],
+        "supports": [w.magnetic, w.magnetic_right, *w.supports],
     },
     "critical_speed_map": lambda w: {
         "target": w.reduced,
@@ -447,6 +447,12 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "*.eccentricity_ratio": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.equilibrium": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.power_loss": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
+    "*.current_for": lambda w: {"force": 100.0, "place": 1e-5},
+    "*.place_under": lambda w: {"load": 100.0, "gain": 2e4, "offset": 0.0},
+    "*.slopes": lambda w: {"current": 0.1, "place": 1e-5},
+    "LinearActuator.force": lambda w: {"current": 0.1, "place": 1e-5},
+    "SaturatingActuator.force": lambda w: {"current": 0.1, "place": 1e-5},
+    "PIDController.transfer": lambda w: {"frequencies": [10.0, 20.0]},
     "*.with_load": lambda w: {"load": [0.0, -500.0]},
     "SqueezeFilmDamper.force": lambda w: {
         "displacement": [1e-5, 2e-5],

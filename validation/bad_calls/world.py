@@ -150,7 +150,7 @@ class World:
     def magnetic(self) -> er.MagneticBearing:
         """A magnetic bearing that carries the loads of the calls."""
         magnets = {"constant": 1e-3, "bias_current": 2.0, "gap": 4e-3, "current_limit": 6.0}
-        gains = {"proportional": 2e4, "integral": 1e3, "derivative": 20.0, "delay": 1e-5}
+        gains = {"proportional": 2e3, "integral": 1e3, "derivative": 0.5, "delay": 1e-5}
         return er.MagneticBearing(
             interface="left",
             sensor="left",
