@@ -21,6 +21,8 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.drives.cardan import CardanJoint
+from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.drive import Drag, TorqueCurve
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.drives.motors import DirectCurrentMotor, InductionMotor, LimitedPower
@@ -100,6 +102,7 @@ __all__ = [
     "BaseRecord",
     "BaseResponse",
     "Campbell",
+    "CardanJoint",
     "ClearanceStop",
     "ConnectionWarning",
     "ConstantSpeed",
@@ -108,6 +111,7 @@ __all__ = [
     "DirectCurrentMotor",
     "Drag",
     "EnergyBalance",
+    "FlexibleCoupling",
     "Formulation",
     "Foundation",
     "FullRotorBody",

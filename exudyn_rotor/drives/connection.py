@@ -17,7 +17,8 @@ class Law(NamedTuple):
 
     `forces` (12,), `tangent`: −∂f/∂x and −∂f/∂ẋ for Newton's method, `transmitted` load,
     `energy` that is stored (of x alone), `loss` of power by damping. `check_places` refuses rotors
-    that are mounted otherwise than needed, by the second's place from the first and its axis.
+    that are mounted otherwise than needed, by the second's place from the first and its axis;
+    `second_axis` is the axis that it needs, where the second is a shaft.
     """
 
     forces: Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -26,6 +27,7 @@ class Law(NamedTuple):
     energy: Callable[[np.ndarray], float]
     loss: Callable[[np.ndarray, np.ndarray], float]
     check_places: Callable[[np.ndarray, np.ndarray], None]
+    second_axis: np.ndarray
 
 
 class Connection(ABC):
@@ -47,6 +49,7 @@ class Connection(ABC):
             self._energy,
             self._loss,
             self._check_places,
+            self.second_axis,
         )
 
     def forces(self, motion: ArrayLike, rate: ArrayLike) -> np.ndarray:
@@ -78,6 +81,11 @@ class Connection(ABC):
             For bad input.
         """
         return self._transmitted(*_checked(motion, rate))
+
+    @property
+    def second_axis(self) -> np.ndarray:
+        """Axis of the second rotor, shape (3,), in the axes (n1, n2, e) of the first."""
+        return np.array([0.0, 0.0, 1.0])
 
     @abstractmethod
     def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray: ...

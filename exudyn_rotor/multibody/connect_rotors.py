@@ -105,15 +105,15 @@ def connect_rotors(
 
     Parameters
     ----------
-    connection : GearMesh
+    connection : GearMesh, FlexibleCoupling or CardanJoint
         Its axes are those of `body` as it is mounted.
     body : RotorBody or FullRotorBody
         The first rotor, with its marker body; spin free or prescribed.
     at : str
         Its interface.
     other : RotorBody, FullRotorBody, ConstantSpeed or PrescribedMotion
-        The second rotor, in the same system; or the angle of a shaft whose axis stands still, about
-        e of the first rotor.
+        The second rotor, in the same system; or the angle of a shaft whose axis stands still where
+        the connection needs it.
     other_at : str, optional
         Interface of the second rotor.
 
@@ -176,7 +176,7 @@ def connect_rotors(
         )
         ends = [(body, at, first), (other, other_at, second)]
     parts = [InterfaceCoordinates.of(*end) for end in ends]
-    state = _state(parts, other, first)
+    state = _state(parts, other, first, connection.law.second_axis)
     item = _item(connection, parts, state)
     nodes = tuple(node for part in parts for node in part.nodes)
     added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state)
@@ -198,7 +198,10 @@ def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
 
 
 def _state(
-    parts: list[InterfaceCoordinates], other: Body | ConstantSpeed | PrescribedMotion, first: Seat
+    parts: list[InterfaceCoordinates],
+    other: Body | ConstantSpeed | PrescribedMotion,
+    first: Seat,
+    axis: np.ndarray,
 ) -> State:
     """Return motion (12,), rate (12,) and derivative of both ends, in axes of the first."""
     count = parts[0].size
@@ -209,7 +212,7 @@ def _state(
         def of_rotor_and_shaft(t, q, q_t):
             x, x_t = np.zeros(12), np.zeros(12)
             x[:6], x_t[:6], J[:6] = parts[0].motion(q, q_t)
-            x[11], x_t[11] = other.value(t) - angle, other.rate(t)
+            x[9:], x_t[9:] = (other.value(t) - angle) * axis, other.rate(t) * axis
             return x, x_t, J
 
         return of_rotor_and_shaft

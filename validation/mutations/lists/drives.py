@@ -62,4 +62,35 @@ DRIVES = [
         ("quadratic drag linear", "self.quadratic * speed * square**0.5", "self.quadratic * speed"),
         ("dry friction grows", "(square + self.smooth_speed**2) ** 0.5", "1.0"),
     ),
+    *mutations(
+        "drives/coupling.py",
+        "test_couplings.py::test_loads_of_misalignment "
+        "test_couplings.py::test_forces_are_what_energy_and_loss_say",
+        ("misalignment reversed", "x[:6] + self._fixed", "x[:6] - self._fixed"),
+        (
+            "runout stands still",
+            "return R.T @ apart - self._turning",
+            "return R.T @ (apart - self._turning)",
+        ),
+        ("no torque by turning axes", "-= R.T @ _TURN @ apart", "-= 0.0 * (R.T @ _TURN @ apart)"),
+        ("loss halved", "return float(rate @ (self._D", "return float(0.5 * rate @ (self._D"),
+    ),
+    *mutations(
+        "drives/cardan.py",
+        "test_couplings.py::test_forces_are_what_energy_and_loss_say "
+        "test_couplings.py::test_cardan_joint_turns_unevenly "
+        "test_couplings.py::test_cardan_joint_bends_its_shafts",
+        ("second shaft turns evenly", "atan2((k - 1.0) * s * c", "atan2(0.0 * s * c"),
+        ("bending the other way", "axis + q * across / share", "axis - q * across / share"),
+        ("work of the turning normal", "by_motion[5] += slope", "by_motion[5] -= slope"),
+    ),
+    *mutations(
+        "drives/cardan.py",
+        "test_couplings.py::test_cardan_joint_turns_unevenly",
+        (
+            "ratio of the other fork",
+            "(sin(self.joint_angle) * sin(alpha))",
+            "(sin(self.joint_angle) * cos(alpha))",
+        ),
+    ),
 ]

@@ -1,0 +1,155 @@
+"""Flexible coupling between two shafts, and what misalignment does to it.
+
+With the motions x₁ and x₂ of both ends, the misalignment m that stands still and the runout r of
+the hub, which turns with the first shaft by θ₁, the coupling is deformed by
+
+    ξ = Rᵀ(θ₁)(x₂ − x₁ + m) − r,                                                            (1)
+
+and its energy is ξᵀKξ/2, K diagonal in axes that turn with the first shaft. The forces follow as
+its derivative, f = −(∂ξ/∂x)ᵀ(K ξ + D ξ̇), so that power is conserved but for the damping: lateral
+forces of a misaligned coupling act on the spin, too.
+
+Equal stiffnesses in both lateral directions make of m a load that stands still. Unequal ones,
+k₁ ≠ k₂, add a load of twice the spin speed, (k₁ − k₂)/2 · m; a runout makes one of the spin speed.
+(A. W. Lees, J. Sound Vib. 305 (2007), on couplings of pins.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.drives.connection import Connection
+from exudyn_rotor.theory.nodal import skew
+
+_TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))
+_ACROSS = (0, 1, 3, 4)  # rows of the two offsets and the two tilts
+_SAME_PLACE, _SAME_AXIS = 1e-6, 1e-6  # m, rad
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FlexibleCoupling(Connection):
+    """Flexible coupling between two shafts on one axis.
+
+    Parameters
+    ----------
+    torsion : float
+        Stiffness about the axis [N m/rad].
+    lateral, angular : float or array_like, shape (2,), optional
+        Stiffness against offsets [N/m] and against tilts [N m/rad]; two numbers are for two
+        directions that turn with the first shaft, n1 and n2 at the start.
+    axial : float, optional
+        Stiffness along the axis [N/m].
+    damping : array_like, shape (4,), optional
+        Lateral [N s/m], axial [N s/m], angular and torsional [N m s/rad], in axes that turn.
+    misalignment : array_like, shape (4,), optional
+        By how much the second shaft is mounted off the first: offset along n1 and n2 [m], rotation
+        about them [rad]. The rotors themselves stand on one axis in the scene.
+    runout : array_like, shape (4,), optional
+        The same for the hub on the first shaft: it turns with it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import FlexibleCoupling
+    >>> coupling = FlexibleCoupling(torsion=2e4, lateral=1e6, misalignment=[1e-3, 0.0, 0.0, 0.0])
+    >>> coupling.forces(np.zeros(12), np.zeros(12))[:3]
+    array([1000.,    0.,    0.])
+    """
+
+    torsion: float
+    lateral: np.ndarray = 0.0
+    angular: np.ndarray = 0.0
+    axial: float = 0.0
+    damping: np.ndarray = (0.0, 0.0, 0.0, 0.0)
+    misalignment: np.ndarray = (0.0, 0.0, 0.0, 0.0)
+    runout: np.ndarray = (0.0, 0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        def keep(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        keep("torsion", checks.number(self.torsion, "torsion", "N m/rad", above=0.0))
+        keep("axial", checks.number(self.axial, "axial", "N/m", least=0.0))
+        for name, unit in (("lateral", "N/m"), ("angular", "N m/rad")):
+            keep(name, _pair(getattr(self, name), name, unit))
+        damping = checks.vector(self.damping, "damping", size=4)
+        if np.any(damping < 0.0):
+            raise ValueError(f"damping: needs four numbers ≥ 0, got {damping.tolist()}")
+        keep("damping", damping)
+        for name in ("misalignment", "runout"):
+            keep(name, checks.vector(getattr(self, name), name, size=4))
+        keep("_K", np.array([*self.lateral, self.axial, *self.angular, self.torsion]))
+        keep("_D", damping[[0, 0, 1, 2, 2, 3]])
+        fixed, turning = np.zeros((2, 6))
+        fixed[list(_ACROSS)], turning[list(_ACROSS)] = self.misalignment, self.runout
+        keep("_fixed", fixed)
+        keep("_turning", turning)
+
+    # -------------------------------------------------------------- law
+
+    def _deformation(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return ξ (6,) of (1) and its derivative by x (6, 12)."""
+        c, s = cos(x[5]), sin(x[5])
+        R = np.kron(np.eye(2), [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        apart = x[6:] - x[:6] + self._fixed
+        by_motion = np.hstack([-R.T, R.T])
+        by_motion[:, 5] -= R.T @ _TURN @ apart
+        return R.T @ apart - self._turning, by_motion
+
+    def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:
+        xi, B = self._deformation(x)
+        return -B.T @ (self._K * xi + self._D * (B @ x_t))
+
+    def _tangent(self, x: np.ndarray, x_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Leave out how the axes turn with the first shaft."""
+        _, B = self._deformation(x)
+        return B.T @ (self._K[:, None] * B), B.T @ (self._D[:, None] * B)
+
+    def _transmitted(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        return float(self._forces(x, x_t)[11])
+
+    def _energy(self, x: np.ndarray) -> float:
+        xi, _ = self._deformation(x)
+        return float(0.5 * xi @ (self._K * xi))
+
+    def _loss(self, x: np.ndarray, x_t: np.ndarray) -> float:
+        rate = self._deformation(x)[1] @ x_t
+        return float(rate @ (self._D * rate))
+
+    def _check_places(self, apart: np.ndarray, axis: np.ndarray) -> None:
+        check_same_place(apart)
+        if np.hypot(axis[0], axis[1]) > _SAME_AXIS:
+            raise ValueError(
+                "other: a flexible coupling needs both rotors on one axis, and the second is "
+                f"{np.hypot(axis[0], axis[1]):.3g} rad off; a small angle is misalignment=…, a "
+                "large one a CardanJoint"
+            )
+
+
+def check_same_place(apart: np.ndarray) -> None:
+    """Refuse ends of shafts that are apart, by a ValueError."""
+    if np.linalg.norm(apart) > _SAME_PLACE:
+        raise ValueError(
+            f"other: the interface of the second rotor is {np.linalg.norm(apart):.4g} m from that "
+            "of the first; couplings need both at one place (a small offset is misalignment=…)"
+        )
+
+
+def _pair(value: ArrayLike, name: str, unit: str) -> np.ndarray:
+    """Return two stiffnesses, given as one or two."""
+    given = checks.array(value, name, unit)
+    if given.shape not in ((), (2,)):
+        raise ValueError(f"{name}: needs a number or two [{unit}], got {checks.shown(value)}")
+    if np.any(given < 0.0):
+        raise ValueError(f"{name}: needs numbers ≥ 0 [{unit}], got {checks.shown(value)}")
+    return checks.read_only(np.broadcast_to(given, 2))
