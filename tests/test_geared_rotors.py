@@ -140,6 +140,7 @@ def test_energy_goes_into_drives_springs_and_losses(backlash):
 
 PLACES = {
     "x": {"axis": [1.0, 0.0, 0.0]},
+    "-z": {"axis": [0.0, 0.0, -1.0]},
     "y": {"axis": [0.0, 1.0, 0.0]},
     "skew": {
         "axis": [2.0, -1.0, 2.0],

@@ -99,13 +99,12 @@ class TorqueCurve(Drive):
         checks.flag(self.extrapolate, "extrapolate")
         if callable(self.curve):
             return
-        if not isinstance(self.curve, tuple | list) or len(self.curve) != 2:
-            raise TypeError(
-                "curve: needs a table (speeds, torques) or a function of speed and time, got "
-                f"{checks.shown(self.curve)}"
-            )
-        speeds = checks.ascending(self.curve[0], "curve: its speeds", "rad/s")
-        torques = checks.vector(self.curve[1], "curve: its torques", "N m", size=len(speeds))
+        needed = "a table (speeds, torques) or a function of speed and time"
+        table = checks.items(self.curve, "curve", needed)
+        if len(table) != 2:
+            raise ValueError(f"curve: needs {needed}, got {checks.shown(self.curve)}")
+        speeds = checks.ascending(table[0], "curve: its speeds", "rad/s")
+        torques = checks.vector(table[1], "curve: its torques", "N m", size=len(speeds))
         object.__setattr__(self, "curve", (speeds, torques))
 
     def _torque(self, speed: float, time: float) -> float:
