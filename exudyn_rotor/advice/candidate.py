@@ -14,7 +14,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody

@@ -30,19 +30,17 @@ from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.linear.models.finer_scene import FinerScene
 from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
+from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, root_near
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
-# relative distance from an eigenvalue that keeps its matrix invertible
-_OFF_ROOT = 1e-9
 # share of a flexibility that counts as missing; static modes of held interfaces lack 3 % of that
 # with inertia relief
 _MISSING = 0.1
@@ -235,13 +233,14 @@ class LeftOut:
         x[:, ~lacking] = vectors
         step = _STEP * speed
         low, high = dynamic(speed - step)[0], dynamic(speed + step)[0]
-        shifted = speed * (1.0 + _OFF_ROOT)
+        shifted = speed * (1.0 + OFF_ROOT)
         H, M = dynamic(shifted)
         slope, square = (high - low) / (2.0 * step), (high - 2.0 * H + low) / (2.0 * step**2)
         # free rigid motions have neither stiffness nor, where they stand still, inertia
         held = np.flatnonzero(np.abs(H).max(axis=1) > _FREE * speed**2 * M.diagonal().real)
-        parts = (X[np.ix_(held, held)] for X in (H, slope, square, M))
-        return float((_root(*parts, x.ravel()[held]) + shifted - speed).real)
+        H, slope, square, M = (X[np.ix_(held, held)] for X in (H, slope, square, M))
+        x = x.ravel()[held]
+        return float((root_near(H, slope, square, slope @ x, M @ x)[0] + shifted - speed).real)
 
 
 _known: WeakKeyDictionary[ReducedRotor, ReducedRotor | None] = WeakKeyDictionary()
@@ -280,26 +279,6 @@ def _finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
 
 def _shift(M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.ndarray) -> complex:
     """Return δ of the eigenvalue of ``λ²M + λD + K`` near `value`, beginning with a vector x."""
-    shifted = value * (1.0 + _OFF_ROOT)
-    dynamic = shifted**2 * M + shifted * D + K
-    return shifted - value + _root(dynamic, 2.0 * shifted * M + D, M, M, x)
-
-
-def _root(
-    constant: np.ndarray, linear: np.ndarray, square: np.ndarray, M: np.ndarray, x: np.ndarray
-) -> complex:
-    """Return δ of ``(constant + δ linear + δ² square) z = 0``, by one inverse iteration from x.
-
-    NaN where the first matrix is singular.
-    """
-    # LAPACK itself: with so many small matrices scipy's checks would take longer
-    factorise, solve = la.get_lapack_funcs(("getrf", "getrs"), (constant,))
-    lu, pivots, singular = factorise(constant)
-    if singular:
-        return np.nan
-    force = linear @ x
-    z, _ = solve(lu, pivots, force)
-    w, _ = solve(lu, pivots, M @ x, trans=2)
-    a, b, c = np.vdot(w, square @ z), np.vdot(w, linear @ z), np.vdot(w, force)
-    root = np.sqrt(b**2 - 4.0 * a * c + 0j)
-    return -2.0 * c / max(b + root, b - root, key=abs) if c != 0.0 else 0.0
+    shifted = value * (1.0 + OFF_ROOT)
+    dynamic, linear = shifted**2 * M + shifted * D + K, 2.0 * shifted * M + D
+    return shifted - value + root_near(dynamic, linear, M, linear @ x, M @ x)[0]

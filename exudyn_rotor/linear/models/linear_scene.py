@@ -27,7 +27,7 @@ from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.models.whole_space import WholeSpace
-from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.marker_body import around

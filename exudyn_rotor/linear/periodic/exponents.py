@@ -17,7 +17,7 @@ from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
-from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
+from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
     UnconvergedError,
@@ -66,13 +66,13 @@ def motions(
         return _constant_motions(system, shapes)
     if method != "floquet":
         try:
-            chosen, solution, _ = _solve_by_hill(system, tolerance)
+            found = _solve_by_hill(system, tolerance)
         except UnconvergedError:
             if method == "hill":
                 raise
         else:
-            rest = solution.orders, solution.resolution, chosen.bounds
-            return FloquetModes(chosen.values, chosen.shapes, *rest)
+            rest = found.orders, found.resolution, found.bounds
+            return FloquetModes(found.values, found.shapes, *rest)
     values, states, bounds = floquet_motions(system, tolerance)
     shapes = states[None, : system.size]
     return FloquetModes(resolved(values, bounds), shapes, np.array([0]), 0.0, bounds)
@@ -117,12 +117,12 @@ def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.
     UnconvergedError
         If the error does not fall below `tolerance`.
     """
-    chosen, _, error = _solve_by_hill(system, tolerance)
-    return fold(chosen.values, system.base), error
+    found = _solve_by_hill(system, tolerance)
+    return fold(found.values, system.base), found.error
 
 
-def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> tuple[Chosen, HillSolution, float]:
-    """Return the most central copies of all exponents, with their motions, and the error."""
+def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
+    """Return the most central copies of all exponents, with their motions."""
 
     def choose(solution: HillSolution) -> Chosen | None:
         columns = _central(solution, system.step, 2 * system.size)

@@ -19,7 +19,8 @@ from exudyn_rotor.linear.periodic.eigenvalues import (
     quadratic_modes,
     repeated,
 )
-from exudyn_rotor.linear.periodic.hill import Chosen, HillSolution, solve_hill
+from exudyn_rotor.linear.periodic.harmonics import shifted
+from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 # distance of the exponents of two members of a Floquet family, as a share of their step
@@ -79,12 +80,9 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if stands_still(system):
         return constant_modes([system])[0]
-    chosen, solution, _ = solve_hill(
-        system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance
-    )
-    shapes = _with_free_motions(system, chosen, solution.orders)
-    rest = solution.orders, solution.resolution, chosen.bounds
-    return FloquetModes(chosen.values, shapes, *rest)
+    found = solve_hill(system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance)
+    shapes = _with_free_motions(system, found)
+    return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
 
 
 def stands_still(system: PeriodicSystem) -> bool:
@@ -121,24 +119,24 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
 
 
-def _with_free_motions(system: PeriodicSystem, chosen: Chosen, orders: np.ndarray) -> np.ndarray:
-    """Return the harmonics chosen, those of free motions as constant displacements without force.
+def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray:
+    """Return the harmonics found, those of free motions as constant displacements without force.
 
     ``K_n x = 0`` for all Fourier terms n of K: at λ = 0 Hill's equations hold with x alone.
     """
-    free = np.flatnonzero(chosen.values == 0.0)
+    free = np.flatnonzero(found.values == 0.0)
     if free.size < 2:
-        return chosen.shapes
+        return found.shapes
     terms = [term for n, term in system.K.items() if n >= 0]
     K = np.array([part for term in terms for part in (term.real, term.imag)])
-    center = np.flatnonzero(orders == 0)[0]
-    given = chosen.shapes[center][:, free]
-    found = free_motions(system.M[0].real, K, given)
-    if found is given:
-        return chosen.shapes
-    shapes = chosen.shapes.copy()
+    center = np.flatnonzero(found.orders == 0)[0]
+    given = found.shapes[center][:, free]
+    free_ones = free_motions(system.M[0].real, K, given)
+    if free_ones is given:
+        return found.shapes
+    shapes = found.shapes.copy()
     shapes[:, :, free] = 0.0
-    shapes[center][:, free] = found
+    shapes[center][:, free] = free_ones
     return shapes
 
 
@@ -204,7 +202,7 @@ def _is_known(mode: Mode, known: list[Mode], base: float) -> bool:
     for other_value, other in known:
         shift = round((value - other_value).imag / base)
         if shift and abs(value - other_value - 1j * shift * base) <= _SAME_FAMILY * base:
-            moved = _shifted(other, shift).ravel()
+            moved = shifted(other, shift).ravel()
             if np.linalg.norm(moved) > 0.5:
                 basis.append(moved)
     if not basis:
@@ -212,16 +210,3 @@ def _is_known(mode: Mode, known: list[Mode], base: float) -> bool:
     span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)
     span = span[:, lengths > 0.1]
     return np.linalg.norm(span.conj().T @ vector.ravel()) ** 2 > 0.5
-
-
-def _shifted(vector: np.ndarray, shift: int) -> np.ndarray:
-    """Return harmonics for the member of the family that is `shift` steps higher in λ.
-
-    ``exp((λ + ipsΩ)t) Σ Y_m exp(imΩt)`` is the same motion for ``Y_m = X_{m + ps}``.
-    """
-    moved = np.zeros_like(vector)
-    count = len(vector)
-    for row in range(count):
-        if 0 <= row + shift < count:
-            moved[row] = vector[row + shift]
-    return moved

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
 
-from exudyn_rotor.linear.periodic.hill import hill_matrices
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]

@@ -21,34 +21,23 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import resolution_of, resolved
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
+from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted
+from exudyn_rotor.linear.periodic.inverse_iteration import settled
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
 MOST_UNKNOWNS = 1600  # in first-order form
-
-
-def hill_matrices(
-    system: PeriodicSystem, orders: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (M, D, K) of ``(λ²M + λD + K) X = F`` for the harmonics `orders`.
-
-    Shape (h k, h k), complex, harmonic by harmonic in the order given.
-    """
-    if len(orders) == 1 and orders[0] == 0:
-        return tuple(terms[0].astype(complex) for terms in (system.M, system.D, system.K))
-    M, D, K = (_blocks(terms, orders, system.size) for terms in (system.M, system.D, system.K))
-    rate = np.repeat(1j * orders * system.speed, system.size)
-    return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
-
-
-def _blocks(terms: Terms, orders: np.ndarray, size: int) -> np.ndarray:
-    """Return the block matrix with ``terms[n − m]`` at row n, column m."""
-    blocks = np.zeros((len(orders), size, len(orders), size), dtype=complex)
-    for i, n in enumerate(orders):
-        for j, m in enumerate(orders):
-            term = terms.get(int(n - m))
-            if term is not None:
-                blocks[i, :, j, :] = term
-    return blocks.reshape(len(orders) * size, -1)
+# error of λ, as a share of its distance from the next copy, from which a motion is followed
+_NEAR = 1e-2
+# times its estimate that a change of λ by further harmonics may be
+_MORE = 30.0
+# share of the tolerance that those lacking in the smallest truncation may take
+_FIRST = 1e-2
+# and from which those in a larger one take more where others need more
+_ALMOST = 0.1
+# relative step of λ after which inverse iteration ends
+_SETTLED = 1e-6
+# relative distance of exponents, and cosine of shapes, that may be those of one motion
+_SAME, _ALIKE = 1e-6, 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,24 +79,68 @@ class Chosen:
         λ and harmonics, which may be better than those of the solution where copies coincide.
     sizes : ndarray, shape (j,)
         What the error of each λ is relative to [1/s].
-    bounds : ndarray, shape (j,), optional
-        By how much rounding and the harmonics left out can change the real parts [1/s].
     """
 
     columns: np.ndarray
     values: np.ndarray
     shapes: np.ndarray
     sizes: np.ndarray
-    bounds: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class HillMotions:
+    """Motions with as many harmonics as they need.
+
+    Attributes
+    ----------
+    values, shapes : ndarray, shapes (j,), (h, c, j)
+        λ and harmonics.
+    orders : ndarray of int, shape (h,)
+    sizes : ndarray, shape (j,)
+        What the error of each λ is relative to [1/s].
+    resolution : float
+        Eigenvalues closer than this cannot be told apart [1/s].
+    rounding : ndarray, shape (j,)
+        By how much rounding can change the real parts [1/s].
+    shifts : ndarray, shape (j,)
+        By how much the first harmonics left out would change λ.
+    outer : mapping of int to ndarray, shape (c, j)
+        What these harmonics would be.
+    """
+
+    values: np.ndarray
+    shapes: np.ndarray
+    orders: np.ndarray
+    sizes: np.ndarray
+    resolution: float
+    rounding: np.ndarray
+    shifts: np.ndarray
+    outer: dict[int, np.ndarray]
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """By how much rounding and the harmonics left out can change the real parts [1/s]."""
+        return self.rounding + np.abs(self.shifts)
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Error of each λ by harmonics left out, relative to its size."""
+        return np.abs(self.shifts) / self.sizes
+
+    @property
+    def error(self) -> float:
+        """The largest of them."""
+        return float(np.max(self.errors, initial=0.0))
 
 
 Choice = Callable[[HillSolution], Chosen | None]
 
 
-def solve_hill(
-    system: PeriodicSystem, choose: Choice, tolerance: float
-) -> tuple[Chosen, HillSolution, float]:
-    """Return motions of a truncation that is large enough for them, and their largest error.
+def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> HillMotions:
+    """Return motions of truncations that are large enough for them.
+
+    All are chosen from one truncation; those that lack harmonics then follow into larger ones by
+    inverse iteration. If two of them become one, a larger truncation is solved as a whole.
 
     Parameters
     ----------
@@ -123,26 +156,115 @@ def solve_hill(
     UnconvergedError
         If that takes more than 1600 unknowns.
     """
-    step = system.step
-    order, error, last = 2 * step, np.inf, 0
+    order, error = system.step, np.inf
     while True:
-        orders = system.harmonics(order)
-        if 2 * len(orders) * system.size > MOST_UNKNOWNS and order > 2 * step:
-            raise UnconvergedError(
-                f"Hill's method at {system.speed:g} rad/s: error {error:.1e} with harmonics up to "
-                f"{last}, more than the tolerance {tolerance:.1e}: the speed is small against the "
-                "frequencies that turning coefficients split; use a larger speed (or 0), or fewer "
-                "high modes"
-            )
-        companion, solution = _solved(system, orders)
+        companion, solution = _solved(system, system.harmonics(order))
         chosen = choose(solution)
         if chosen is not None:
-            shifts = _shifts(system, companion, solution, chosen.columns)
-            error = float(np.max(np.abs(shifts) / chosen.sizes, initial=0.0))
-            if error <= tolerance:
-                bounds = solution.bounds[chosen.columns] + np.abs(shifts)
-                return replace(chosen, bounds=bounds), solution, error
-        last, order = order, order + step * max(1, order // (2 * step))
+            motions = _started(system, companion, solution, chosen)
+            error = motions.error
+            near = np.all(np.abs(motions.shifts) <= _NEAR * abs(system.base))
+            followed = _followed(system, motions, tolerance) if near else None
+            if followed is not None:
+                return followed
+        order = _next(system, order, error, tolerance)
+
+
+def _next(system: PeriodicSystem, order: int, error: float, tolerance: float) -> int:
+    """Return the highest harmonic of the next truncation."""
+    larger = order + system.step * max(1, order // (2 * system.step))
+    if 2 * len(system.harmonics(larger)) * system.size <= MOST_UNKNOWNS:
+        return larger
+    raise UnconvergedError(
+        f"Hill's method at {system.speed:g} rad/s: error {error:.1e} with harmonics up to "
+        f"{order}, more than the tolerance {tolerance:.1e}: the speed is small against the "
+        "frequencies that turning coefficients split; use a larger speed (or 0), or fewer "
+        "high modes"
+    )
+
+
+def _started(
+    system: PeriodicSystem, companion: Companion, solution: HillSolution, chosen: Chosen
+) -> HillMotions:
+    """Return motions chosen from a truncation."""
+    columns, orders = chosen.columns, solution.orders
+    shapes = solution.shapes[:, :, columns]
+    load, outer = feedback(system, solution.values[columns], shapes, orders)
+    load = np.einsum("nh,hkj->nkj", _real_basis(len(orders)), load).reshape(-1, len(columns))
+    scale = np.sum(shapes.conj() * chosen.shapes, axis=(0, 1)) / np.sum(
+        np.abs(shapes) ** 2, axis=(0, 1)
+    )
+    return HillMotions(
+        chosen.values,
+        chosen.shapes,
+        orders,
+        chosen.sizes,
+        solution.resolution,
+        solution.bounds[columns],
+        companion.shifts(load, columns),
+        {n: scale * answer for n, answer in outer.items()},
+    )
+
+
+def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) -> HillMotions | None:
+    """Return motions with as many harmonics as they need; None where they cannot be followed."""
+    # the first harmonics that the smallest truncation leaves out bring further ones along
+    limit = (_FIRST if motions.orders[-1] == system.step else 1.0) * tolerance
+    while motions.error > limit:
+        order = _next(system, int(motions.orders[-1]), motions.error, tolerance)
+        lacking = np.flatnonzero(motions.errors > min(limit, _ALMOST * tolerance))
+        larger = _in_larger(system, motions, lacking, system.harmonics(order))
+        if larger is None or not _differ(larger, lacking, system.base):
+            return None
+        motions, limit = larger, tolerance
+    return motions
+
+
+def _in_larger(
+    system: PeriodicSystem, motions: HillMotions, lacking: np.ndarray, orders: np.ndarray
+) -> HillMotions | None:
+    """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
+    wider = (len(orders) - len(motions.orders)) // 2
+    shapes = np.pad(motions.shapes, ((wider, wider), (0, 0), (0, 0)))
+    values, shifts, matrices = motions.values.copy(), motions.shifts, hill_matrices(system, orders)
+    for order, answer in motions.outer.items():
+        shapes[np.ix_(orders == order, range(system.size), lacking)] = answer[:, lacking]
+    lefts = np.zeros((len(orders) * system.size, lacking.size), dtype=complex)
+    for n, column in enumerate(lacking):
+        start, guess = shapes[:, :, column].ravel(), values[column] + shifts[column]
+        limit = _SETTLED * min(motions.sizes[column], abs(system.base))
+        found = settled(*matrices, guess, start, limit)
+        if found is None or abs(np.vdot(found[1], start)) < _ALIKE * np.linalg.norm(start):
+            return None
+        if abs(found[0] - guess) > _MORE * abs(shifts[column]) + limit:
+            return None
+        values[column], lefts[:, n] = found[0], found[2]
+        shapes[:, :, column] = (found[1] * np.vdot(found[1], start)).reshape(len(orders), -1)
+    load, outer = feedback(system, values[lacking], shapes[:, :, lacking], orders)
+    x = shapes[:, :, lacking].reshape(lefts.shape)
+    slopes = 2.0 * values[lacking] * (matrices[0] @ x) + matrices[1] @ x
+    work = [np.sum(lefts.conj() * X.reshape(x.shape), axis=0) for X in (load, slopes)]
+    shifts = shifts.copy()
+    shifts[lacking] = -work[0] / work[1]
+    every = {n: np.zeros((system.size, len(values)), dtype=complex) for n in outer}
+    for n, answer in outer.items():
+        every[n][:, lacking] = answer
+    changed = {"values": values, "shapes": shapes, "shifts": shifts, "outer": every}
+    return replace(motions, orders=orders, **changed)
+
+
+def _differ(motions: HillMotions, columns: np.ndarray, base: float) -> bool:
+    """Return True if no motion in `columns` is a copy of another, shifted or not."""
+    values, shapes = motions.values, motions.shapes
+    apart = values[columns, None] - values
+    steps = np.rint(apart.imag / base)
+    near = np.abs(apart - 1j * steps * base) <= _SAME * (np.abs(values) + abs(base))
+    near[np.arange(columns.size), columns] = False
+    for row, other in zip(*np.nonzero(near), strict=True):
+        one, copy = shapes[:, :, columns[row]], shifted(shapes[:, :, other], int(steps[row, other]))
+        if abs(np.vdot(copy, one)) > _ALIKE * np.linalg.norm(copy) * np.linalg.norm(one):
+            return False
+    return True
 
 
 def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, HillSolution]:
@@ -178,55 +300,3 @@ def _turned(matrix: np.ndarray, u: np.ndarray) -> np.ndarray:
     blocks = matrix.reshape(count, size, count, size)
     turned = np.tensordot(u, np.tensordot(blocks, u.conj(), (2, 1)), (1, 0))  # n, a, b, m
     return turned.transpose(0, 1, 3, 2).reshape(matrix.shape).real
-
-
-def _shifts(
-    system: PeriodicSystem, companion: Companion, solution: HillSolution, columns: np.ndarray
-) -> np.ndarray:
-    """Return by how much the first harmonics left out would shift some λ [1/s]."""
-    feedback = _feedback(
-        system, solution.values[columns], solution.shapes[:, :, columns], solution.orders
-    )
-    u = _real_basis(len(solution.orders))
-    load = np.einsum("nh,hkj->nkj", u, feedback).reshape(-1, len(columns))
-    return companion.shifts(load, columns)
-
-
-def _feedback(
-    system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
-) -> np.ndarray:
-    """Return what the first harmonics left out, once excited, do to those kept; as `shapes`."""
-    highest, result = orders[-1], np.zeros_like(shapes)
-    terms = (system.M, system.D, system.K)
-    reach = range(highest + 1, highest + system.order + 1)
-    for n in [*reach, *(-m for m in reach)]:
-        links = {m: _links(terms, n - orders[m]) for m in range(len(orders))}
-        excited = 0.0
-        for m, (M, D, K) in ((m, link) for m, link in links.items() if link is not None):
-            excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
-        if np.ndim(excited) == 0:
-            continue
-        rate = (values + 1j * n * system.speed)[:, None, None]
-        dynamic = rate**2 * system.M[0] + rate * system.D[0] + system.K[0]
-        answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
-        for m in range(len(orders)):
-            back = _links(terms, orders[m] - n)
-            if back is not None:
-                result[m] += _applied(*back, values + 1j * n * system.speed, answer)
-    return result
-
-
-def _links(terms: tuple, n: int) -> tuple | None:
-    """Return the Fourier terms n of M, D, K; None where there is none."""
-    entries = [X.get(int(n)) for X in terms]
-    if all(X is None for X in entries):
-        return None
-    return tuple(0.0 if X is None else X for X in entries)
-
-
-def _applied(
-    M: np.ndarray, D: np.ndarray, K: np.ndarray, rate: np.ndarray, shape: np.ndarray
-) -> np.ndarray:
-    """Return ``(λ²M + λD + K) X`` column by column; absent matrices are 0.0."""
-    parts = ((M, shape * rate**2), (D, shape * rate), (K, shape))
-    return sum(X @ column for X, column in parts if np.ndim(X))

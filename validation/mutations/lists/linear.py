@@ -141,7 +141,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/periodic/hill.py",
+        "linear/periodic/harmonics.py",
         "test_stability.py",
         ("rate of a harmonic once", "D + 2.0 * M * rate, K", "D + M * rate, K"),
         ("blocks transposed", "terms.get(int(n - m))", "terms.get(int(m - n))"),

@@ -1,0 +1,91 @@
+"""Equations of the harmonics of periodic systems, and what the harmonics left out do to those kept.
+
+With ``x(t) = exp(λt) Σ_m X_m exp(i m Ω t)`` the equations of :class:`PeriodicSystem` become, for
+every harmonic n,
+
+    Σ_m [(λ + imΩ)² M_{n−m} + (λ + imΩ) D_{n−m} + K_{n−m}] X_m = F_n
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+
+
+def hill_matrices(
+    system: PeriodicSystem, orders: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (M, D, K) of ``(λ²M + λD + K) X = F`` for the harmonics `orders`.
+
+    Shape (h k, h k), complex, harmonic by harmonic in the order given.
+    """
+    if len(orders) == 1 and orders[0] == 0:
+        return tuple(terms[0].astype(complex) for terms in (system.M, system.D, system.K))
+    M, D, K = (_blocks(terms, orders, system.size) for terms in (system.M, system.D, system.K))
+    rate = np.repeat(1j * orders * system.speed, system.size)
+    return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
+
+
+def _blocks(terms: Terms, orders: np.ndarray, size: int) -> np.ndarray:
+    """Return the block matrix with ``terms[n − m]`` at row n, column m."""
+    blocks = np.zeros((len(orders), size, len(orders), size), dtype=complex)
+    for i, n in enumerate(orders):
+        for j, m in enumerate(orders):
+            term = terms.get(int(n - m))
+            if term is not None:
+                blocks[i, :, j, :] = term
+    return blocks.reshape(len(orders) * size, -1)
+
+
+def feedback(
+    system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
+) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+    """Return what the first harmonics left out do to those kept, as `shapes`, and what they are."""
+    highest, result, answers = orders[-1], np.zeros_like(shapes), {}
+    terms = (system.M, system.D, system.K)
+    reach = range(highest + 1, highest + system.order + 1)
+    for n in [*reach, *(-m for m in reach)]:
+        links = {m: _links(terms, n - orders[m]) for m in range(len(orders))}
+        excited = 0.0
+        for m, (M, D, K) in ((m, link) for m, link in links.items() if link is not None):
+            excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
+        if np.ndim(excited) == 0:
+            continue
+        rate = (values + 1j * n * system.speed)[:, None, None]
+        dynamic = rate**2 * system.M[0] + rate * system.D[0] + system.K[0]
+        answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
+        answers[n] = answer
+        for m in range(len(orders)):
+            back = _links(terms, orders[m] - n)
+            if back is not None:
+                result[m] += _applied(*back, values + 1j * n * system.speed, answer)
+    return result, answers
+
+
+def _links(terms: tuple, n: int) -> tuple | None:
+    """Return the Fourier terms n of M, D, K; None where there is none."""
+    entries = [X.get(int(n)) for X in terms]
+    if all(X is None for X in entries):
+        return None
+    return tuple(0.0 if X is None else X for X in entries)
+
+
+def _applied(
+    M: np.ndarray, D: np.ndarray, K: np.ndarray, rate: np.ndarray, shape: np.ndarray
+) -> np.ndarray:
+    """Return ``(λ²M + λD + K) X`` column by column; absent matrices are 0.0."""
+    parts = ((M, shape * rate**2), (D, shape * rate), (K, shape))
+    return sum(X @ column for X, column in parts if np.ndim(X))
+
+
+def shifted(shapes: np.ndarray, steps: int) -> np.ndarray:
+    """Return harmonics (h, …) of the copy of a motion that is `steps` of pΩ higher in λ.
+
+    ``exp((λ + ipsΩ)t) Σ Y_m exp(imΩt)`` is the same motion for ``Y_m = X_{m + ps}``.
+    """
+    moved, count = np.zeros_like(shapes), len(shapes)
+    kept = max(count - abs(steps), 0)
+    first, last = max(-steps, 0), max(steps, 0)
+    moved[first : first + kept] = shapes[last : last + kept]
+    return moved
