@@ -261,6 +261,7 @@ def _computed(
             return space.count
 
 
+@one_thread()
 def _splits(
     solved: list[_Solved], speeds: np.ndarray, content: WhirlContent, space: Space
 ) -> np.ndarray:

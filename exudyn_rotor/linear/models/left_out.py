@@ -40,6 +40,7 @@ from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, root_near
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.threads import one_thread
 
 # share of a flexibility that counts as missing; static modes of held interfaces lack 3 % of that
 # with inertia relief
@@ -258,8 +259,12 @@ def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
 
 def _finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
     attached, in_attached = rotor.with_attachments, rotor.in_attached
-    if in_attached is None:
-        return None
+    return None if in_attached is None else _beside(rotor, attached, in_attached)
+
+
+@one_thread()
+def _beside(rotor: ReducedRotor, attached: ReducedRotor, in_attached: np.ndarray) -> ReducedRotor:
+    """Return the rotor with all shapes, its own columns `in_attached` first."""
     outside = np.eye(attached.size) - in_attached @ in_attached.T
     lengths, columns = np.linalg.eigh(outside)
     columns = columns[:, lengths > 0.5]

@@ -34,6 +34,7 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import chosen_level
 from exudyn_rotor.theory.stiffening import stiffening as second_order
+from exudyn_rotor.threads import one_thread
 
 _SINGULAR = 1e-12  # of a stiffness that leaves motions free
 
@@ -87,13 +88,14 @@ class LinearRotor(SupportedRotor):
             If a support is at an unknown interface; the message lists the known ones.
         """
         check_interfaces(supports, rotor.interfaces)
-        invariants, terms, level = _without_supports(rotor, stiffening)
-        linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
-        if ModeKind.SPIN in rotor.kinds:
-            spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
-        if spin is not None:
-            linear = replace(linear, spin=linear._on_supports(*spin))
-        free = free_motions_of_reduced(rotor, supports, linear.free_spin is not None)
+        with one_thread():
+            invariants, terms, level = _without_supports(rotor, stiffening)
+            linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
+            if ModeKind.SPIN in rotor.kinds:
+                spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
+            if spin is not None:
+                linear = replace(linear, spin=linear._on_supports(*spin))
+            free = free_motions_of_reduced(rotor, supports, linear.free_spin is not None)
         return replace(linear, free_motions=free)
 
     @classmethod

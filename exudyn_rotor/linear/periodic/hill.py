@@ -217,29 +217,43 @@ def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) ->
         if larger is None or not _differ(larger, lacking, system.base):
             return None
         motions, limit = larger, tolerance
+    if motions.orders[-1] == system.step:
+        orders = system.harmonics(2 * system.step)
+        motions = replace(motions, shapes=_widened(motions, orders), orders=orders)
     return motions
+
+
+def _widened(motions: HillMotions, orders: np.ndarray) -> np.ndarray:
+    """Return harmonics of the motions in a larger truncation, with the first ones left out."""
+    wider = (len(orders) - len(motions.orders)) // 2
+    shapes = np.pad(motions.shapes, ((wider, wider), (0, 0), (0, 0)))
+    for order, answer in motions.outer.items():
+        shapes[np.flatnonzero(orders == order)] = answer
+    return shapes
 
 
 def _in_larger(
     system: PeriodicSystem, motions: HillMotions, lacking: np.ndarray, orders: np.ndarray
 ) -> HillMotions | None:
     """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
-    wider = (len(orders) - len(motions.orders)) // 2
-    shapes = np.pad(motions.shapes, ((wider, wider), (0, 0), (0, 0)))
+    shapes, lengths = (
+        _widened(motions, orders),
+        np.sqrt(np.sum(np.abs(motions.shapes) ** 2, axis=(0, 1))),
+    )
     values, shifts, matrices = motions.values.copy(), motions.shifts, hill_matrices(system, orders)
-    for order, answer in motions.outer.items():
-        shapes[np.ix_(orders == order, range(system.size), lacking)] = answer[:, lacking]
     lefts = np.zeros((len(orders) * system.size, lacking.size), dtype=complex)
     for n, column in enumerate(lacking):
         start, guess = shapes[:, :, column].ravel(), values[column] + shifts[column]
         limit = _SETTLED * min(motions.sizes[column], abs(system.base))
         found = settled(*matrices, guess, start, limit)
-        if found is None or abs(np.vdot(found[1], start)) < _ALIKE * np.linalg.norm(start):
+        if found is None or abs(found[0] - guess) > _MORE * abs(shifts[column]) + limit:
             return None
-        if abs(found[0] - guess) > _MORE * abs(shifts[column]) + limit:
+        alike = np.vdot(found[1], start)
+        if abs(alike) < _ALIKE * np.linalg.norm(start):
             return None
         values[column], lefts[:, n] = found[0], found[2]
-        shapes[:, :, column] = (found[1] * np.vdot(found[1], start)).reshape(len(orders), -1)
+        turned = lengths[column] * alike / abs(alike) * found[1]
+        shapes[:, :, column] = turned.reshape(len(orders), -1)
     load, outer = feedback(system, values[lacking], shapes[:, :, lacking], orders)
     x = shapes[:, :, lacking].reshape(lefts.shape)
     slopes = 2.0 * values[lacking] * (matrices[0] @ x) + matrices[1] @ x

@@ -25,8 +25,9 @@ from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
 from exudyn_rotor.sweep import ascending_from_zero
 
 _ROOT = 1e-8  # of the largest parameter
-# share of λ or Ω: motions so near one another change with the root of what the basis leaves out
-_NEAR = 0.05
+# share of λ or Ω, and times the change by what the basis leaves out: motions so near one another
+# change with its root
+_NEAR, _TIMES = 5e-3, 10.0
 # of the range beside such a limit where it is searched again, in steps that grow, then at points
 _REACH, _STEPS, _POINTS = 0.05, 6, 9
 # of such a step: to which the distance is found
@@ -204,7 +205,8 @@ def _limit(search: Search, value: float, onset: bool, middle: float) -> _Limit:
     step = STEP * search.span * (1.0 if beside < middle else -1.0)
     slope = search.rate(beside, step)[which].real
     apart = np.abs(fold(np.delete(growth.values, which) - growth.values[which], growth.base))
-    meets = apart.min(initial=np.inf) < _NEAR * max(speed, abs(growth.values[which]))
+    near = max(_NEAR * max(speed, abs(growth.values[which])), _TIMES * abs(shifts[0]))
+    meets = apart.min(initial=np.inf) < near
     if np.isnan(shifts[0]) or meets or slope * away <= 0.0:
         return _Limit(name, _searched_again(search, value, onset), basis)
     return _Limit(name, float(-shifts[0].real / slope), basis)
