@@ -29,14 +29,9 @@ LINEAR = [
             "np.abs(modes.orders) < system.step",
         ),
         (
-            "left vector of the transposed equations",
-            "M @ x, trans=2)",
-            "M @ x, trans=1)",
-        ),
-        (
             "slope of the dynamic stiffness halved",
-            "2.0 * shifted * M + D, M, M, x",
-            "shifted * M + D, M, M, x",
+            "shifted * D + K, 2.0 * shifted * M + D",
+            "shifted * D + K, shifted * M + D",
         ),
     ),
     *mutations(
@@ -149,6 +144,53 @@ LINEAR = [
             "harmonics left out are not answered",
             "answer = -np.linalg.solve(dynamic",
             "answer = -0.0 * np.linalg.solve(dynamic",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/hill.py",
+        "test_hill.py",
+        (
+            "copies of a motion taken for others",
+            "copy = shapes[:, :, columns[row]], shifted(",
+            "copy = 0.0 * shapes[:, :, columns[row]], shifted(",
+        ),
+        (
+            "motions of the smallest truncation not followed",
+            "abs(motions.shifts) <= _NEAR",
+            "abs(motions.shifts) <= 0.0 * _NEAR",
+        ),
+        (
+            "error of what was followed without its inertia",
+            "slopes = 2.0 * values[lacking]",
+            "slopes = 1e9 * values[lacking]",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/hill.py",
+        "test_hill.py",
+        (
+            "harmonics left out are those of the smallest truncation",
+            "motions = replace(motions, shapes=_widened(motions, orders), orders=orders)",
+            "pass",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/inverse_iteration.py",
+        "test_hill.py test_basis_error.py",
+        ("left vector of the transposed matrix", "left, trans=2)", "left, trans=1)"),
+        (
+            "inverse iteration with half the slope",
+            "linear = 2.0 * shifted * M + D",
+            "linear = shifted * M + D",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/harmonics.py",
+        "test_hill.py",
+        (
+            "copies shifted the other way",
+            "first, last = max(-steps, 0), max(steps, 0)",
+            "first, last = max(steps, 0), max(-steps, 0)",
         ),
     ),
     *mutations(
@@ -533,8 +575,8 @@ LINEAR = [
         "test_campbell_kinds.py",
         (
             "free motions of periodic equations by rounding",
-            "if found is given:",
-            "if found is not given:",
+            "if free_ones is given:",
+            "if free_ones is not given:",
         ),
         (
             "free motions without what turns",

@@ -1,0 +1,91 @@
+"""Hill's method: motions that follow from a small truncation into larger ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_stability import mathieu, random_system
+
+from exudyn_rotor.linear.periodic import hill
+from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+
+WEAK = 0.2
+
+
+def weakly_periodic(seed: int) -> PeriodicSystem:
+    """Return a random system whose exponents follow from the smallest truncation."""
+    given = random_system(seed)
+    terms = ({n: X if n == 0 else WEAK * X for n, X in Y.items()} for Y in (given.D, given.K))
+    return PeriodicSystem(7.0, {0: given.M[0]}, *terms)
+
+
+@pytest.fixture
+def sizes_solved(monkeypatch):
+    """Return a list that records how many harmonics each whole solution has."""
+    solve, sizes = hill._solved, []
+
+    def recorded(system, orders):
+        sizes.append(len(orders))
+        return solve(system, orders)
+
+    monkeypatch.setattr(hill, "_solved", recorded)
+    return sizes
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_motions_follow_from_the_smallest_truncation(seed, sizes_solved):
+    """They meet Floquet's exponents, and the equations of all of their harmonics."""
+    system = weakly_periodic(seed)
+    found = motions(system, "hill", 1e-11)
+    assert sizes_solved == [3]
+    assert len(found.orders) > 3
+    exact = floquet_exponents(system, 1e-13)
+    apart = np.abs(fold(found.values[:, None] - exact, system.base))
+    assert len(found.values) == 2 * system.size
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-9
+    parts = hill_matrices(system, found.orders)
+    X = found.vectors.reshape(-1, len(found.values))
+    each = [found.values**power * (Y @ X) for power, Y in zip((2, 1, 0), parts, strict=True)]
+    residual = np.linalg.norm(sum(each), axis=0) / sum(np.linalg.norm(Y, axis=0) for Y in each)
+    # λ errs by the square of what is missing in a motion
+    assert residual.max() < 10.0 * np.sqrt(1e-11)
+
+
+def test_motions_that_need_no_more_harmonics_have_the_first_left_out():
+    system = weakly_periodic(0)
+    found, exact = (motions(system, "hill", tolerance) for tolerance in (1e-1, 1e-11))
+    assert found.orders.tolist() == system.harmonics(2).tolist()
+    outer = np.linalg.norm(found.vectors[[0, -1]], axis=1)
+    kept = np.isin(exact.orders, found.orders[[0, -1]])
+    expected = np.linalg.norm(exact.vectors[kept], axis=1)
+    assert np.abs(outer - expected).max() < 0.1 * expected.max()
+
+
+def test_strong_coupling_is_solved_as_a_whole(sizes_solved):
+    strong = mathieu(2.0, 30.0)
+    found = motions(strong, "hill", 1e-9).values
+    assert max(sizes_solved) > 3
+    exact = floquet_exponents(strong, 1e-13)
+    assert np.abs(fold(found[:, None] - exact, strong.base)).min(axis=0).max() < 1e-7
+
+
+def test_a_copy_is_not_another_motion():
+    system = weakly_periodic(0)
+    orders = system.harmonics(3)
+    rng = np.random.default_rng(1)
+    shapes = rng.normal(size=(7, 4, 2)) + 1j * rng.normal(size=(7, 4, 2))
+    shapes[[0, 1, 5, 6]] = 0.0
+    values = np.array([-0.1 + 2.0j, -0.1 + 2.0j + 1j * system.base])
+    unused = np.ones(2)
+    found = hill.HillMotions(values, shapes, orders, unused, 0.0, unused, unused, {})
+    both = np.arange(2)
+    assert hill._differ(found, both, system.base)
+    for steps in (1, -1):  # exp((λ + ipΩ)t) X_m exp(imΩt) has the harmonics Y_m = X_{m + p}
+        shapes[:, :, 1] = np.roll(shapes[:, :, 0], -steps, axis=0)
+        assert hill._differ(found, both, system.base) == (steps < 0)
+    shapes[:, :, 1] = shapes[:, :, 0]
+    assert hill._differ(found, both, system.base)
+    assert not hill._differ(replace(found, values=values[[0, 0]]), both, system.base)
