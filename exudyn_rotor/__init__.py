@@ -21,6 +21,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.short_journal import ShortJournalBearing
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.drives.cardan import CardanJoint
 from exudyn_rotor.drives.coupling import FlexibleCoupling
 from exudyn_rotor.drives.drive import Drag, TorqueCurve
@@ -166,6 +167,7 @@ __all__ = [
     "StressField",
     "StressHistory",
     "Support",
+    "TiltingPadBearing",
     "TorqueCurve",
     "Unbalance",
     "UnbalanceResponse",

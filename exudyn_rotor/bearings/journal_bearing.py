@@ -70,8 +70,18 @@ class JournalBearing(Bearing):
 
         Each begins with the voids of its last call, which are few steps away in a scene. That saves
         time; the pressure, which is unique, stays the same to rounding.
+
+        Raises
+        ------
+        ValueError
+            For a film that conserves mass: it has a memory of its own.
         """
-        return _FilmLaw(self)
+        if self.film.cavitation == "mass-conserving":
+            raise ValueError(
+                f"bearing at {self.interface!r}: a film with cavitation='mass-conserving' has no "
+                "force by place and velocity alone; scenes need another cavitation"
+            )
+        return _FilmLaw(self.film)
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -123,20 +133,15 @@ class JournalBearing(Bearing):
 class _FilmLaw:
     """Force and torque of a film, which remembers its voids."""
 
-    def __init__(self, bearing: JournalBearing) -> None:
-        self._film, self._interface = bearing.film, bearing.interface
-        self._most = self._film.clearance - self._film.thinnest
-        self._step = _STEP * self._film.clearance
+    def __init__(self, film: OilFilm) -> None:
+        self._film = film
+        self._most = film.clearance - film.thinnest
+        self._step = _STEP * film.clearance
         self._empty: np.ndarray | None = None
 
     def __call__(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        if self._film.cavitation == "mass-conserving":
-            raise ValueError(
-                f"bearing at {self._interface!r}: a film with cavitation='mass-conserving' has no "
-                "force by place and velocity alone; scenes need another cavitation"
-            )
         rate = np.array([vx, vy])
 
         def force(a: float, b: float) -> tuple[float, float, float]:

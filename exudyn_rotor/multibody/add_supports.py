@@ -17,7 +17,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.bearings.support import acts
+from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.magnetic_connectors import add_magnetic
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -127,7 +127,10 @@ def add_supports(
         )
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
-        _check_about_the_axis(body, support)
+        if isinstance(support, Bearing):
+            _check_law(body, support)
+        elif isinstance(support, Support):
+            _check_about_the_axis(body, support)
     seats = [Seat.of(body, support.interface, base) for support in supports]
     sensed = [_seat_of_sensor(body, support, base) for support in supports]
     added = tuple(
@@ -138,18 +141,21 @@ def add_supports(
     return added
 
 
-def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Given) -> None:
-    """Refuse what acts against the rotation of a frame whose spin is free, or cannot brake it."""
-    if isinstance(support, MagneticBearing) or not body.formulation.has_spin:
-        return
-    if isinstance(support, Bearing):
-        interface = body.selection.source.interfaces[support.interface]
-        if support.law_with_torque is not None and interface.radius == 0.0:
-            raise ValueError(
-                f"support at {support.interface!r}: its torque would not brake the free spin, "
-                "since the interface is a single node, which has no rotation; make the interface "
-                "of three nodes or more, or prescribe the spin"
-            )
+def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
+    """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
+    turns = bearing.law and bearing.law_with_torque is not None
+    interface = body.selection.source.interfaces[bearing.interface]
+    if turns and body.formulation.has_spin and interface.radius == 0.0:
+        raise ValueError(
+            f"support at {bearing.interface!r}: its torque would not brake the free spin, since "
+            "the interface is a single node, which has no rotation; make the interface of three "
+            "nodes or more, or prescribe the spin"
+        )
+
+
+def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> None:
+    """Refuse what acts against the rotation of a frame whose spin is free."""
+    if not body.formulation.has_spin:
         return
     stiffness, damping = support.matrices(body.plan.setup.placement.speed)
     acting = {"tilt_stiffness": stiffness}

@@ -99,6 +99,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "ShortJournalBearing": lambda w: w.journal,
     "SqueezeFilmDamper": lambda w: w.damper,
     "Support": lambda w: w.supports[0],
+    "TiltingPadBearing": lambda w: w.tilting,
     "TorqueCurve": lambda w: er.TorqueCurve(([0.0, 90.0], [5.0, 0.0])),
     "Unbalance": lambda w: er.Unbalance("left", 1e-4),
     "UnbalanceResponse": lambda w: w.unbalance,
@@ -456,6 +457,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "LinearActuator.force": lambda w: {"current": 0.1, "place": 1e-5},
     "SaturatingActuator.force": lambda w: {"current": 0.1, "place": 1e-5},
     "PIDController.transfer": lambda w: {"frequencies": [10.0, 20.0]},
+    "*.tilts": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.with_load": lambda w: {"load": [0.0, -500.0]},
     "SqueezeFilmDamper.force": lambda w: {
         "displacement": [1e-5, 2e-5],

@@ -135,6 +135,13 @@ class World:
         return er.JournalBearing(interface="left", film=self.film, load=[0.0, -500.0])
 
     @cached_property
+    def tilting(self) -> er.TiltingPadBearing:
+        """A bearing of two tilting pads."""
+        pads = er.grooved_pads(1e-4, [0.0, np.pi], 0.5, preload=0.3)
+        film = er.OilFilm(0.05, 0.05, 0.1, pads, nodes=24, axial_nodes=0)
+        return er.TiltingPadBearing(interface="left", film=film, load=[0.0, -500.0])
+
+    @cached_property
     def rolling(self) -> er.RollingBearing:
         """A ball bearing."""
         sizes = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}

@@ -210,6 +210,14 @@ BEARINGS = [
         ),
     ),
     *mutations(
+        "bearings/tilting_pad.py",
+        "test_tilting_pad.py",
+        ("pads held", "total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t)", "total += Z"),
+        ("pads eliminated at rest", "Z = K + 1j * whirl * C", "Z = K + 0j * whirl * C"),
+        ("pads tilt the other way", "return -self._state", "return self._state"),
+        ("pivots in the middle", "pad.start + pivot * pad.arc", "pad.start + 0.5 * pad.arc"),
+    ),
+    *mutations(
         "bearings/rolling.py",
         "test_rolling_bearing.py",
         ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),

@@ -1,0 +1,255 @@
+"""Journal bearing with tilting pads: equilibrium of journal and pads, coefficients of the whirl.
+
+A pad that tilts by δ about its pivot at the angle φ_p of the bore moves its centre of curvature
+along the bore, by ``s t`` with ``t = (−sin φ_p, cos φ_p)`` and s = −R δ. Its film, that of a fixed
+pad, sees the journal at ``q − s t``. A pad has no inertia here, and its pivot neither friction nor
+flexibility: the force of its film passes through the pivot,
+
+    t · F(q − s t, q̇ − ṡ t) = 0.                                                          (1)
+
+In small whirl with the frequency ν, the film's Z = K + i ν C, the sum over the pads is
+
+    Z_b = Σ Z − Z t tᵀZ/(tᵀZ t),   K_b = Re Z_b,   C_b = Im Z_b/ν.                        (2)
+
+J. W. Lund, *Spring and damping coefficients for the tilting-pad journal bearing*, ASLE Trans. 7
+(1964). A pad that no tilt brings to carry counts as absent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing, Law
+from exudyn_rotor.bearings.film.film import OilFilm
+from exudyn_rotor.bearings.film.pads import direction
+from exudyn_rotor.bearings.film.state import FilmState
+
+_STEPS, _SHORTER = 60, 12  # of Newton's method, and halvings of one
+_CLOSE = 1e-9  # of the load: it stops there
+_TILTS = 24  # tried, between those at which an edge touches
+_SMALL = 1e-9  # of the largest moment: none
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TiltingPadBearing(Bearing):
+    """Journal bearing whose pads tilt about pivots.
+
+    For linear analyses: stiffness and damping at the whirl's frequency, the pads' motions
+    eliminated. In time a pad's tilt has a history, which a force of place and velocity has not:
+    scenes take :meth:`linearised`.
+
+    Parameters
+    ----------
+    interface : str
+        Interface of the rotor that is the journal.
+    film : OilFilm
+        With the pads as they are without tilt, the directions n1 and n2 of the rotor at rest.
+    pivot : float, optional
+        Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
+    whirl_ratio : float, optional
+        Frequency of the whirl over the spin speed, 1 for unbalance.
+    load : array_like, shape (2,), optional
+        Static load on the journal along (n1, n2) [N], which linear analyses need.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, and films without a gap between pads, or that conserve mass.
+
+    Examples
+    --------
+    Five pads, the load between two of them:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import OilFilm, TiltingPadBearing, grooved_pads
+    >>> gaps = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])
+    >>> pads = grooved_pads(1.5e-4, gaps, np.radians(12.0), preload=0.5)
+    >>> film = OilFilm(radius=0.05, length=0.05, viscosity=0.02, pads=pads, axial_nodes=0)
+    >>> bearing = TiltingPadBearing(interface="left", film=film, load=[0.0, -2000.0])
+    >>> stiffness, damping = bearing.coefficients(speed=300.0)
+    >>> bool(abs(stiffness[0, 1]) < 1e-6 * stiffness[1, 1])
+    True
+    """
+
+    film: OilFilm
+    pivot: float = 0.5
+    whirl_ratio: float = 1.0
+    _last: dict[tuple[float, ...], _Pads] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.instance(self.film, "film", OilFilm)
+        self._set_numbers({"pivot": "", "whirl_ratio": ""}, above=0.0)
+        checks.number(self.pivot, "pivot", below=1.0)
+        if self.film.pads[0].closed or self.film.cavitation == "mass-conserving":
+            raise ValueError(
+                f"film: bearing at {self.interface!r}: needs pads with gaps between them, and "
+                "another cavitation than 'mass-conserving'"
+            )
+
+    @property
+    def _law(self) -> Law:
+        raise ValueError(
+            f"bearing at {self.interface!r}: tilting pads have no force by place and velocity "
+            "alone; give the scene its linearised()"
+        )
+
+    def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return where the journal rests under a static load [m], shape (2,).
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s], not 0.
+        load : array_like, shape (2,), optional
+            On the journal [N]; that of the bearing by default.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input, a missing load, no speed, and a load that presses a film below what the
+            grid resolves.
+        ArithmeticError
+            If no equilibrium is found.
+        """
+        return self._state(speed, load).place.copy()
+
+    def tilts(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
+        """Return the pads' tilts in equilibrium [rad], from n1 to n2; NaN for absent pads.
+
+        Parameters and errors are those of :meth:`equilibrium`.
+        """
+        return -self._state(speed, load).shifts / self.film.radius
+
+    def coefficients(
+        self, speed: float, load: ArrayLike | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness [N/m] and damping [N s/m] of (2) about the equilibrium, each (2, 2).
+
+        Parameters and errors are those of :meth:`equilibrium`.
+        """
+        whirl = self.whirl_ratio * abs(checks.number(speed, "speed", "rad/s"))
+        Z = self._state(speed, load).impedance(whirl)
+        return Z.real, Z.imag / whirl
+
+    def _state(self, speed: float, load: ArrayLike | None) -> _Pads:
+        """Return the pads in equilibrium; the last ones are kept, for several ask in turn."""
+        load = self._static_load(load)
+        key = checks.number(speed, "speed", "rad/s"), *load.tolist()
+        if key not in self._last:
+            state = self._solved(speed, load)
+            self._last.clear()
+            self._last[key] = state
+        return self._last[key]
+
+    def _solved(self, speed: float, load: np.ndarray) -> _Pads:
+        size = float(np.linalg.norm(load))
+        if speed == 0.0 or size == 0.0:
+            raise ValueError(
+                f"speed, load: bearing at {self.interface!r}: need numbers other than 0, got "
+                f"{speed:g} rad/s and {size:g} N"
+            )
+        pads, far = _Pads.of(self.film, self.pivot, speed), 0.2 * self.film.clearance
+        state = pads.at(1.5 * far * load / size)
+        for _ in range(_STEPS):
+            left = state.force + load
+            if np.linalg.norm(left) < _CLOSE * size:
+                return state
+            move = np.linalg.lstsq(state.impedance(0.0).real, left, rcond=1e-12)[0]
+            state = state.after(move * min(1.0, far / max(np.linalg.norm(move), 1e-300)), load)
+        raise ArithmeticError(
+            f"bearing at {self.interface!r}: no equilibrium of the pads found under {size:g} N at "
+            f"{speed:g} rad/s: {np.linalg.norm(left) / size:.1e} of the load is left"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Pads:
+    """Pads at one place of the journal, each tilted so that it obeys (1)."""
+
+    films: list[OilFilm]
+    tangents: np.ndarray
+    speed: float
+    place: np.ndarray
+    shifts: np.ndarray
+    states: list[FilmState | None]
+
+    @classmethod
+    def of(cls, film: OilFilm, pivot: float, speed: float) -> _Pads:
+        """Return pads with films of their own, before they are at a place."""
+        films = [replace(film, pads=[pad]) for pad in film.pads]
+        pivots = np.array([pad.start + pivot * pad.arc for pad in film.pads])
+        none = np.full(len(films), np.nan)
+        return cls(films, direction(pivots + 0.5 * np.pi), speed, np.zeros(2), none, [])
+
+    def at(self, place: np.ndarray) -> _Pads:
+        """Return the pads with the journal at a place [m]."""
+        pairs = list(zip(self.films, self.tangents, strict=True))
+        shifts = np.array([_shift(film, place, t, self.speed) for film, t in pairs])
+        still = np.zeros(2)
+        states = [
+            None if np.isnan(s) else film.state(place - s * t, still, self.speed)
+            for (film, t), s in zip(pairs, shifts, strict=True)
+        ]
+        return replace(self, place=place, shifts=shifts, states=states)
+
+    def after(self, move: np.ndarray, load: np.ndarray) -> _Pads:
+        """Return the pads after a move, shortened until their force comes closer to the load."""
+        left = np.linalg.norm(self.force + load)
+        for _ in range(_SHORTER):
+            try:
+                found = self.at(self.place + move)
+                if np.linalg.norm(found.force + load) < left:
+                    return found
+            except ValueError as error:
+                refused = error
+                found = None
+            move = 0.5 * move
+        if found is None:
+            raise refused
+        return found
+
+    @property
+    def force(self) -> np.ndarray:
+        """Force on the journal [N], shape (2,)."""
+        return sum((state.force for state in self.states if state is not None), start=np.zeros(2))
+
+    def impedance(self, whirl: float) -> np.ndarray:
+        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2)."""
+        total = np.zeros((2, 2), dtype=complex)
+        for state, t in zip(self.states, self.tangents, strict=True):
+            if state is not None:
+                K, C = state.coefficients()
+                Z = K + 1j * whirl * C
+                total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t)
+        return total
+
+
+def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
+    """Return s of a pad without a moment about its pivot; NaN where no tilt makes it carry."""
+    u = film.grid.u.reshape(-1, 2)
+    room = film.grid.offset.ravel() - u @ place - film.thinnest
+    lever = u @ t
+    low = np.max(-room[lever > 0.0] / lever[lever > 0.0], initial=-np.inf)
+    high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
+    if not low < high:
+        raise ValueError(
+            f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
+            "resolve; give more nodes, or a smaller load"
+        )
+
+    def moment(s: float) -> float:
+        return float(t @ film.force(place - s * t, np.zeros(2), speed))
+
+    tried = np.linspace(low, high, _TILTS + 2)[1:-1]
+    found = np.array([moment(s) for s in tried])
+    small = _SMALL * np.abs(found).max()
+    rises = np.flatnonzero((found[:-1] < -small) & (found[1:] > small))
+    if not len(rises):
+        return np.nan
+    return brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
