@@ -149,3 +149,11 @@ def ascending_from_zero(
     if result[0] < 0.0:
         raise ValueError(f"{name}: {result[0]:g} is negative; give values ≥ 0, or {otherwise}")
     return result
+
+
+def checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
+    """Return ascending spin speeds, none of them negative unless that is allowed."""
+    if checks.flag(allow_negative, "allow_negative"):
+        return checks.ascending(speeds, "speeds")
+    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
+    return ascending_from_zero(speeds, "speeds", turn)

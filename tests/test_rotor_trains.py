@@ -1,5 +1,6 @@
 """Several rotors in linear analyses: against closed forms, ROSS, and one rotor of their parts."""
 
+import dataclasses
 import itertools
 import json
 from functools import cache
@@ -10,18 +11,24 @@ import pytest
 import scipy.linalg as la
 from netgen import occ
 from point_rotors import free_stiffness, ring_rotor
+from scipy.integrate import solve_ivp
 
 from exudyn_rotor import (
+    GearMesh,
+    HarmonicForce,
     Link,
     ReducedRotor,
     RotorTrain,
     SolidRotor,
     Support,
+    Unbalance,
     campbell,
     craig_bampton_modes,
     critical_speeds,
+    harmonic_response,
     linear_model,
     stability,
+    unbalance_response,
 )
 from validation.references.benchmark_rotors import meshed
 
@@ -68,24 +75,25 @@ def two_discs(ratio: float, ground=GROUND[0], axis: str = "z", **changes) -> Rot
     return RotorTrain(rotors, {"A": 1.0, "B": ratio}, supports, links, **changes)
 
 
-def two_discs_exactly(
-    ratio: float, speed: float, ground=GROUND[0], damped: bool = True
-) -> np.ndarray:
-    """Return exponents by hand: per rotor x, y and the tilts α, β about them.
+def at(rotor: int, z: float) -> np.ndarray:
+    """Return displacement at z, x + βz and y − αz, by the coordinates of both rotors."""
+    rows = np.zeros((2, 8))
+    rows[:, 4 * rotor : 4 * rotor + 4] = [[1.0, 0.0, 0.0, z], [0.0, 1.0, -z, 0.0]]
+    return rows
 
-    ``I_t α̈ + I_p Ω β̇ = M_α, I_t β̈ − I_p Ω α̇ = M_β``; displacement at z: x + βz, y − αz.
+
+def by_hand(
+    ratio: float, speed: float, ground=GROUND[0], damped: bool = True
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, D and K of two rigid rotors: per rotor x, y and the tilts α, β about them.
+
+    ``I_t α̈ + I_p Ω β̇ = M_α, I_t β̈ − I_p Ω α̇ = M_β``.
     """
     M, D, K = np.zeros((8, 8)), np.zeros((8, 8)), np.zeros((8, 8))
     for o, (r, half, m), rate in ((0, FIRST, speed), (4, SECOND, ratio * speed)):
         polar, transverse = m * r**2, m * (0.5 * r**2 + half**2)
         M[range(o, o + 4), range(o, o + 4)] = m, m, transverse, transverse
         D[o + 2, o + 3], D[o + 3, o + 2] = polar * rate, -polar * rate
-
-    def at(rotor: int, z: float) -> np.ndarray:
-        rows = np.zeros((2, 8))
-        rows[:, 4 * rotor : 4 * rotor + 4] = [[1.0, 0.0, 0.0, z], [0.0, 1.0, -z, 0.0]]
-        return rows
-
     stiff = ground if np.ndim(ground) else ground * np.eye(2)
     (za, zb), (k, c) = (FIRST[1], SECOND[1]), BETWEEN
     for rows, spring, damper in (
@@ -97,7 +105,12 @@ def two_discs_exactly(
     ):
         K += rows.T @ spring @ rows
         D += damped * damper * rows.T @ rows
-    zero, one = np.zeros((8, 8)), np.eye(8)
+    return M, D, K
+
+
+def exponents_of(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return the exponents with Im λ > 0."""
+    zero, one = np.zeros_like(M), np.eye(len(M))
     values = la.eigvals(np.block([[zero, one], [-la.solve(M, K), -la.solve(M, D)]]))
     return values[values.imag > 0.0]
 
@@ -115,7 +128,7 @@ def test_two_rigid_discs_are_those_of_the_closed_form(ratio, ground):
     """Constant equations, or Hill's method: both to the rounding of an eigenvalue."""
     found = campbell(two_discs(ratio, ground), [0.0, 300.0])
     for row, speed in enumerate(found.speeds):
-        exact = two_discs_exactly(ratio, speed, ground)
+        exact = exponents_of(*by_hand(ratio, speed, ground))
         exact = exact[np.argsort(exact.imag)]
         np.testing.assert_allclose(lateral(found, row), exact, rtol=1e-9, atol=1e-7)
 
@@ -145,7 +158,7 @@ def test_critical_speeds_by_unbalance_of_either_rotor(order):
     train = two_discs(1.7)
     found = critical_speeds(train, order=order, nodal_diameters=[1]).speeds
     for speed in found:
-        exact = two_discs_exactly(1.7, speed, damped=False).imag
+        exact = exponents_of(*by_hand(1.7, speed, damped=False)).imag
         assert np.abs(exact / (order * speed) - 1.0).min() < 1e-9
     if order != 1.0:
         again = critical_speeds(train.relative_to("B"), nodal_diameters=[1]).speeds
@@ -312,3 +325,143 @@ def test_what_does_not_repeat_is_refused():
         linear_model(RotorTrain(lossy, train.ratios))
     with pytest.raises(ValueError, match="has its own"):
         linear_model(train, supports=[turning])
+
+
+@pytest.mark.parametrize("ratio", [1.7, -1.3])
+@pytest.mark.parametrize("ground", [GROUND[0], UNEVEN], ids=["isotropic", "cross-coupled"])
+def test_unbalance_of_either_rotor(ratio, ground):
+    """``(K + iωD − ω²M) x = ω²U(1, −i)``, ω the speed of the unbalanced rotor."""
+    train, speeds = two_discs(ratio, ground), np.array([90.0, 250.0])
+    for name, rate, rotor, half in (("A", 1.0, 0, FIRST[1]), ("B", ratio, 1, SECOND[1])):
+        given = train.relative_to(name)
+        values = np.sort(rate * speeds)
+        found = unbalance_response(
+            given, values, Unbalance(f"{name}:b", 1e-4), own=False, allow_negative=True
+        )
+        for row, omega in enumerate(values):
+            M, D, K = by_hand(ratio, omega / rate, ground)
+            load = 1e-4 * omega**2 * at(rotor, half).T @ [1.0, -1.0j]
+            x = la.solve(K + 1j * omega * D - omega**2 * M, load)
+            for place, exact in (("A:a", at(0, -FIRST[1]) @ x), ("B:b", at(1, SECOND[1]) @ x)):
+                motion = found.motion[
+                    row, found.places.index(place), found.orders.tolist().index(1)
+                ]
+                np.testing.assert_allclose(motion[:2], exact, rtol=1e-8, atol=1e-16)
+
+
+def test_loads_that_turn_with_another_rotor_are_refused():
+    train = two_discs(1.7)
+    with pytest.raises(ValueError, match=r"'B:b': turns with 1\.7 times .*relative_to\('B'\)"):
+        unbalance_response(train, [100.0], Unbalance("B:b", 1e-4))
+    turning = HarmonicForce("B:b", [1.0, 0.0], frame="rotor")
+    with pytest.raises(ValueError, match=r"turns with 1\.7 times"):
+        harmonic_response(train, [100.0], turning, speed=50.0)
+    still = harmonic_response(train, [100.0], HarmonicForce("B:b", [1.0, 0.0]), speed=50.0)
+    M, D, K = by_hand(1.7, 50.0)
+    x = la.solve(K + 100j * D - 1e4 * M, at(1, SECOND[1]).T @ [1.0, 0.0])
+    np.testing.assert_allclose(still.phasor("A:a"), (at(0, -FIRST[1]) @ x)[0], rtol=1e-8)
+
+
+def gears(lines: float = 0.3) -> GearMesh:
+    """Return a mesh of ratio −0.5 with a helix, its line of action askew."""
+    angles = {"line_angle": lines, "helix_angle": 0.2, "pressure_angle": 0.35}
+    return GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0, **angles)
+
+
+def test_geared_rotors_are_those_of_constant_equations_at_rest():
+    """In axes at rest everything is constant, and six coordinates a rotor give the exponents."""
+    mesh, speed = gears(), 200.0
+    v, (k, c) = mesh.direction, (mesh.stiffness, mesh.damping)
+    held = np.diag([3e5, 2e5, 1e5])
+    supports = {n: [Support(p, held, 10.0 * np.eye(3)) for p in "ab"] for n in "AB"}
+    M, D, K = np.zeros((12, 12)), c * np.outer(v, v), k * np.outer(v, v)
+    for o, (r, half, m), rate in ((0, FIRST, speed), (6, SECOND, -0.5 * speed)):
+        polar, transverse = m * r**2, m * (0.5 * r**2 + half**2)
+        M[range(o, o + 6), range(o, o + 6)] = m, m, m, transverse, transverse, polar
+        D[o + 3, o + 4] += polar * rate
+        D[o + 4, o + 3] -= polar * rate
+        for z in (-half, half):
+            rows = np.zeros((3, 12))
+            rows[:, o : o + 6] = np.eye(3, 6)
+            rows[0, o + 4], rows[1, o + 3] = z, -z
+            K += rows.T @ held @ rows
+            D += 10.0 * rows.T @ rows
+    # the mesh is at the middle of both rotors
+    rotors = {n: rings(*d).with_interface("gear", range(10)).reduce(0)
+              for n, d in (("A", FIRST), ("B", SECOND))}  # fmt: skip
+    links = [Link("A:gear", "B:gear", mesh)]
+    train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, links)
+    found = campbell(train, [0.0, speed])
+    exact = exponents_of(M, D, K)
+    exact = exact[exact.imag > 1.0]  # without the common spin, which is free
+    assert len(exact) == 11
+    values = found.growth[-1] + 1j * found.frequencies_inertial[-1]
+    assert np.abs(exact[:, None] - values).min(axis=1).max() < 1e-6
+    assert sum("spin" in motion for motion in found.free_motions) == 1
+    with pytest.raises(ValueError, match=r"turn with 1 and -0.5, not 0.5, times"):
+        RotorTrain(rotors, {"A": 1.0, "B": 0.5}, supports, links)
+
+
+def test_geared_inertias_have_their_torsion():
+    """``ω² = k (r₁²/Θ₁ + r₂²/Θ₂)`` where bearings hold the axes of the gears."""
+    mesh = GearMesh(radii=[0.1, 0.2], stiffness=1e4)
+    rotors = {"A": rigid(*FIRST), "B": rigid(*SECOND)}
+    supports = {n: [Support(p, 1e12) for p in "ab"] for n in "AB"}
+    train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
+    inertias = [d[2] * d[0] ** 2 for d in (FIRST, SECOND)]
+    exact = np.sqrt(1e4 * (0.1**2 / inertias[0] + 0.2**2 / inertias[1]))
+    found = campbell(train, [0.0, 50.0]).frequencies_inertial[-1]
+    assert np.abs(found / exact - 1.0).min() < 1e-6
+
+
+def test_uneven_rotor_at_a_whole_ratio_against_the_monodromy_matrix():
+    """A bar that turns twice as fast on a disc on unequal supports, integrated by itself.
+
+    In the frame of the bar ``I₁φ̈₁ − (I₁+I₂−I₃)ωφ̇₂ + (I₃−I₂)ω²φ₁ = m₁``, likewise φ₂ (Euler).
+    """
+    speed, ratio = 150.0, 2.0
+    disc, omega = rigid(*FIRST), ratio * speed
+    spring = 8e4
+    supports = {"A": [Support(n, [[3e5, 0.0], [0.0, 1e5]], 20.0) for n in "ab"]}
+    links = [Link(f"A:{n}", f"B:{n}", Support(n, spring, 3.0)) for n in "ab"]
+    train = RotorTrain({"A": disc, "B": bar()}, {"A": 1.0, "B": ratio}, supports, links)
+    found = stability(train, [speed]).exponents[0]
+    half, (r, za, m) = 0.05, FIRST
+    I1, I2, I3 = 4 * half**2, 4 * (0.2**2 + half**2), 4 * 0.2**2
+    polar, transverse = m * r**2, m * (0.5 * r**2 + za**2)
+    inertia = np.array([m, m, transverse, transverse, 4.0, 4.0, I1, I2])
+    D, K = np.zeros((8, 8)), np.zeros((8, 8))
+    D[2, 3], D[3, 2] = polar * speed, -polar * speed
+    D[6, 7], D[7, 6] = -(I1 + I2 - I3) * omega, (I1 + I2 - I3) * omega
+    K[6, 6], K[7, 7] = (I3 - I2) * omega**2, (I3 - I1) * omega**2
+
+    def rate(time: float, state: np.ndarray) -> np.ndarray:
+        c, s = np.cos(omega * time), np.sin(omega * time)
+        x, v = state.reshape(2, 8, -1)
+        force = -(K @ x + D @ v)
+        for z_a, z_b in ((-za, -half), (za, half)):
+            tilts, drift = np.array([[c, -s], [s, c]]), omega * np.array([[-s, -c], [c, -s]])
+            lever = z_b * np.array([[0.0, 1.0], [-1.0, 0.0]])
+            A, B = at(0, z_a), at(1, z_b)
+            B[:, 6:], B_t = lever @ tilts, np.zeros((2, 8))
+            B_t[:, 6:] = lever @ drift
+            pull = spring * (A - B) @ x + 3.0 * ((A - B) @ v - B_t @ x)
+            force = force - (A - B).T @ pull
+            force -= A.T @ (np.diag([3e5, 1e5]) @ A @ x + 20.0 * A @ v)
+        return np.concatenate([v, force / inertia[:, None]]).ravel()
+
+    period = 2.0 * np.pi / speed
+    end = solve_ivp(rate, (0.0, period), np.eye(16).ravel(), method="DOP853",
+                    rtol=1e-9, atol=1e-12).y[:, -1]  # fmt: skip
+    multipliers = np.linalg.eigvals(end.reshape(16, 16))
+    distance = np.abs(np.exp(found * period)[:, None] - multipliers).min(axis=0)
+    assert distance.max() < 1e-6
+
+
+def test_turned_mesh_in_full_and_in_the_mean():
+    """A solid at the ratio 2 with all its harmonics: the mean errs by the unevenness squared."""
+    train = dual_spool(2.0)
+    exact = dataclasses.replace(train, largest_unevenness=0.0)
+    mean, full = (lateral(campbell(one, [0.0, 500.0], accuracy=None))[:8] for one in (train, exact))
+    uneven = linear_model(train).unevenness["outer"]
+    assert 1e-9 < np.abs(mean.imag / full.imag - 1.0).max() < 5.0 * uneven**2

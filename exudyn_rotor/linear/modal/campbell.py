@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
@@ -28,7 +27,7 @@ from exudyn_rotor.linear.models.linear_model import (
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.sweep import checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.threads import one_thread
 
@@ -139,7 +138,7 @@ def campbell(
     >>> result.whirl[1, 1:5].tolist()
     ['forward', 'forward', 'backward', 'backward']
     """
-    values = _checked_speeds(speeds, checks.flag(allow_negative, "allow_negative"))
+    values = checked_speeds(speeds, allow_negative)
     if modes is not None:
         checks.count(modes, "modes", least=1)
     tolerance = options.accuracy(tolerance, "tolerance")
@@ -344,13 +343,6 @@ def _warn_of_basis(basis: BasisError, result: Campbell) -> None:
     )
     word = result.whirl[at, mode]
     basis.warn(errors, f"mode {mode + 1} ({word}, {frequency:.4g} Hz) at {speed:.4g} Hz")
-
-
-def _checked_speeds(speeds: ArrayLike, allow_negative: bool) -> np.ndarray:
-    if allow_negative:
-        return ascending(speeds, "speeds")
-    turn = "pass allow_negative=True if the rotor is meant to spin the other way round"
-    return ascending_from_zero(speeds, "speeds", turn)
 
 
 def _checked_count(modes: int | None, model: LinearModel) -> int:

@@ -134,7 +134,7 @@ def linear_model(
             return ControlledRotor.of(target, linear, controlled, stiffening)
         return _founded(LinearRotor.of(target, linear, stiffening), foundation)
     how = (
-        "needs a ReducedRotor, a SolidRotor, a RotorTrain, a linear model, or an exudyn.MainSystem "
+        "needs a ReducedRotor, a SolidRotor, a linear model, a RotorTrain, or an exudyn.MainSystem "
         "with body=…"
     )
     if not isinstance(target, SolidRotor):

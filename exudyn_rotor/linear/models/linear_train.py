@@ -16,9 +16,16 @@ from typing import ClassVar
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import checked_supports
 from exudyn_rotor.linear.models.free_motions import named_motions
-from exudyn_rotor.linear.models.links import Element, add, stacked, turning_congruence
+from exudyn_rotor.linear.models.links import (
+    Element,
+    add,
+    rate_of,
+    stacked,
+    turning_congruence,
+)
 from exudyn_rotor.linear.models.points import radius_of_gyration
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
@@ -48,6 +55,8 @@ class LinearTrain:
     is_full: ClassVar[bool] = False
     mesh: ClassVar[None] = None
     has_structural_damping: ClassVar[bool] = False
+    standing: ClassVar[np.ndarray] = checks.read_only(np.zeros(0, dtype=int), int)
+    standing_interfaces: ClassVar[tuple[str, ...]] = ()
 
     train: RotorTrain
     parts: dict[str, TurnedRotor]
@@ -198,14 +207,28 @@ class LinearTrain:
             )
         return motion[0]
 
+    def check_turning(self, name: str) -> None:
+        """Refuse a load that turns with an interface whose rotor has another speed than Ω.
+
+        Raises
+        ------
+        ValueError
+        """
+        owner, _, _ = name.partition(":")
+        ratio = self.train.ratios[owner]
+        if ratio != 1.0:
+            raise ValueError(
+                f"at: {name!r}: turns with {ratio:g} times the speed of the analysis; give "
+                f"train.relative_to({owner!r}), over the speed of that rotor"
+            )
+
     @cached_property
     def _constant(self) -> tuple[Terms, Terms, Terms]:
         """Damping, stiffness and stiffness per Ω of the elements that do not vary with it."""
         sums: tuple[dict, dict, dict] = ({}, {}, {})
         for element, U in zip(self.elements, self._motions, strict=True):
             if not element.varies:
-                for terms, part in zip(sums, element.parts(0.0), strict=True):
-                    _join(terms, turning_congruence(U, part))
+                _join_element(sums, element, U, 0.0)
         return sums
 
     def at(self, speed: float) -> PeriodicSystem:
@@ -213,8 +236,7 @@ class LinearTrain:
         D, K, carried = (dict(terms) for terms in self._constant)
         for element, U in zip(self.elements, self._motions, strict=True):
             if element.varies:
-                for terms, part in zip((D, K, carried), element.parts(speed), strict=True):
-                    _join(terms, turning_congruence(U, part))
+                _join_element((D, K, carried), element, U, speed)
         _join(K, {n: speed * X for n, X in carried.items()})
         for name, part in self.parts.items():
             own = self._slices[name]
@@ -279,6 +301,17 @@ class LinearTrain:
         _, _, pivots = la.qr(momenta.T, pivoting=True)
         driven = tuple(pivots[: momenta.shape[1]].tolist())
         return WholeSpace(self, can_be_sent=True, driven=driven)
+
+
+def _join_element(sums: tuple[dict, dict, dict], element: Element, U: Terms, speed: float) -> None:
+    """Add damping, stiffness and stiffness per Ω of an element whose ends move by ``x = U(θ) y``.
+
+    ``ẋ = U ẏ + Ω U′ y``: the damping is a stiffness where U changes.
+    """
+    parts = element.parts(speed)
+    for terms, part in zip(sums, parts, strict=True):
+        _join(terms, turning_congruence(U, part, U))
+    _join(sums[2], turning_congruence(U, parts[0], rate_of(U)))
 
 
 def _join(terms: dict[int, np.ndarray], more: Terms) -> None:

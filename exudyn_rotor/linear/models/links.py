@@ -213,17 +213,22 @@ def whole(multiple: float, what: str) -> int:
     return nearest
 
 
-def turning_congruence(U: Terms, X: Terms) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X(θ) U(θ)``."""
+def turning_congruence(U: Terms, X: Terms, V: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X(θ) V(θ)``."""
     terms: dict[int, np.ndarray] = {}
     for n, part in X.items():
         for a, left in U.items():
-            for b, right in U.items():
-                if n == a == b == 0:
+            for b, right in V.items():
+                if n == a == b == 0 and left is right:
                     add(terms, 0, congruent(part.real, left))
                 else:
                     add(terms, n + a + b, left.T @ part @ right)
     return terms
+
+
+def rate_of(U: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``dU/dθ``."""
+    return {n: 1j * n * X for n, X in U.items() if n}
 
 
 def add(terms: dict[int, np.ndarray], n: int, X: np.ndarray) -> None:

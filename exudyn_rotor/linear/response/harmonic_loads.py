@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.response.places import At, Place, place
 from exudyn_rotor.linear.response.unbalance import Unbalance
@@ -63,6 +64,8 @@ class HarmonicForce:
     def _harmonics(self, model: LinearModel) -> dict[int, np.ndarray]:
         """Return the harmonics (k,) of the load in the rotor frame."""
         point = place(model, self.at)
+        if self.frame == "rotor" and isinstance(model, LinearTrain):
+            model.check_turning(point.label)
         if point.is_node and np.any(self.moment):
             raise ValueError(
                 f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
@@ -139,6 +142,8 @@ def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: boo
         point = place(model, unbalance.at)
         if point.stands:
             raise ValueError(f"unbalance at {unbalance.at!r}: a foundation does not turn")
+        if isinstance(model, LinearTrain):
+            model.check_turning(point.label)
         load += _pulled(point, wrench)
     return load
 

@@ -49,7 +49,7 @@ from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceRe
 from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.sweep import ascending_from_zero, checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 
 _MODES = 6  # that the subspace of a full rotor begins with
@@ -70,6 +70,7 @@ def unbalance_response(
     residual: float = 1e-9,
     refine: bool = False,
     accuracy: float | None = 1e-2,
+    allow_negative: bool = False,
     executor: Executor | None = None,
     progress: bool = False,
 ) -> UnbalanceResponse:
@@ -85,7 +86,7 @@ def unbalance_response(
         See :func:`linear_model`. A SolidRotor is solved unreduced, each speed checked by the
         residual of the full equations.
     speeds : array_like, shape (s,)
-        Ascending spin speeds ≥ 0 [rad/s].
+        Ascending spin speeds [rad/s], ≥ 0 but with `allow_negative`.
     unbalances : sequence of Unbalance, optional
         In addition to the rotor's own.
     own : bool, optional
@@ -112,6 +113,8 @@ def unbalance_response(
     accuracy : float, optional
         Relative error of a motion by the basis of a reduced rotor, estimated, above which a warning
         is given: see :attr:`Response.basis_errors`. None for no estimate.
+    allow_negative : bool, optional
+        Accept speeds below zero: the rotor spins the other way round.
     executor : concurrent.futures.Executor, optional
         Computes the speeds; see :func:`exudyn_rotor.sweep.sweep`. A SolidRotor does not use
         it: its speeds share one subspace.
@@ -138,7 +141,7 @@ def unbalance_response(
     >>> response.semi_axes("left")[0].round(6)  # m e Ω² / |k − mΩ² + icΩ|
     array([1.7e-05, 1.0e-03, 9.0e-05])
     """
-    values = ascending_from_zero(speeds, "speeds")
+    values = checked_speeds(speeds, allow_negative)
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
     _check(frame, tolerance, residual, accuracy)
@@ -146,13 +149,14 @@ def unbalance_response(
     options.check_sweep(executor, progress)
     at = checked_places(at)
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening, dense=False)
-    warn_of_left_out_stiffening(model, values[-1])
+    fastest = np.abs(values).max()
+    warn_of_left_out_stiffening(model, fastest)
     observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
     basis = BasisError.of(model, accuracy)
-    space = model.space(_MODES, values[-1], loads=[load], residual=residual)
+    space = model.space(_MODES, fastest, loads=[load], residual=residual)
     observation = _Observation.of(observed, frame, tolerance, model)
-    task = _UnbalanceTask(space.prepared(values[values > 0.0]), load, observation)
+    task = _UnbalanceTask(space.prepared(values[values != 0.0]), load, observation)
     workers = None if space.is_shared else executor
     given = {"executor": workers, "progress": progress, "label": "unbalance response"}
     solved = sweep(task, values, **given)
@@ -167,10 +171,10 @@ def unbalance_response(
 
     def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
         load = unbalance_load(finer, unbalances, own)
-        space = finer.space(_MODES, values[-1], loads=[load])
+        space = finer.space(_MODES, fastest, loads=[load])
         return _UnbalanceTask(space, load, observation)
 
-    constant = space.at(values[-1]).is_constant
+    constant = space.at(fastest).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
     extra = _kept(model, solved)

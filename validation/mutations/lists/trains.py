@@ -59,4 +59,24 @@ TRAINS = [
         _TESTS + "test_critical_speeds_by_unbalance_of_either_rotor",
         ("damping in critical speeds", "is_damped=False", "is_damped=True"),
     ),
+    *mutations(
+        "linear/models/links.py",
+        _TESTS + "test_unbalance_of_either_rotor",
+        ("links push as they pull", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, 1.0], [1.0, 1.0]]"),
+    ),
+    *mutations(
+        "linear/models/links.py",
+        _TESTS + "test_uneven_rotor_at_a_whole_ratio_against_the_monodromy_matrix",
+        ("damping where places turn with a rotor", "1j * n * X", "-1j * n * X"),
+    ),
+    *mutations(
+        "linear/models/linear_train.py",
+        _TESTS + "test_loads_that_turn_with_another_rotor_are_refused",
+        ("unbalance of any rotor at the common speed", "if ratio != 1.0:", "if False:"),
+    ),
+    *mutations(
+        "linear/models/linear_train.py",
+        _TESTS + "test_geared_rotors_are_those_of_constant_equations_at_rest",
+        ("free spins of geared rotors held", "values <= _HELD", "values < -_HELD"),
+    ),
 ]
