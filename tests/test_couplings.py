@@ -1,5 +1,7 @@
 """Flexible couplings and Cardan joints: closed forms, energy, loads of misalignment, scenes."""
 
+from dataclasses import replace
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -61,6 +63,16 @@ def test_tangent_is_that_of_a_relaxed_coupling(name):
             ahead[place], back[place] = rest + move, rest - move
             columns.append((law.forces(*back) - law.forces(*ahead)) / (2.0 * step))
         np.testing.assert_allclose(np.transpose(columns), matrix, atol=1e-6 * np.abs(matrix).max())
+
+
+def test_linear_analyses_take_the_same_matrices():
+    coupling = COUPLINGS["flexible"]
+    aligned = replace(coupling, misalignment=np.zeros(4), runout=np.zeros(4))
+    tangent = aligned.law.tangent(np.zeros(12), np.zeros(12))
+    support = coupling.support("right")
+    assert (support.interface, support.frame) == ("right", "rotor")
+    for found, expected in zip(support.matrices(0.0), tangent, strict=True):
+        np.testing.assert_allclose(found, expected[6:, 6:], rtol=1e-12)
 
 
 def test_loads_of_misalignment():

@@ -12,11 +12,14 @@ from exudyn_rotor import (
     DirectCurrentMotor,
     Drag,
     GearMesh,
+    Link,
+    RotorTrain,
     Support,
     TorqueCurve,
     add_drive,
     add_rotor,
     add_supports,
+    campbell,
     connect_rotors,
 )
 
@@ -65,8 +68,11 @@ def pair(
     return mbs, (one, two), connection
 
 
-def closed_form(gears, support):
-    """Return the frequencies of two rigid rotors at rest [rad/s]: masses, springs and k v vᵀ."""
+def closed_form(gears, support, speed=0.0):
+    """Return M, G, K (12, 12) of two rigid rotors in axes that stand still, by hand.
+
+    Each has u, φ; masses, springs of the supports, k v vᵀ; J Ω × φ̇ of the tilts.
+    """
     mass, across = 5.0, 5.0 * (0.5 * 0.1**2 + 0.15**2)
     M = np.diag([mass] * 3 + [across] * 2 + [J])
     arm = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]) * 0.15
@@ -78,7 +84,10 @@ def closed_form(gears, support):
             gear[:3] = move
     v = np.hstack([gears.direction[:6] @ gear, gears.direction[6:] @ gear])
     K = scipy.linalg.block_diag(K, K) + gears.stiffness * np.outer(v, v)
-    return np.sqrt(np.abs(scipy.linalg.eigvalsh(K, scipy.linalg.block_diag(M, M))))
+    G = np.zeros((12, 12))
+    for first, own in ((3, speed), (9, -speed * RADII[0] / RADII[1])):
+        G[first, first + 1], G[first + 1, first] = J * own, -J * own
+    return scipy.linalg.block_diag(M, M), G, K
 
 
 @pytest.mark.parametrize("helix_angle", [0.0, 0.3])
@@ -88,9 +97,50 @@ def test_frequencies_at_rest_are_those_of_masses_and_springs(helix_angle):
     mbs, _, _ = pair(gears, first=options, second=options)
     mbs.Assemble()
     squares = mbs.ComputeODE2Eigenvalues()[0]
-    expected = closed_form(gears, 2e6)
+    M, _, K = closed_form(gears, 2e6)
+    expected = np.sqrt(np.abs(scipy.linalg.eigvalsh(K, M)))
     found = np.sqrt(np.abs(np.sort(squares)))[-len(expected) + 1 :]
     np.testing.assert_allclose(found, expected[1:], rtol=1e-5)
+
+
+def first_order(M, G, K):
+    """Return A of d(x, ẋ)/dt = A (x, ẋ)."""
+    below = np.hstack([-np.linalg.solve(M, K), -np.linalg.solve(M, G)])
+    return np.vstack([np.eye(12, 24, 12), below])
+
+
+def test_a_kick_goes_through_gears_and_gyroscopes():
+    """Against the linear equations by hand; the phase errs by ω³h²t/12."""
+    gears, speed = mesh(helix_angle=0.3), 400.0
+    mbs, _, connection = pair(
+        gears,
+        first={"initial_speed": speed, "initial_velocity": [0.02, 0.01, 0.0]},
+        second={"initial_speed": -speed * RADII[0] / RADII[1]},
+    )
+    sensor = connection.add_sensor()
+    run(mbs, 0.02, 800, accuracy=1e-7)
+    A, start, side = first_order(*closed_form(gears, 2e6, speed)), np.zeros(24), np.eye(6)
+    start[12:14] = 0.02, 0.01
+    side[0, 4], side[1, 3] = -0.15, 0.15  # φ × (−0.15 e)
+    row = gears.stiffness * gears.direction @ np.kron(np.eye(2), side)
+    time, found = mbs.GetSensorStoredData(sensor)[::40, :2].T
+    expected = np.array([row @ (scipy.linalg.expm(t * A) @ start)[:12] for t in time])
+    np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected).max())
+
+
+def test_the_linear_train_of_both_is_the_same():
+    gears, speed = mesh(helix_angle=0.3), 400.0
+    roots = np.linalg.eigvals(first_order(*closed_form(gears, 2e6, speed)))
+    expected = np.sort(np.abs(roots.imag))[2::2]
+    supports, rotor = [Support(name, 2e6 * np.eye(3)) for name in ENDS], rings().reduce(0)
+    train = RotorTrain(
+        {"one": rotor, "two": rotor},
+        {"one": 1.0, "two": -RADII[0] / RADII[1]},
+        {"one": supports, "two": supports},
+        [Link("one:left", "two:left", gears)],
+    )
+    found = np.sort(campbell(train, [speed], accuracy=None).frequencies_inertial[0])
+    np.testing.assert_allclose(found[-len(expected) :], expected, rtol=1e-6)
 
 
 MOTOR = DirectCurrentMotor(stall_torque=9.0, no_load_speed=60.0)

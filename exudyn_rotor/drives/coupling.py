@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.connection import Connection
 from exudyn_rotor.theory.nodal import skew
 
@@ -94,6 +95,22 @@ class FlexibleCoupling(Connection):
         fixed[list(_ACROSS)], turning[list(_ACROSS)] = self.misalignment, self.runout
         keep("_fixed", fixed)
         keep("_turning", turning)
+
+    def support(self, interface: str) -> Support:
+        """Return what linear analyses take for a coupling, without its misalignment.
+
+        Parameters
+        ----------
+        interface : str
+            Of the first rotor of the :class:`Link` that gets it.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For bad input.
+        """
+        parts = (self._K[:3], self._D[:3], self._K[3:], self._D[3:])
+        return Support(interface, *map(np.diag, parts), frame="rotor")
 
     # -------------------------------------------------------------- law
 

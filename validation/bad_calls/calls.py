@@ -440,6 +440,7 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "GearMesh.mesh_frequency": lambda w: {"speed": 100.0},
     "*.forces": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
     "*.transmitted": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
+    "FlexibleCoupling.support": lambda w: {"interface": "left"},
     "CardanJoint.speed_ratio": lambda w: {"angle": 1.0},
     "*.torque": lambda w: {"speed": 10.0},
     "RotorTrain.relative_to": lambda w: {"rotor": "second"},

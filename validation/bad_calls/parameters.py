@@ -516,6 +516,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("FlexibleCoupling", "lateral"): v.NOT_NEGATIVE.but(three=[1.0, 2.0, 3.0]),
     ("FlexibleCoupling", "misalignment"): _FIELD,
     ("FlexibleCoupling", "runout"): _FIELD,
+    ("FlexibleCoupling.support", "interface"): v.NAME,
     ("FlexibleCoupling", "torsion"): v.POSITIVE,
     ("GearMesh", "backlash"): Kind(v.NOT_NEGATIVE.good | {"None"}, v.NOT_NEGATIVE.more),
     ("GearMesh", "damping"): v.NOT_NEGATIVE,
