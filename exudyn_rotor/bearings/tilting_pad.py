@@ -29,7 +29,7 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
 
-_STEPS, _SHORTER = 60, 12  # of Newton's method, and halvings of one
+_STEPS, _SHORTER = 60, 8  # of Newton's method, and halvings of one
 _CLOSE = 1e-9  # of the load: it stops there
 _TILTS = 24  # tried, between those at which an edge touches
 _SMALL = 1e-9  # of the largest moment: none
