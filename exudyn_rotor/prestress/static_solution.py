@@ -41,7 +41,7 @@ from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor, check_unstressed
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.choice import Way, way_of
-from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_rigid_motions, inertia_relief
+from exudyn_rotor.solvers.inertia_relief import InertiaRelief, free_motions_of, inertia_relief
 from exudyn_rotor.theory.nodal import rotations, skew
 
 # a stress field in equilibrium loses a few per cent where it was averaged at nodes
@@ -136,7 +136,7 @@ def relief_rotations(rotor: FiniteElementRotor) -> np.ndarray:
     carried = rotor.carried_prestress
     if not carried.balanced:
         return np.zeros((2, 3))
-    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+    free = free_motions_of(rotor)
     loads = np.stack([centrifugal_load(rotor), euler_load(rotor)])
     turns = rotations(rotor.nodes, rotor.center_of_mass)
     inertia = turns.T @ (rotor.mass @ turns)

@@ -11,7 +11,7 @@ from exudyn_rotor.prestress.static_solution import centrifugal_load, euler_load
 from exudyn_rotor.solid.carried_prestress import Prestress
 from exudyn_rotor.solid.rigid import lost_digits, unsupported_nodes
 from exudyn_rotor.solid.rotor import FiniteElementRotor
-from exudyn_rotor.solvers.inertia_relief import free_rigid_motions
+from exudyn_rotor.solvers.inertia_relief import free_motions_of
 from exudyn_rotor.theory.nodal import coupled, rotations
 
 # share of the load by which an imported matrix may miss it, on positions and on rotations
@@ -174,5 +174,5 @@ def _check_rotations(rotor: FiniteElementRotor, prestress: Prestress) -> None:
 
 def _balanced(rotor: FiniteElementRotor, load: np.ndarray) -> np.ndarray:
     """Return a load (3n,) less the inertia forces of the rigid motions that it causes."""
-    free = free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+    free = free_motions_of(rotor)
     return load - rotor.mass @ (free @ (free.T @ load))

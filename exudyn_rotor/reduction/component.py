@@ -10,7 +10,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.inertia_relief import (
-    free_rigid_motions,
+    free_motions_of,
     inertia_relief,
     relative_rounding,
 )
@@ -122,7 +122,7 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     check_rotor(rotor)
     checks.tolerance(tolerance)
     stiffness, mass = rotor.stiffness, rotor.mass
-    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
+    rigid = free_motions_of(rotor)
     size, rigid_count = rigid.shape
     check_count(count, size - rigid_count, smallest=1)
     graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())

@@ -245,6 +245,20 @@ def held_inverse(rotor: ElasticBody, nodes: np.ndarray) -> InertiaRelief:
 _known: dict[int, tuple[weakref.ref[sp.csr_array], tuple, InertiaRelief]] = {}
 
 
+def free_motions_of(rotor: ElasticBody) -> np.ndarray:
+    """Return the :func:`free_rigid_motions` of a rotor; those of its elastic inverse if known."""
+    known = _known_relief(rotor)
+    if known is not None:
+        return known.rigid
+    return free_rigid_motions(rotor.nodes, rotor.mass, rotor.stiffness, rotor.rigid_motions)
+
+
+def _known_relief(rotor: ElasticBody) -> InertiaRelief | None:
+    earlier = _known.get(id(rotor.stiffness))
+    same = earlier is not None and earlier[0]() is rotor.mass
+    return earlier[2] if same and earlier[1] == (rotor.rigid_motions, rotor.solver) else None
+
+
 def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
     """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
 
@@ -255,14 +269,12 @@ def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
     TooLittleMemoryError
         If neither way fits into the memory that is available.
     """
+    known = _known_relief(rotor)
+    if known is not None:
+        return known
     stiffness, mass = rotor.stiffness, rotor.mass
-    earlier = _known.get(id(stiffness))
-    kind = rotor.rigid_motions, rotor.solver
-    if earlier is not None and earlier[0]() is mass and earlier[1] == kind:
-        return earlier[2]
-    rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
-    relief = InertiaRelief(stiffness, mass, rigid, way_of(rotor))
-    if earlier is None:
+    relief = InertiaRelief(stiffness, mass, free_motions_of(rotor), way_of(rotor))
+    if id(stiffness) not in _known:
         weakref.finalize(stiffness, _known.pop, id(stiffness), None)
-    _known[id(stiffness)] = weakref.ref(mass), kind, relief
+    _known[id(stiffness)] = weakref.ref(mass), (rotor.rigid_motions, rotor.solver), relief
     return relief

@@ -11,11 +11,14 @@ import scipy.sparse.linalg as spla
 
 from exudyn_rotor.solvers.factor import DENSE_SIZE
 from exudyn_rotor.solvers.rounding import rounding
+from exudyn_rotor.threads import one_thread
 
 Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498
 # share of ω² M φ that iteration may leave
 _RESIDUAL_LIMIT = 1e-6
+# vectors that iteration begins with; one and a half for each mode take the fewest solutions
+_LEAST_VECTORS = 20
 
 
 def is_small(size: int, count: int) -> bool:
@@ -83,7 +86,8 @@ def lanczos_modes(
     The start vector is seeded, so that results repeat. Source of the transformation: Ericsson,
     Ruhe, "The spectral transformation Lanczos method", Math. Comp. 35 (1980).
     """
-    start = np.random.default_rng(_SEED).standard_normal(stiffness.shape[0])
+    size = stiffness.shape[0]
+    start = np.random.default_rng(_SEED).standard_normal(size)
     # ARPACK takes eigenvalues of K⁻¹M below ε^⅔ for zero, and then stops too early
     load = mass @ start
     answer = inverse(load)
@@ -91,10 +95,13 @@ def lanczos_modes(
     operator = spla.LinearOperator(
         stiffness.shape, matvec=lambda force: scale * inverse(force), dtype=float
     )
+    ncv = min(size, max(_LEAST_VECTORS, 3 * count // 2))
     try:
-        values, modes = spla.eigsh(
-            stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance
-        )
+        # of its thin matrices, threads would wait for one another between the solutions
+        with one_thread():
+            values, modes = spla.eigsh(
+                stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance, ncv=ncv
+            )
     except spla.ArpackNoConvergence as error:
         raise ValueError(
             f"only {len(error.eigenvalues)} of {count} modes converged to {tolerance:.0e}; "
