@@ -41,7 +41,8 @@ class TiltingPadBearing(Bearing):
 
     For linear analyses: stiffness and damping at the whirl's frequency, the pads' motions
     eliminated. In time a pad's tilt has a history, which a force of place and velocity has not:
-    scenes take :meth:`linearised`.
+    scenes take :meth:`linearised`, about the middle of the bearing; where the speed varies, a
+    :class:`Support` with a table of the coefficients, which need not be solved for in every step.
 
     Parameters
     ----------
