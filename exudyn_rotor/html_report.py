@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support
 from exudyn_rotor.export import csv_text
+from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -27,7 +28,8 @@ from exudyn_rotor.storage import write_text
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
-_KNOWN = (str, Axes, Figure, Support, ReducedRotor, SolidRotor, LinearRotor)
+_LINEAR = (LinearRotor, RotorOnFoundation)
+_KNOWN = (str, Axes, Figure, Support, ReducedRotor, SolidRotor, *_LINEAR)
 _HOW = "a rotor, supports, a linear model, a result with table(), axes or a figure, or text"
 
 _PAGE = """<!DOCTYPE html>
@@ -175,7 +177,7 @@ def _heading(content: Any) -> str:
         return "Supports"
     if isinstance(first, SolidRotor | ReducedRotor):
         return "Rotor"
-    if isinstance(first, LinearRotor):
+    if isinstance(first, _LINEAR):
         return "Linear model"
     if isinstance(first, str):
         return "Remarks"
@@ -217,7 +219,7 @@ def _html(items: list[Any], heading: str, units: str) -> str:
             parts.append(_pre(item.summary()))
         elif isinstance(item, ReducedRotor):
             parts.append(_pre(_reduced(item)))
-        elif isinstance(item, LinearRotor):
+        elif isinstance(item, _LINEAR):
             parts.append(_pre(_model(item)))
         else:
             parts.append(_result(item, heading, units, not pictured))
@@ -322,11 +324,12 @@ def _coefficient(value: Any) -> str:
     return "[" + "; ".join(", ".join(f"{entry:.6g}" for entry in row) for row in value) + "]"
 
 
-def _model(model: LinearRotor) -> str:
-    """Return supports, level of stiffening and free motions of a linear model."""
+def _model(model: LinearRotor | RotorOnFoundation) -> str:
+    """Return supports, foundation, level of stiffening and free motions of a linear model."""
     free = ", ".join(model.free_motions) or "none"
     level = f"centrifugal stiffening: {model.stiffening}"
-    return "\n".join([_supports(model.supports), level, f"free motions: {free}"])
+    carried = [repr(model.foundation)] if isinstance(model, RotorOnFoundation) else []
+    return "\n".join([_supports(model.supports), *carried, level, f"free motions: {free}"])
 
 
 def _vector(values: np.ndarray) -> str:

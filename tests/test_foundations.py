@@ -111,9 +111,21 @@ def test_a_mode_is_named_by_what_moves():
     assert slow.sum() >= 2
     moving = slow & (found.frequencies_inertial[0] > 10.0)
     assert set(found.whirl[0, moving]) == {"foundation"}
-    growth = stability(linear_model(rotor, supports=supports, foundation=foundation), [SPEED])
+    model = linear_model(rotor, supports=supports, foundation=foundation)
+    growth = stability(model, [SPEED])
     assert np.all(growth.growth_of("foundation") < 0.0)
     assert "foundation" not in campbell(rotor, [SPEED], supports=supports).whirl
+    # without shapes, from rings in the place of the mesh, and in a scene
+    bare = linear_model(replace(rotor, shapes=None), supports=supports, foundation=foundation)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=SPEED)
+    add_supports(body, supports, add_foundation(mbs, foundation))
+    mbs.Assemble()
+    scene = linear_model(mbs, body=body, about="given")
+    for other in (bare, scene):
+        names = campbell(other, [SPEED], accuracy=None)
+        slow = (names.frequencies_inertial[0] < 60.0) & (names.frequencies_inertial[0] > 10.0)
+        assert set(names.whirl[0, slow]) == {"foundation"}
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.9, 1.7])
@@ -149,14 +161,12 @@ def test_loads_on_the_foundation_and_its_ground():
     # a force of frequency 0 in the rotor frame is a rotating one of frequency Ω outside
     load = HarmonicForce(at[1], (3.0, 0.0), frame="rotor")
     turned = harmonic_response(model, [0.0], load, speed=SPEED, at=at)
-    row = turned.motion[0, 1]
-    along = in_a_row(SPEED, OWN[0], [0.0, 3.0], 400.0, 30.0)[1]
-    both = sum(
-        row[turned.orders.tolist().index(n), 0] if n > 0 else
-        row[turned.orders.tolist().index(n), 0].conj()
-        for n in (-1, 1)
-    )  # fmt: skip
-    assert both == pytest.approx(along, rel=1e-9)
+    first, second = (turned.motion[0, 1, turned.orders.tolist().index(n), :2] for n in (1, -1))
+    expected = [
+        in_a_row(SPEED, own, [0.0, force], 400.0, damping)[1]
+        for own, force, damping in zip(OWN, (3.0, -3.0j), (30.0, 50.0), strict=True)
+    ]
+    np.testing.assert_allclose(first + second.conj(), expected, rtol=1e-9)
 
 
 def test_a_nearly_rigid_foundation_is_the_ground():

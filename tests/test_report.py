@@ -13,7 +13,7 @@ from matplotlib import pyplot, rc_context
 from point_rotors import ring_rotor
 from small_results import STORED
 
-from exudyn_rotor import Support, linear_model, report
+from exudyn_rotor import Foundation, Support, linear_model, report
 from exudyn_rotor.results import Result
 
 RESULTS = [kept for kept in STORED.values() if isinstance(kept, Result)]
@@ -107,14 +107,17 @@ def test_rotor_supports_and_model_are_described(written, ring):
         Support("mid", lambda speed: 1e4 + speed),
     ]
     reduced = ring.reduce(2)
-    text = written([ring, reduced, supports, linear_model(reduced, supports=supports[:1])])
+    frame = Foundation.from_modes([300.0], 0.01, {"mid": [[1.0], [0.0], [0.0]]})
+    models = [linear_model(reduced, supports=supports[:1], foundation=f) for f in (None, frame)]
+    text = written([ring, reduced, supports, *models])
     assert "polar 0.1, mean transverse 0.45 kg m²" in text
     assert "[400000, 0; 0, 800000] N/m" in text
     assert "200 N s/m" in text
     assert "by a table of 2 speeds, 0 to 954.93 rpm" in text
     assert "by a function of the speed" in text
     assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
-    assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", "Linear model"]
+    assert "Foundation(1 coordinates, 47.75 to 47.75 Hz, points: mid)" in text
+    assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", *["Linear model"] * 2]
 
 
 def test_own_pictures_take_the_place_of_the_usual_one(written):

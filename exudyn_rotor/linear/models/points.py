@@ -47,8 +47,8 @@ def ring_motions(rings: Sequence[Ring], size: int) -> PointMotions:
 
 
 def ring_size(rings: Sequence[Ring]) -> int:
-    """Return how many points :func:`ring_motions` makes."""
-    return 1 + _CORNERS * len(rings)
+    """Return how many points of :func:`ring_motions` move."""
+    return _CORNERS * len(rings)
 
 
 def spread(count: int, most: int) -> np.ndarray:

@@ -118,7 +118,8 @@ class RotorOnFoundation:
         ``1/√m``.
         """
         points = self.grounded.point_motions(most)
-        share = np.sqrt(len(points.points) / self.grounded.invariants.mass)
+        moving = len(points.points) - (not points.is_mesh)  # rings have one at rest
+        share = np.sqrt(moving / self.grounded.invariants.mass)
         return replace(
             points,
             motion=self._widened(points.motion),
