@@ -378,6 +378,9 @@ def test_magnets_pull_by_the_square_of_current_over_gap():
             / (step * s_0),
         )
         np.testing.assert_allclose(MAGNETS.slopes(current, place), 0.5 * np.array(found), rtol=1e-7)
+    first, second = bearing(angle=0.3).control_axes  # from n1 to n2
+    c, s = np.cos(0.3), np.sin(0.3)
+    np.testing.assert_allclose([*first, *second], [c, s, -s, c])
     centre = MAGNETS.slopes(0.0, 0.0)
     assert centre == pytest.approx((4 * k * i_0 / s_0**2, 4 * k * i_0**2 / s_0**3), rel=1e-14)
     assert (MAGNETS.force_current, MAGNETS.negative_stiffness) == pytest.approx(centre, rel=1e-14)

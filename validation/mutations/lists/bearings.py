@@ -194,6 +194,7 @@ BEARINGS = [
     *mutations(
         "bearings/magnetic.py",
         "test_magnetic_bearing.py::test_flexible_rotor_with_sensors_elsewhere "
+        "test_magnetic_bearing.py::test_magnets_pull_by_the_square_of_current_over_gap "
         "test_magnetic_bearing.py::test_magnets_under_weight_are_stiffer_in_one_direction",
         ("magnets centre the rotor", "= -by_place", "= by_place"),
         ("controller measures nothing", "stiffness[4:, 2:4] = -", "stiffness[4:, 2:4] = 0.0 * "),
