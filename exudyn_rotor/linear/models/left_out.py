@@ -47,7 +47,7 @@ from exudyn_rotor.threads import one_thread
 _MISSING = 0.1
 _FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
 _STEP = 1e-3  # of differences by the speed, relative
-_SMALL = 1e-8  # harmonics of a mode of unit length
+_SMALL = 1e-5  # harmonics of a mode of unit length
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,15 +66,17 @@ class WholeSpace:
 
     def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
         """Return all modes at all speeds at once, which is faster; None where they are periodic."""
-        systems = [self.at(speed) for speed in speeds]
+        systems: list[PeriodicSystem] = []
+        for speed in speeds:
+            systems.append(self.at(speed))
+            if not stands_still(systems[-1]):
+                return None
         first = systems[0]
         alike = all(
             system.rounding == first.rounding and np.array_equal(system.M[0], first.M[0])
             for system in systems[1:]
         )
-        if not alike or not all(map(stands_still, systems)):
-            return None
-        return constant_modes(systems)
+        return constant_modes(systems) if alike else None
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True

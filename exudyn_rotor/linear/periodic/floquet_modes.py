@@ -151,16 +151,20 @@ def _families(
     upper = np.flatnonzero(values.imag >= 0.0)
     accepted: list[int] = []
     alone: list[bool] = []  # where a family is its own conjugate
+    # those accepted, then their conjugates
+    known_values = np.zeros((2, 2 * size), dtype=complex)
+    known_shapes = np.zeros((2, 2 * size, *shapes.shape[:2]), dtype=complex)
     weight = 0
     for index in upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]:
-        if weight == 2 * size:
+        if weight >= 2 * size:
             break
-        mode = (values[index], shapes[:, :, index])
-        known = [(values[i], shapes[:, :, i]) for i in accepted]
-        known = known + [_conjugate(entry) for entry in known]
-        if _is_known(mode, known, base):
+        mode, count = (values[index], shapes[:, :, index]), len(accepted)
+        known = known_values[:, :count].ravel(), known_shapes[:, :count].reshape(-1, *mode[1].shape)
+        if _is_known(mode, *known, base):
             continue
-        own_pair = mode[0].imag == 0.0 or _is_known(_conjugate(mode), [mode], base)
+        other = _conjugate(mode)
+        own_pair = mode[0].imag == 0.0 or _is_known(other, mode[0], mode[1][None], base)
+        known_values[:, count], known_shapes[:, count] = zip(mode, other, strict=True)
         accepted.append(int(index))
         alone.append(own_pair)
         weight += 1 if own_pair else 2
@@ -192,19 +196,17 @@ def _conjugate(mode: Mode) -> Mode:
     return np.conj(mode[0]), mode[1][::-1].conj()
 
 
-def _is_known(mode: Mode, known: list[Mode], base: float) -> bool:
+def _is_known(mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float) -> bool:
     """Return whether a motion is in the span of known ones with shifted harmonics.
 
     At the same eigenvalue, without a shift, it is another motion: a repeated eigenvalue.
     """
     value, vector = mode
-    basis = []
-    for other_value, other in known:
-        shift = round((value - other_value).imag / base)
-        if shift and abs(value - other_value - 1j * shift * base) <= _SAME_FAMILY * base:
-            moved = shifted(other, shift).ravel()
-            if np.linalg.norm(moved) > 0.5:
-                basis.append(moved)
+    apart = np.atleast_1d(value - values)
+    steps = np.rint(apart.imag / base)
+    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * base)
+    copies = [shifted(shapes[i], int(steps[i])).ravel() for i in np.flatnonzero(near)]
+    basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
     if not basis:
         return False
     span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg as la
+from scipy.linalg.lapack import zgetrf, zgetrs
 
 # relative distance from an eigenvalue that keeps its matrix invertible
 OFF_ROOT = 1e-9
@@ -23,12 +23,11 @@ def root_near(
     of ``wᴴ(…)z = 0`` next to zero; NaN where the matrix is singular.
     """
     # LAPACK itself: with so many small matrices scipy's checks would take longer
-    factorise, solve = la.get_lapack_funcs(("getrf", "getrs"), (constant,))
-    lu, pivots, singular = factorise(constant)
+    lu, pivots, singular = zgetrf(constant)
     if singular:
         return np.nan, right, left
-    z, _ = solve(lu, pivots, right)
-    w, _ = solve(lu, pivots, left, trans=2)
+    z, _ = zgetrs(lu, pivots, right)
+    w, _ = zgetrs(lu, pivots, left, trans=2)
     a, b, c = np.vdot(w, square @ z), np.vdot(w, linear @ z), np.vdot(w, right)
     root = np.sqrt(b**2 - 4.0 * a * c + 0j)
     return -2.0 * c / max(b + root, b - root, key=abs) if c != 0.0 else 0.0, z, w
