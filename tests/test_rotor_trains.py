@@ -210,7 +210,8 @@ def spool(name: str) -> ReducedRotor:
         parts.append(tube[0] - tube[1] if len(tube) == 2 else tube[0])
     parts[0].faces.Max(occ.Z).name = "middle"
     parts[0].faces.Min(occ.Z).name, parts[-1].faces.Max(occ.Z).name = "front", "rear"
-    rotor = meshed(occ.Glue(parts), 0.06, ROSS["material"], 1.0)
+    size = 0.06 if len(parts) == 2 else 0.03
+    rotor = meshed(occ.Glue(parts), size, ROSS["material"], 1.0)
     for disc in data["discs"]:
         inertia = disc["polar"], disc["transverse"]
         rotor = rotor.add_disc(disc["position"], disc["mass"], inertia, disc["width"])
@@ -243,6 +244,7 @@ def test_dual_spool_against_ross(ratio):
     # the mesh of this test errs by 1 %, one with three times the nodes by half of that
     assert np.abs(errors).max() < 1.2e-2
     assert np.abs(np.diff(errors, axis=0)).max() < 2.5e-3
+    assert stability(dual_spool(ratio), ROSS["speeds"][-1:], accuracy=None).stable[0]
 
 
 @pytest.mark.parametrize(("name", "order"), [("inner", 1.0), ("outer", 1.5)])
@@ -270,8 +272,8 @@ def test_axisymmetric_part_and_what_is_left():
     """Mean over a turn: even to rounding for rings, of the mesh for a solid."""
     assert linear_model(two_discs(1.7)).unevenness["B"] < 1e-12
     train = dual_spool(1.5)
-    assert 1e-3 < linear_model(train).unevenness["outer"] < 2e-2
-    assert 1e-3 < linear_model(train.relative_to("outer")).unevenness["inner"] < 2e-2
+    assert 1e-3 < linear_model(train).unevenness["outer"] < 5e-2
+    assert 1e-3 < linear_model(train.relative_to("outer")).unevenness["inner"] < 5e-2
 
 
 def bar() -> ReducedRotor:
@@ -313,7 +315,7 @@ def test_what_does_not_repeat_is_refused():
     """Uneven rotors and supports that turn, at ratios that are no whole numbers."""
     uneven = {"A": rigid(*FIRST), "B": bar()}
     springs = {"B": [Support("a", 1e5)]}
-    with pytest.raises(ValueError, match=r"rotor 'B', by 0\.\d+ of its matrices"):
+    with pytest.raises(ValueError, match=r"rotor 'B', whose unevenness is 0\.\d+ "):
         linear_model(RotorTrain(uneven, {"A": 1.0, "B": 1.7}, springs))
     linear_model(RotorTrain(uneven, {"A": 1.7, "B": 1.0}, springs))
     turning = Support("a", [[1e5, 0.0], [0.0, 2e5]], frame="rotor")

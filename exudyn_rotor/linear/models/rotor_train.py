@@ -31,7 +31,8 @@ class RotorTrain:
         Between rotors.
     largest_unevenness : float, optional
         A rotor of another ratio than 1 counts as axisymmetric, by its mean over a turn, where no
-        larger share of its matrices, in slow motions, differs around the axis: that is the mesh.
+        larger share of its matrices and of the motions of its places, as slow motions see them,
+        differs around the axis: that is the mesh.
 
     Raises
     ------
@@ -71,7 +72,7 @@ class RotorTrain:
     ratios: Mapping[str, float]
     supports: Mapping[str, Sequence[Support | Bearing]] = field(default_factory=dict)
     links: Sequence[Link] = ()
-    largest_unevenness: float = 0.02
+    largest_unevenness: float = 0.05
 
     def __post_init__(self) -> None:
         rotors = checks.mapping(self.rotors, "rotors", "ReducedRotor")

@@ -94,7 +94,10 @@ class TurnedRotor:
         """Return Fourier terms in α as those in θ; the mean where the rotor is even."""
         if self.is_even:
             return {0: terms[0]}
-        what = f"rotor {self.name!r}, by {self.unevenness:.2g} of its matrices,"
+        what = (
+            f"rotor {self.name!r}, whose unevenness is {self.unevenness:.2g} (a finer mesh has "
+            "less, and a number of modes that leaves no pair of bending modes in halves),"
+        )
         return {whole(m * self.drift, what): X for m, X in terms.items()}
 
     def terms(self, speed: float) -> tuple[Terms, Terms]:

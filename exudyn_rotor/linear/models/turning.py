@@ -25,11 +25,16 @@ import scipy.linalg as la
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes, wave_fits
 from exudyn_rotor.linear.periodic.periodic_system import Terms
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.rotating_axes import turning_harmonics
 
 _POINTS = 800
 _GROUP = 5e-2  # frequencies that differ by less may be of one pair, which a mesh splits
 _SEEN = 1e-8  # share of the largest energy below which a mode is not seen
+_RIGID_PAIRS = (
+    (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
+    (ModeKind.TILT_1, ModeKind.TILT_2),
+)
 _NOTHING = 1e-13  # share of a matrix that is round-off
 
 
@@ -56,20 +61,22 @@ class Turning:
     @classmethod
     def of(cls, rotor: LinearRotor) -> Turning:
         """Find the waves of a rotor without supports."""
-        inv = rotor.invariants
+        inv, kinds = rotor.invariants, rotor.rotor.rigid_kinds
         squares, V = la.eigh(inv.K, inv.M)
         omega = np.sqrt(np.maximum(squares, 0.0))
-        rigid = len(rotor.rotor.rigid_kinds)
-        omega[:rigid] = 0.0
+        rigid = len(kinds)
+        omega[:rigid], V[:, :rigid] = 0.0, np.eye(len(V), rigid)
         first = omega[rigid] if rigid < len(omega) else 1.0
-        points = rotor.point_motions(_POINTS)
-        fits = wave_fits(points.points, HIGHEST + 1)
-        orders, amplitudes = wave_amplitudes(fits, points.motion @ V)
-        # what is seen of a motion: that of many waves along the axis is fitted in part
+        orders, amplitudes = _amplitudes(rotor, V)
         gram = sum((W.conj().T @ W).real for W in amplitudes)
         floor = _SEEN * gram.diagonal().max() or 1.0
-        E, waves = np.zeros(V.shape, dtype=complex), np.zeros(len(omega), dtype=int)
-        for group in _groups(omega):
+        E, waves = np.eye(len(V), dtype=complex), np.zeros(len(omega), dtype=int)
+        for pair in _RIGID_PAIRS:
+            if set(pair) <= set(kinds):
+                columns = [kinds.index(kind) for kind in pair]
+                E[np.ix_(columns, columns)] = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)
+                waves[columns] = 1, -1
+        for group in _groups(omega, rigid):
             energies = np.array([W[:, group].conj().T @ W[:, group] for W in amplitudes])
             seen = gram[np.ix_(group, group)] + floor * np.eye(len(group))
             E[np.ix_(group, group)], waves[group] = _waves_of(orders, energies, seen)
@@ -103,7 +110,8 @@ class Turning:
 
     def unevenness_at(self, motion: Terms, whole: np.ndarray) -> float:
         """Return the share of the motion of a place that is not axisymmetric."""
-        return _share(motion, whole, lambda X: X @ self.T * self.weights)
+        # squared, as each wave's part of the flexibility there
+        return _share(motion, whole, lambda X: X @ self.T * np.sqrt(self.weights))
 
     def _within(self, X: np.ndarray) -> np.ndarray:
         return self.T.T @ X @ self.T
@@ -112,10 +120,31 @@ class Turning:
         return rows @ self.inverse
 
 
-def _groups(omega: np.ndarray) -> list[np.ndarray]:
-    """Return the columns of ascending frequencies in groups, the rigid motions first."""
-    apart = np.diff(omega) > _GROUP * omega[1:]
-    return np.split(np.arange(len(omega)), np.flatnonzero(apart) + 1)
+def _amplitudes(rotor: LinearRotor, V: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return the waves n, and the amplitudes of each for motions V (k, c).
+
+    At points of the mesh and, as much again, at the interfaces: these see motions with many waves
+    along the axis, which the points do not resolve.
+    """
+    points = rotor.point_motions(_POINTS)
+    fits = wave_fits(points.points, HIGHEST + 1)
+    orders, amplitudes = wave_amplitudes(fits, points.motion @ V)
+    places = rotor.rotor.interfaces
+    weight = np.sqrt(len(points.points) / max(len(places), 1))
+    for name, place in places.items():
+        U = np.repeat([1.0, place.radius], 3)[:, None] * (rotor.interface_motion(name) @ V)
+        for n, turn in turning_harmonics(len(U)).items():
+            at = HIGHEST + n
+            # R_n projects on what turns with n
+            amplitudes[at] = np.vstack([amplitudes[at], weight * (turn @ U)])
+    return orders, amplitudes
+
+
+def _groups(omega: np.ndarray, rigid: int) -> list[np.ndarray]:
+    """Return the columns of ascending frequencies in groups, without the rigid motions."""
+    apart = np.diff(omega[rigid:]) > _GROUP * omega[rigid + 1 :]
+    groups = np.split(np.arange(rigid, len(omega)), np.flatnonzero(apart) + 1)
+    return [group for group in groups if group.size]
 
 
 def _waves_of(
