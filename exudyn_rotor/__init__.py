@@ -10,6 +10,7 @@ from exudyn_rotor.advice.proposal import Proposal, propose
 from exudyn_rotor.advice.run_check import check_run
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.actuator import LinearActuator, SaturatingActuator
+from exudyn_rotor.bearings.annular_seal import AnnularSeal
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import Pad, grooved_pads
@@ -98,6 +99,7 @@ from exudyn_rotor.theory.stiffening import Stiffening
 __version__ = "0.2.0.dev0"
 
 __all__ = [
+    "AnnularSeal",
     "AssumptionWarning",
     "BaseAcceleration",
     "BaseRecord",

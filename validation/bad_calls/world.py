@@ -172,6 +172,12 @@ class World:
         return dataclasses.replace(self.magnetic, interface="right", sensor="right")
 
     @cached_property
+    def seal(self) -> er.AnnularSeal:
+        """A seal of a pump."""
+        size = {"radius": 0.1, "length": 0.05, "clearance": 3e-4, "pressure_drop": 1e6}
+        return er.AnnularSeal(interface="left", density=1000.0, viscosity=1e-3, **size)
+
+    @cached_property
     def stop(self) -> er.ClearanceStop:
         """A stop behind a clearance."""
         return er.ClearanceStop(interface="left", radius=0.05, clearance=1e-4, stiffness=1e7)

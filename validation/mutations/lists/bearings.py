@@ -172,6 +172,15 @@ BEARINGS = [
         ("tangent pulls outwards", "(eccentricity - most) / step", "(most - eccentricity) / step"),
     ),
     *mutations(
+        "bearings/annular_seal.py",
+        "test_annular_seal.py::test_coefficients_are_those_of_the_perturbed_bulk_flow",
+        ("inlet's loss wrong", "(7.0 + 4.0 * xi) / 3.0", "(7.0 + 6.0 * xi) / 3.0"),
+        ("leakage's inertia with the wrong sign", "(2.0 * xi - 1.0)", "(1.0 - 2.0 * xi)"),
+        ("leakage turns as fast as the rotor", "0.5 * speed\n", "speed\n"),
+        ("leakage does not turn", "+ half * d * turn", "+ 0.0 * d * turn"),
+        ("friction without the spin", "(7.0 * around", "(0.0 * around"),
+    ),
+    *mutations(
         "bearings/actuator.py",
         "test_magnetic_bearing.py::test_magnets_pull_by_the_square_of_current_over_gap",
         ("both magnets pull the same way", "** 2 - (push / far)", "** 2 + (push / far)"),
