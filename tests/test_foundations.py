@@ -241,6 +241,27 @@ def test_axes_change_nothing(turn, rotation, options):
     assert compared(supports, turn, rotation, **options) < 1e-9
 
 
+def test_unbalance_moves_scene_and_linear_model_alike():
+    """Anisotropic supports in both frames and a table; amplitudes of all harmonics."""
+    rotor = rings(heavy=0.0)
+    supports = [KINDS["table"], replace(KINDS["2 x 2"], frame="rotor"), HELD]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=SPEED)
+    add_supports(body, supports, add_foundation(mbs, BLOCK))
+    mbs.Assemble()
+    model = linear_model(rotor, supports=supports, foundation=BLOCK)
+    responses = [
+        unbalance_response(each, [150.0, SPEED], Unbalance("left", 1e-4), at=list(POINTS),
+                           accuracy=None)
+        for each in (model, linear_model(mbs, body=body, about="given"))
+    ]  # fmt: skip
+    assert {0, 1, 2} <= set(responses[0].orders.tolist())
+    np.testing.assert_array_equal(responses[0].orders, responses[1].orders)
+    # but for the twist: the frame of a scene holds the mean rotation, here a drive does
+    ours, theirs = (each.motion[..., :5] for each in responses)
+    np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-9 * np.abs(ours).max())
+
+
 def test_a_block_is_exudyns_rigid_body():
     """The same mass, inertia and springs as plain items of Exudyn."""
     mbs = exu.SystemContainer().AddSystem()
