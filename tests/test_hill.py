@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_stability import mathieu, random_system
+from asymmetric import asymmetric_shaft
+from test_stability import anisotropic, mathieu, random_system
 
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import hill
 from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
@@ -89,3 +92,13 @@ def test_a_copy_is_not_another_motion():
     shapes[:, :, 1] = shapes[:, :, 0]
     assert hill._differ(found, both, system.base)
     assert not hill._differ(replace(found, values=values[[0, 0]]), both, system.base)
+
+
+@pytest.mark.parametrize("speed", [20.0, 50.0])
+def test_a_rotor_that_spins_the_other_way_has_the_same_exponents(speed):
+    """Without internal damping the equations at −Ω are the transposed ones at Ω."""
+    model = LinearRotor.of(asymmetric_shaft(), anisotropic())
+    values = [floquet_modes(model.at(each), tolerance=1e-9).values for each in (speed, -speed)]
+    one, other = (np.concatenate([each, each.conj()]) for each in values)
+    apart = np.abs(fold(one[:, None] - other, 2.0 * speed))
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-8

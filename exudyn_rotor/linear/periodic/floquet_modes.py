@@ -80,7 +80,7 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if stands_still(system):
         return constant_modes([system])[0]
-    found = solve_hill(system, partial(_one_of_each_pair, speed=abs(system.speed)), tolerance)
+    found = solve_hill(system, partial(_one_of_each_pair, speed=system.speed), tolerance)
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
 
@@ -113,7 +113,7 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     columns = _families(values, shapes, orders, base)
     if columns is None:
         return None
-    sizes = np.maximum(np.abs(values[columns]), base)
+    sizes = np.maximum(np.abs(values[columns]), abs(base))
     # what is zero to rounding has no error of truncation that could be told
     sizes = np.where(values[columns] == 0.0, np.inf, sizes)
     return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
@@ -204,7 +204,7 @@ def _is_known(mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float) -
     value, vector = mode
     apart = np.atleast_1d(value - values)
     steps = np.rint(apart.imag / base)
-    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * base)
+    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base))
     copies = [shifted(shapes[i], int(steps[i])).ravel() for i in np.flatnonzero(near)]
     basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
     if not basis:

@@ -175,6 +175,15 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/periodic/floquet_modes.py",
+        "test_hill.py::test_a_rotor_that_spins_the_other_way_has_the_same_exponents",
+        (
+            "copies of motions at a negative speed as at a positive one",
+            "partial(_one_of_each_pair, speed=system.speed)",
+            "partial(_one_of_each_pair, speed=abs(system.speed))",
+        ),
+    ),
+    *mutations(
         "linear/periodic/inverse_iteration.py",
         "test_hill.py test_basis_error.py",
         ("left vector of the transposed matrix", "left, trans=2)", "left, trans=1)"),
