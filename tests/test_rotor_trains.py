@@ -467,3 +467,21 @@ def test_turned_mesh_in_full_and_in_the_mean():
     mean, full = (lateral(campbell(one, [0.0, 500.0], accuracy=None))[:8] for one in (train, exact))
     uneven = linear_model(train).unevenness["outer"]
     assert 1e-9 < np.abs(mean.imag / full.imag - 1.0).max() < 5.0 * uneven**2
+
+
+def test_constant_equations_at_rest_are_those_of_hills_method():
+    """Cross-coupled supports: exponents by inertial axes, and by Hill's method in turning ones."""
+    train = two_discs(1.7, UNEVEN)
+    standing, turning = (stability(train, [300.0], method=m) for m in ("auto", "hill"))
+    distances = np.abs(standing.exponents[0][:, None] - turning.exponents[0])
+    assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-6
+
+
+def test_geared_pair_at_a_low_speed():
+    """Where turning axes split high frequencies by little, which Hill's method does not resolve."""
+    rotors = {"A": rings(*FIRST).reduce(0), "B": rings(*SECOND).reduce(0)}
+    supports = {n: [Support(p, 3e9 * np.eye(3)) for p in "ab"] for n in "AB"}
+    mesh = GearMesh(radii=[0.1, 0.2], stiffness=3e6)
+    train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
+    slow, still = (np.sort(row) for row in campbell(train, [0.0, 1.0]).frequencies_inertial)
+    np.testing.assert_allclose(slow, still, rtol=1e-3, atol=1e-3)

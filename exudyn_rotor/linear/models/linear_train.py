@@ -31,6 +31,7 @@ from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.linear.models.spin import Spin
+from exudyn_rotor.linear.models.standing_space import StandingSpace
 from exudyn_rotor.linear.models.turned_rotor import TurnedRotor
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
@@ -78,14 +79,31 @@ class LinearTrain:
         for name, rotor in train.rotors.items():
             alone = LinearRotor.of(rotor, (), stiffening)
             _check(name, alone, supports.get(name, ()))
-            places = [end for element in elements for end in element.ends]
-            at = tuple(interface for owner, interface in places if owner == name)
+            at = _places(name, elements)
             parts[name] = TurnedRotor.of(
                 name, alone, train.ratios[name], at, train.largest_unevenness
             )
+            parts[name].terms(0.0)  # refuses what does not repeat with θ, as do motions
         model = cls(train, parts, tuple(elements))
-        _ = model._motions  # refuses what does not repeat with θ
+        _ = model._motions
         return model
+
+    @cached_property
+    def _standing(self) -> LinearTrain | None:
+        """The equations in inertial axes where these are constant and those here are not."""
+        harmonics = any(n for terms in self._constant for n in terms)
+        varies = any(element.varies for element in self.elements)
+        if not (harmonics or varies) or any(element.turns for element in self.elements):
+            return None
+        parts = {}
+        for name, part in self.parts.items():
+            given = self.train.ratios[name], _places(name, self.elements)
+            uneven = self.train.largest_unevenness
+            parts[name] = TurnedRotor.of(name, part.alone, *given, uneven, frame=0.0)
+            if not parts[name].is_even:
+                return None
+        elements = tuple(replace(element, frame=0.0) for element in self.elements)
+        return replace(self, parts=parts, elements=elements)
 
     @cached_property
     def _slices(self) -> dict[str, slice]:
@@ -294,13 +312,20 @@ class LinearTrain:
     ) -> WholeSpace:
         """Return where to solve the equations: in all coordinates, whatever is asked for."""
         momenta = self._free_spins
-        if held and momenta.shape[1]:
-            others = la.null_space(momenta.T)
-            return WholeSpace(self, can_be_sent=True, others=others)
         # coordinates that fix the free spins, as far apart as can be
         _, _, pivots = la.qr(momenta.T, pivoting=True)
-        driven = tuple(pivots[: momenta.shape[1]].tolist())
-        return WholeSpace(self, can_be_sent=True, driven=driven)
+        options = {"can_be_sent": True, "driven": tuple(pivots[: momenta.shape[1]].tolist())}
+        if held and momenta.shape[1]:
+            options = {"can_be_sent": True, "others": la.null_space(momenta.T)}
+        if self._standing is None:
+            return WholeSpace(self, **options)
+        turnings = [part.turning for part in self._standing.parts.values()]
+        return StandingSpace(self, **options, standing=self._standing, turnings=turnings)
+
+
+def _places(name: str, elements: Sequence[Element]) -> tuple[str, ...]:
+    """Return the interfaces of a rotor that elements act on."""
+    return tuple(at for element in elements for owner, at in element.ends if owner == name)
 
 
 def _join_element(sums: tuple[dict, dict, dict], element: Element, U: Terms, speed: float) -> None:

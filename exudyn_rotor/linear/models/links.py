@@ -97,6 +97,8 @@ class Element:
         s, by which its axes turn.
     rate : float
         Speed over which its tables are, per Ω.
+    frame : {1.0, 0.0}
+        Whether the axes it is seen from turn with Ω, or stand still: w = 1 − s or −s.
     is_damped : bool
         False where damping and the skew part of the stiffness are left out.
     """
@@ -106,6 +108,7 @@ class Element:
     turns: float
     rate: float
     is_damped: bool = True
+    frame: float = 1.0
 
     @classmethod
     def of_support(cls, rotor: str, ratio: float, support: Support) -> Element:
@@ -180,7 +183,7 @@ class Element:
     @property
     def drift(self) -> float:
         """w."""
-        return 1.0 - self.turns
+        return self.frame - self.turns
 
     def check(self) -> None:
         """Refuse directions in which the equations do not repeat with θ."""

@@ -40,6 +40,8 @@ class TurnedRotor:
         Share of its matrices, in slow motions, that is not axisymmetric; 0 for the ratio 1.
     is_even : bool
         Whether it is taken for axisymmetric, by the mean of its matrices over a turn.
+    frame : {1.0, 0.0}
+        Whether the axes turn with Ω, or stand still: w = r − 1 or r.
     """
 
     name: str
@@ -48,25 +50,24 @@ class TurnedRotor:
     turning: Turning | None = None
     unevenness: float = 0.0
     is_even: bool = True
+    frame: float = 1.0
 
     @classmethod
     def of(
-        cls, name: str, alone: LinearRotor, ratio: float, places: Sequence[str], largest: float
+        cls,
+        name: str,
+        alone: LinearRotor,
+        ratio: float,
+        places: Sequence[str],
+        largest: float,
+        frame: float = 1.0,
     ) -> TurnedRotor:
-        """Turn a rotor that is linked at some places; even up to a largest unevenness.
-
-        Raises
-        ------
-        ValueError
-            Where it is not even, and its equations do not repeat with θ.
-        """
-        if ratio == 1.0:
+        """Turn a rotor that is linked at some places; even up to a largest unevenness."""
+        if ratio == frame:
             return cls(name, alone, ratio)
         turning = Turning.of(alone)
         uneven = _unevenness(alone, turning, places)
-        turned = cls(name, alone, ratio, turning, uneven, uneven <= largest)
-        turned.terms(0.0)
-        return turned
+        return cls(name, alone, ratio, turning, uneven, uneven <= largest, frame)
 
     @property
     def size(self) -> int:
@@ -76,7 +77,7 @@ class TurnedRotor:
     @property
     def drift(self) -> float:
         """w, by which its coordinates turn in its own frame, over Ω."""
-        return self.ratio - 1.0
+        return self.ratio - self.frame
 
     @cached_property
     def _own(self) -> dict[str, dict[int, np.ndarray]]:

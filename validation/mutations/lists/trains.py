@@ -11,8 +11,8 @@ TRAINS = [
         _DISCS,
         (
             "drift of turned coordinates reversed",
-            "return self.ratio - 1.0",
-            "return 1.0 - self.ratio",
+            "return self.ratio - self.frame",
+            "return self.frame - self.ratio",
         ),
         ("Coriolis term at the common speed", "2.0 * r * speed * X", "2.0 * speed * X"),
         ("centrifugal term at the common speed", "-((r * speed) ** 2) * X", "-(speed**2) * X"),
@@ -78,5 +78,15 @@ TRAINS = [
         "linear/models/linear_train.py",
         _TESTS + "test_geared_rotors_are_those_of_constant_equations_at_rest",
         ("free spins of geared rotors held", "values <= _HELD", "values < -_HELD"),
+    ),
+    *mutations(
+        "linear/models/standing_space.py",
+        _TESTS + "test_constant_equations_at_rest_are_those_of_hills_method",
+        ("waves turn back", "- 1j * strongest * speed", "+ 1j * strongest * speed"),
+    ),
+    *mutations(
+        "linear/models/standing_space.py",
+        _DISCS,
+        ("harmonics of the wrong wave", "+ strongest - n", "- strongest + n"),
     ),
 ]
