@@ -14,12 +14,12 @@ from netgen import occ
 import exudyn_rotor as er
 from exudyn_rotor import plotting
 
-ENDS, WEIGHT, CLEARANCE, STEP = ("left", "right"), [0.0, -9.81, 0.0], 2e-4, 1e-4  # SI units
+ENDS, WEIGHT, CLEARANCE, STEP = ("left", "right"), [0.0, -9.81, 0.0], 2e-4, 2e-4  # SI units
 shaft = occ.Cylinder((0, 0, -0.3), occ.Z, 0.013, 0.6)
 solid = shaft + occ.Cylinder((0, 0, -0.02), occ.Z, 0.08, 0.04)
 for place in (-0.3, 0.24):
     solid += occ.Cylinder((0, 0, place), occ.Z, 0.035, 0.06)  # sleeves for the magnets
-mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.06, curvaturesafety=1.0))
+mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.08, curvaturesafety=1.0))
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 rotor = er.SolidRotor.from_ngsolve(mesh, steel, axis="z")
 rotor = rotor.add_point_mass([0.08, 0.0, 0.0], 2e-3)  # unbalance: 0.16 g m
