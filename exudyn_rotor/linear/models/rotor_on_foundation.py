@@ -247,31 +247,32 @@ def _coupling(support: Support, speed: float) -> tuple[Harmonics, Harmonics]:
     """
     support.check_range(speed)
     K, D = support.matrices(speed)
-    turn = turning_harmonics(6)
-    # how the axes of the support see the two
-    u, w = turn, _STILL
+    u = turning_harmonics(6)  # how the axes of the support see the two
+    w = _STILL
     if support.frame == "rotor":
-        u, w = _STILL, {n: R.T for n, R in turn.items()}
-    rate = (
-        {n: 1j * n * speed * X for n, X in w.items()},
-        {n: 1j * n * speed * X for n, X in u.items()},
+        u, w = _STILL, {n: R.T for n, R in u.items()}
+    u_t, w_t = ({n: 1j * n * speed * X for n, X in terms.items()} for terms in (u, w))
+    carried = _blocks(_product(u, D, w_t), _product(w, D, u_t), _product(w, D, w_t))
+    damping, stiffness = _acting(D, u, w), _added(_acting(K, u, w), carried)
+    sizes = np.abs(D).max(), np.abs(K).max() + abs(speed) * np.abs(D).max()
+    return tuple(
+        {n: X for n, X in terms.items() if np.abs(X).max() > _ROUNDING * size}
+        for terms, size in zip((damping, stiffness), sizes, strict=True)
     )
-    parts = []
-    for X, carried in ((D, None), (K, D)):
-        symmetric, skew = 0.5 * (X + X.T), 0.5 * (X - X.T)
-        across = _add(_product(u, symmetric, w), _product(u, skew, w))
-        # exact transposes: rounding of a stiff support would be a circulatory force
-        back = _add(_transposed(_product(u, symmetric, w)), _transposed(_product(u, -skew, w)))
-        alone = _product(w, X, w)
-        if carried is not None:
-            across = _add(across, _product(u, carried, rate[0]))
-            back = _add(back, _product(w, carried, rate[1]))
-            alone = _add(alone, _product(w, carried, rate[0]))
-        parts.append(_blocks(across, back, alone, np.abs(K).max() + speed * np.abs(D).max()))
-    return parts[0], parts[1]
 
 
-def _product(left: Harmonics, X: np.ndarray, right: Harmonics) -> dict[int, np.ndarray]:
+def _acting(X: np.ndarray, u: Harmonics, w: Harmonics) -> Harmonics:
+    """Return a matrix that acts on the difference of u and w, by both.
+
+    The blocks that couple them are exact transposes, of its skew part with the other sign: the
+    rounding of a stiff support would else be a circulatory force.
+    """
+    symmetric, skew = (_product(u, 0.5 * (X + sign * X.T), w) for sign in (1.0, -1.0))
+    back = _added({n: Y.T for n, Y in symmetric.items()}, {n: -Y.T for n, Y in skew.items()})
+    return _blocks(_added(symmetric, skew), back, _product(w, X, w))
+
+
+def _product(left: Harmonics, X: np.ndarray, right: Harmonics) -> Harmonics:
     """Return the Fourier terms of ``Lᵀ(θ) X R(θ)`` from those of L and R."""
     total: dict[int, np.ndarray] = {}
     for m, L in left.items():
@@ -280,22 +281,14 @@ def _product(left: Harmonics, X: np.ndarray, right: Harmonics) -> dict[int, np.n
     return total
 
 
-def _add(first: Harmonics, second: Harmonics) -> dict[int, np.ndarray]:
+def _added(first: Harmonics, second: Harmonics) -> Harmonics:
     return {n: first.get(n, 0.0) + second.get(n, 0.0) for n in first.keys() | second.keys()}
 
 
-def _transposed(terms: Harmonics) -> dict[int, np.ndarray]:
-    return {n: X.T for n, X in terms.items()}
-
-
-def _blocks(
-    across: Harmonics, back: Harmonics, alone: Harmonics, largest: float
-) -> dict[int, np.ndarray]:
-    blocks = {}
-    for n in sorted(across.keys() | alone.keys()):
-        X = np.zeros((12, 12), dtype=complex)
-        X[:6, 6:], X[6:, :6] = -across.get(n, np.zeros((6, 6))), -back.get(n, np.zeros((6, 6)))
-        X[6:, 6:] = alone.get(n, 0.0)
-        if np.abs(X).max() > _ROUNDING * largest:
-            blocks[n] = X
-    return blocks
+def _blocks(u_by_w: Harmonics, w_by_u: Harmonics, w_by_w: Harmonics) -> Harmonics:
+    """Return matrices (12, 12) of their blocks; those that couple have the minus of ``u − w``."""
+    none = np.zeros((6, 6))
+    return {
+        n: np.block([[none, -u_by_w.get(n, none)], [-w_by_u.get(n, none), w_by_w.get(n, none)]])
+        for n in u_by_w.keys() | w_by_u.keys() | w_by_w.keys()
+    }

@@ -9,32 +9,20 @@ FOUNDATIONS = [
     *mutations(
         "linear/models/rotor_on_foundation.py",
         _TWO_MASSES,
-        ("supports push the foundation their own way", "-back.get(n,", "back.get(n,"),
-        ("supports do not hold the foundation", "X[6:, 6:] = alone", "X[6:, 6:] = 0.0 * alone"),
+        ("supports push the foundation their own way", "[-w_by_u.get", "[w_by_u.get"),
+        ("supports do not hold the foundation", "w_by_w.get(n, none)]])", "none]])"),
     ),
     *mutations(
         "linear/models/rotor_on_foundation.py",
         _SCENE,
         (
             "motion of the foundation not carried into the rotor's frame",
-            "across = _add(across, _product(u, carried, rate[0]))",
-            "across = _add(across, {})",
+            "_blocks(_product(u, D, w_t)",
+            "_blocks({}",
         ),
-        (
-            "damping does not see the rotor turn",
-            "back = _add(back, _product(w, carried, rate[1]))",
-            "back = _add(back, {})",
-        ),
-        (
-            "damping that turns does not see the foundation stand",
-            "alone = _add(alone, _product(w, carried, rate[0]))",
-            "alone = _add(alone, {})",
-        ),
-        (
-            "cross-coupling of the reaction with the other sign",
-            "_product(u, -skew, w)",
-            "_product(u, skew, w)",
-        ),
+        ("damping does not see the rotor turn", "_product(w, D, u_t)", "{}"),
+        ("damping that turns does not see the foundation stand", "_product(w, D, w_t))", "{})"),
+        ("cross-coupling of the reaction with the other sign", "{n: -Y.T for", "{n: Y.T for"),
         ("supports in the rotor's frame turn the other way", "n: R.T for n, R", "-n: R.T for n, R"),
     ),
     *mutations(
