@@ -13,7 +13,7 @@ from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 
 WEAK = 0.2
 
@@ -65,6 +65,14 @@ def test_motions_that_need_no_more_harmonics_have_the_first_left_out():
     kept = np.isin(exact.orders, found.orders[[0, -1]])
     expected = np.linalg.norm(exact.vectors[kept], axis=1)
     assert np.abs(outer - expected).max() < 0.1 * expected.max()
+
+
+def test_two_steps_of_harmonics_are_taken_of_any_number_of_coordinates(monkeypatch):
+    monkeypatch.setattr(hill, "MOST_UNKNOWNS", 1)
+    system = weakly_periodic(0)
+    assert motions(system, "hill", 1e-3).orders.tolist() == system.harmonics(2).tolist()
+    with pytest.raises(UnconvergedError, match="harmonics up to 2"):
+        motions(system, "hill", 1e-11)
 
 
 def test_strong_coupling_is_solved_as_a_whole(sizes_solved):

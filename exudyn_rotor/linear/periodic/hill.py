@@ -25,14 +25,14 @@ from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shif
 from exudyn_rotor.linear.periodic.inverse_iteration import settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
-MOST_UNKNOWNS = 1600  # in first-order form
+MOST_UNKNOWNS = 1600  # in first-order form, beyond the first two harmonics
 # error of λ, as a share of its distance from the next copy, from which a motion is followed
 _NEAR = 1e-2
 # times its estimate that a change of λ by further harmonics may be
 _MORE = 30.0
-# share of the tolerance that those lacking in the smallest truncation may take
+# share of the tolerance up to which the smallest truncation will do
 _FIRST = 1e-2
-# and from which those in a larger one take more where others need more
+# and up to which a larger one will, where other motions need one still larger
 _ALMOST = 0.1
 # relative step of λ after which inverse iteration ends
 _SETTLED = 1e-6
@@ -154,7 +154,7 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
     Raises
     ------
     UnconvergedError
-        If that takes more than 1600 unknowns.
+        If that takes more than 1600 unknowns, and further harmonics than two steps.
     """
     order, error = system.step, np.inf
     while True:
@@ -172,8 +172,9 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
 
 def _next(system: PeriodicSystem, order: int, error: float, tolerance: float) -> int:
     """Return the highest harmonic of the next truncation."""
-    larger = order + system.step * max(1, order // (2 * system.step))
-    if 2 * len(system.harmonics(larger)) * system.size <= MOST_UNKNOWNS:
+    step = system.step
+    larger = order + step * max(1, order // (2 * step))
+    if larger == 2 * step or 2 * len(system.harmonics(larger)) * system.size <= MOST_UNKNOWNS:
         return larger
     raise UnconvergedError(
         f"Hill's method at {system.speed:g} rad/s: error {error:.1e} with harmonics up to "
@@ -191,9 +192,7 @@ def _started(
     shapes = solution.shapes[:, :, columns]
     load, outer = feedback(system, solution.values[columns], shapes, orders)
     load = np.einsum("nh,hkj->nkj", _real_basis(len(orders)), load).reshape(-1, len(columns))
-    scale = np.sum(shapes.conj() * chosen.shapes, axis=(0, 1)) / np.sum(
-        np.abs(shapes) ** 2, axis=(0, 1)
-    )
+    scale = np.sum(shapes.conj() * chosen.shapes, axis=(0, 1)) / _squares(shapes)
     return HillMotions(
         chosen.values,
         chosen.shapes,
@@ -208,7 +207,7 @@ def _started(
 
 def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) -> HillMotions | None:
     """Return motions with as many harmonics as they need; None where they cannot be followed."""
-    # the first harmonics that the smallest truncation leaves out bring further ones along
+    # its estimate does not see the further harmonics that the first ones left out bring along
     limit = (_FIRST if motions.orders[-1] == system.step else 1.0) * tolerance
     while motions.error > limit:
         order = _next(system, int(motions.orders[-1]), motions.error, tolerance)
@@ -232,14 +231,16 @@ def _widened(motions: HillMotions, orders: np.ndarray) -> np.ndarray:
     return shapes
 
 
+def _squares(shapes: np.ndarray) -> np.ndarray:
+    """Return the squared length of each motion (h, c, j)."""
+    return np.sum(np.abs(shapes) ** 2, axis=(0, 1))
+
+
 def _in_larger(
     system: PeriodicSystem, motions: HillMotions, lacking: np.ndarray, orders: np.ndarray
 ) -> HillMotions | None:
     """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
-    shapes, lengths = (
-        _widened(motions, orders),
-        np.sqrt(np.sum(np.abs(motions.shapes) ** 2, axis=(0, 1))),
-    )
+    shapes, lengths = _widened(motions, orders), np.sqrt(_squares(motions.shapes))
     values, shifts, matrices = motions.values.copy(), motions.shifts, hill_matrices(system, orders)
     lefts = np.zeros((len(orders) * system.size, lacking.size), dtype=complex)
     for n, column in enumerate(lacking):
