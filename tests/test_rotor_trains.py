@@ -6,6 +6,7 @@ import json
 from functools import cache
 from pathlib import Path
 
+import exudyn
 import numpy as np
 import pytest
 import scipy.linalg as la
@@ -22,11 +23,14 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     Unbalance,
+    add_rotor,
+    add_supports,
     campbell,
     craig_bampton_modes,
     critical_speeds,
     harmonic_response,
     linear_model,
+    recommended_settings,
     stability,
     unbalance_response,
 )
@@ -83,19 +87,19 @@ def at(rotor: int, z: float) -> np.ndarray:
 
 
 def by_hand(
-    ratio: float, speed: float, ground=GROUND[0], damped: bool = True
+    ratio: float, speed: float, ground=GROUND[0], damped: bool = True, second=SECOND
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return M, D and K of two rigid rotors: per rotor x, y and the tilts α, β about them.
 
     ``I_t α̈ + I_p Ω β̇ = M_α, I_t β̈ − I_p Ω α̇ = M_β``.
     """
     M, D, K = np.zeros((8, 8)), np.zeros((8, 8)), np.zeros((8, 8))
-    for o, (r, half, m), rate in ((0, FIRST, speed), (4, SECOND, ratio * speed)):
+    for o, (r, half, m), rate in ((0, FIRST, speed), (4, second, ratio * speed)):
         polar, transverse = m * r**2, m * (0.5 * r**2 + half**2)
         M[range(o, o + 4), range(o, o + 4)] = m, m, transverse, transverse
         D[o + 2, o + 3], D[o + 3, o + 2] = polar * rate, -polar * rate
     stiff = ground if np.ndim(ground) else ground * np.eye(2)
-    (za, zb), (k, c) = (FIRST[1], SECOND[1]), BETWEEN
+    (za, zb), (k, c) = (FIRST[1], second[1]), BETWEEN
     for rows, spring, damper in (
         (at(0, -za), stiff, GROUND[1]),
         (at(0, za), 1.3 * stiff, GROUND[1]),
@@ -485,3 +489,57 @@ def test_geared_pair_at_a_low_speed():
     train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
     slow, still = (np.sort(row) for row in campbell(train, [0.0, 1.0]).frequencies_inertial)
     np.testing.assert_allclose(slow, still, rtol=1e-3, atol=1e-3)
+
+
+def test_modes_from_axes_at_rest_hold_in_turning_ones():
+    """``λ_m² M X_m + Σ_j (λ_{m−j} D_j + K_j) X_{m−j} = 0`` with λ_m = λ + imΩ for all m."""
+    model, speed = linear_model(two_discs(1.7, UNEVEN)), 300.0
+    system, modes = model.at(speed), model.space(1, speed).modes(speed, 1e-8)
+    top = int(modes.orders.max())
+    given = dict(zip(modes.orders.tolist(), modes.vectors, strict=True))
+    size = np.abs(system.K[0]).max()
+    for m in range(-top - 2, top + 3):
+        left = np.zeros(modes.central.shape, dtype=complex)
+        for j in range(-2, 3):
+            if m - j in given:
+                rate = modes.values + 1j * (m - j) * speed
+                left += (system.D.get(j, 0.0 * system.M[0]) @ given[m - j]) * rate
+                left += system.K.get(j, 0.0 * system.M[0]) @ given[m - j]
+                left += (system.M[0] @ given[m - j]) * rate**2 if j == 0 else 0.0
+        assert np.abs(left).max() < 1e-9 * size
+
+
+def test_inter_shaft_bearings_in_a_scene():
+    """Two bodies of different speeds under a step of force: the solution of the linear equations.
+
+    The integrator errs by h²: by 2e-4 of the motion with 500 steps, by 5e-5 with 1000.
+    """
+    speed, ratio, end = 300.0, 1.7, 0.02
+    mbs = exudyn.SystemContainer().AddSystem()
+    second = (SECOND[0], FIRST[1], SECOND[2])  # bearings at the same places
+    a, b = (
+        add_rotor(mbs, rigid(*d), spin=rate * speed, name=name)
+        for name, d, rate in (("A", FIRST, 1.0), ("B", second, ratio))
+    )
+    k, c = BETWEEN
+    add_supports(a, [Support("a", GROUND[0], GROUND[1]), Support("b", 1.3 * GROUND[0], GROUND[1])])
+    add_supports(b, Support("b", 5e4))
+    links = [Support("a", k, c), Support("b", 1.5 * k, c)]
+    add_supports(a, links, base={n: b.marker(n) for n in "ab"})
+    mbs.AddLoad(exudyn.itemInterface.Force(markerNumber=a.marker("a"), loadVector=[100.0, 0, 0]))
+    sensors = [
+        mbs.AddSensor(exudyn.itemInterface.SensorMarker(
+            markerNumber=marker, storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Displacement,
+        ))
+        for marker in (a.marker("a"), b.marker("b"))
+    ]  # fmt: skip
+    mbs.Assemble()
+    mbs.SolveDynamic(recommended_settings(end_time=end, step=end / 1000))
+    M, D, K = by_hand(ratio, speed, second=second)
+    steady = la.solve(K, at(0, -FIRST[1]).T @ [100.0, 0.0])
+    companion = np.block([[np.zeros((8, 8)), np.eye(8)], [-la.solve(M, K), -la.solve(M, D)]])
+    x = steady + (la.expm(end * companion) @ np.r_[-steady, np.zeros(8)])[:8]
+    for sensor, rows in zip(sensors, (at(0, -FIRST[1]), at(1, FIRST[1])), strict=True):
+        found = mbs.GetSensorStoredData(sensor)[-1, 1:3]
+        np.testing.assert_allclose(found, rows @ x, atol=1e-4 * np.abs(rows @ x).max())

@@ -81,12 +81,8 @@ TRAINS = [
     ),
     *mutations(
         "linear/models/standing_space.py",
-        _TESTS + "test_constant_equations_at_rest_are_those_of_hills_method",
+        _TESTS + "test_modes_from_axes_at_rest_hold_in_turning_ones",
         ("waves turn back", "- 1j * strongest * speed", "+ 1j * strongest * speed"),
-    ),
-    *mutations(
-        "linear/models/standing_space.py",
-        _DISCS,
         ("harmonics of the wrong wave", "+ strongest - n", "- strongest + n"),
     ),
 ]
