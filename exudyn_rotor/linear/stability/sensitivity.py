@@ -83,11 +83,11 @@ def sensitivity(
     >>> parts = {"actuator": LinearActuator(80.0, 3e5), "controller": controller}
     >>> bearings = [MagneticBearing(interface=name, **parts) for name in ("left", "right")]
     >>> print(sensitivity(rotor, np.geomspace(10.0, 5e3, 50), supports=bearings).table())
-    axis       peak |S|  peak [dB]  at [Hz]  zone
-    left, 1       1.311        2.4    349.6  A
-    left, 2       1.311        2.4    349.6  A
-    right, 1      1.311        2.4    349.6  A
-    right, 2      1.311        2.4    349.6  A
+    axis      peak |S|  peak [dB]  at [Hz]  zone
+    left, 1      1.662        4.4      153  A
+    left, 2      1.662        4.4      153  A
+    right, 1     1.662        4.4      153  A
+    right, 2     1.662        4.4      153  A
     """
     checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
