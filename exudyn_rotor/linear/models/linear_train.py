@@ -266,10 +266,8 @@ class LinearTrain:
         return PeriodicSystem(float(speed), {0: self.mass_matrix}, D, K)
 
     def undamped(self) -> LinearTrain:
-        """Return the model without damping, and without the skew part of supports' stiffness."""
-        parts = {name: part.undamped() for name, part in self.parts.items()}
-        elements = tuple(replace(element, is_damped=False) for element in self.elements)
-        return replace(self, parts=parts, elements=elements)
+        """Return the model itself: its damping does not enter the Hermitian part of equations."""
+        return self
 
     def point_motions(self, most: int) -> PointMotions:
         """Return points of all rotors, up to `most` of each."""

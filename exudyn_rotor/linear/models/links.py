@@ -99,15 +99,12 @@ class Element:
         Speed over which its tables are, per Ω.
     frame : {1.0, 0.0}
         Whether the axes it is seen from turn with Ω, or stand still: w = 1 − s or −s.
-    is_damped : bool
-        False where damping and the skew part of the stiffness are left out.
     """
 
     ends: tuple[tuple[str, str], ...]
     connection: Support | GearMesh
     turns: float
     rate: float
-    is_damped: bool = True
     frame: float = 1.0
 
     @classmethod
@@ -169,10 +166,8 @@ class Element:
         if isinstance(self.connection, Support):
             sides = [[1.0]] if len(self.ends) == 1 else [[1.0, -1.0], [-1.0, 1.0]]
             both = self.connection.matrices(self.rate * speed)
-            K, D = (np.kron(sides, X) for X in both)
-        else:
-            K, D = self.connection.matrices()
-        return (K, D) if self.is_damped else (0.5 * (K + K.T), 0.0 * D)
+            return tuple(np.kron(sides, X) for X in both)
+        return self.connection.matrices()
 
     def parts(self, speed: float) -> tuple[Terms, Terms, Terms]:
         """Return Fourier terms of damping, stiffness, and stiffness per Ω, seen with Ω."""

@@ -11,7 +11,7 @@ each matrix X of the rotor in ``exp(−Gα)ᵀ X exp(−Gα)``, which is constan
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -131,10 +131,6 @@ class TurnedRotor:
     def seen(self, interface: str) -> Terms:
         """Return the motion (6, k) of an interface."""
         return self._turned(self.alone.interface_motion(interface))
-
-    def undamped(self) -> TurnedRotor:
-        """Return the rotor without damping of its own."""
-        return replace(self, alone=self.alone.undamped())
 
     def _turned(self, U: np.ndarray) -> Terms:
         return {0: U} if self.drift == 0.0 else self._in_theta(self.turning.motion(U))

@@ -55,11 +55,6 @@ TRAINS = [
         ("unevenness of fast motions", "1.0 + (omega / first) ** 2", "1.0 + 0.0 * omega"),
     ),
     *mutations(
-        "linear/models/linear_train.py",
-        _TESTS + "test_critical_speeds_by_unbalance_of_either_rotor",
-        ("damping in critical speeds", "is_damped=False", "is_damped=True"),
-    ),
-    *mutations(
         "linear/models/links.py",
         _TESTS + "test_unbalance_of_either_rotor",
         ("links push as they pull", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, 1.0], [1.0, 1.0]]"),
