@@ -6,6 +6,7 @@ from validation.mutations.lists.drives import DRIVES
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
+from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.pictures import PICTURES
 from validation.mutations.lists.prestress import PRESTRESS
@@ -27,6 +28,7 @@ ALL = (
     *DRIVES,
     *FOUNDATIONS,
     *MULTIBODY,
+    *LINEAR_MODELS,
     *LINEAR,
     *TRAINS,
     *EVALUATION,

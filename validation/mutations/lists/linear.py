@@ -1,66 +1,13 @@
-"""Linear analyses: models, periodic systems, modes, responses, stability."""
+"""Linear analyses: modes, responses, stability."""
 
 from validation.mutations.mutation import mutations
 
 LINEAR = [
     *mutations(
-        "linear/models/controlled_rotor.py",
-        "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
-        ("controllers turn without Coriolis", "+= 2.0 * speed * own", "+= 0.0 * speed * own"),
-        ("controllers pulled inwards", "-= speed**2 * np.diag(own)", "+= speed**2 * np.diag(own)"),
-        (
-            "damping of what stands still carries nothing",
-            "factor = speed if",
-            "factor = 0.0 if",
-        ),
-    ),
-    *mutations(
         "linear/stability/sensitivity.py",
         "test_magnetic_bearing.py::test_sensitivity_of_a_spinning_rotor_is_that_of_both_senses",
         ("complementary in place of the sensitivity", "append(1.0 + place", "append(place"),
         ("signal with the wrong sign", "(-one.stiffness[4:, 2:4]", "(one.stiffness[4:, 2:4]"),
-    ),
-    *mutations(
-        "linear/models/left_out.py",
-        "test_basis_error.py::test_estimates_are_the_errors_against_the_full_model",
-        (
-            "left-out shapes take no part",
-            "np.abs(modes.orders) <= system.step",
-            "np.abs(modes.orders) < system.step",
-        ),
-        (
-            "slope of the dynamic stiffness halved",
-            "shifted * D + K, 2.0 * shifted * M + D",
-            "shifted * D + K, shifted * M + D",
-        ),
-    ),
-    *mutations(
-        "linear/models/left_out.py",
-        "test_basis_error.py::test_estimates_of_critical_speeds",
-        (
-            "dynamic stiffness changes twice as fast with the speed",
-            "slope, square = (high - low)",
-            "slope, square = 2.0 * (high - low)",
-        ),
-        (
-            "centrifugal terms grow with the speed",
-            "X + share**2 * (fast.K[n] - X)",
-            "X + share * (fast.K[n] - X)",
-        ),
-    ),
-    *mutations(
-        "linear/models/finer_scene.py",
-        "test_basis_in_scenes.py::test_a_scene_errs_as_a_rotor_on_the_same_supports",
-        (
-            "rotor's own terms counted twice",
-            "T.T @ (X - own[:k, :k]) @ T + own",
-            "T.T @ X @ T + own",
-        ),
-        (
-            "connectors see static responses with the other sign",
-            "np.linalg.pinv(seen[:, :k], rcond=_DEPENDENT)",
-            "-np.linalg.pinv(seen[:, :k], rcond=_DEPENDENT)",
-        ),
     ),
     *mutations(
         "linear/response/basis_check.py",
@@ -70,143 +17,6 @@ LINEAR = [
             "finer[order] - given.get(order, 0.0)",
             "2.0 * (finer[order] - given.get(order, 0.0))",
         ),
-    ),
-    *mutations(
-        "linear/models/basis_error.py",
-        "test_basis_error.py::test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning",
-        (
-            "warning at any error",
-            "worst <= self.accuracy",
-            "worst <= 1.0",
-        ),
-    ),
-    *mutations(
-        "linear/models/rotor_on_supports.py",
-        "test_campbell_frames.py",
-        (
-            "Coriolis forces left out",
-            "D[0] + self.terms.damping(speed)",
-            "D[0] + self.terms.damping(0.0)",
-        ),
-        (
-            "centrifugal stiffness grows with the speed",
-            "K[0] = K[0] + self.spin_terms.stiffness(speed)",
-            "K[0] = K[0] + self._spin_terms.stiffness(abs(speed) ** 0.5)",
-        ),
-    ),
-    *mutations(
-        "linear/models/rotor_on_supports.py",
-        "test_eccentric.py",
-        (
-            "steady forces of the supports forgotten",
-            "return float(sum(f @ bend for",
-            "return 0.0 * float(sum(f @ bend for",
-        ),
-        (
-            "spin displaces the supports",
-            "U + np.outer(shift, self.spin.momentum)",
-            "U + 0.0 * np.outer(shift, self.spin.momentum)",
-        ),
-    ),
-    *mutations(
-        "linear/models/subspace.py",
-        "test_structural_damping.py::test_a_full_model_is_that_of_all_its_coordinates",
-        (
-            "structural damping drives in the residual",
-            "force = force + 1j * sense * (H @",
-            "force = force - 1j * sense * (H @",
-        ),
-    ),
-    *mutations(
-        "linear/models/full_equations.py",
-        "test_full_stiffening.py::test_full_equations_hold_the_change_of_shape",
-        (
-            "stiffness per fourth power of the speed subtracted in the full model",
-            "force + speed**4 * (K4 @ Y)",
-            "force - speed**4 * (K4 @ Y)",
-        ),
-    ),
-    *mutations(
-        "linear/models/full_equations.py",
-        "test_full_response.py::test_unbalance_response_is_that_of_all_modes",
-        (
-            "Coriolis forces halved in the full model",
-            "(inv.D @ X + speed * (coriolis @ X))",
-            "(inv.D @ X + 0.5 * speed * (coriolis @ X))",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/harmonics.py",
-        "test_stability.py",
-        ("rate of a harmonic once", "D + 2.0 * M * rate, K", "D + M * rate, K"),
-        ("blocks transposed", "terms.get(int(n - m))", "terms.get(int(m - n))"),
-        (
-            "harmonics left out are not answered",
-            "answer = -np.linalg.solve(dynamic",
-            "answer = -0.0 * np.linalg.solve(dynamic",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/hill.py",
-        "test_hill.py",
-        (
-            "copies of a motion taken for others",
-            "copy = shapes[:, :, columns[row]], shifted(",
-            "copy = 0.0 * shapes[:, :, columns[row]], shifted(",
-        ),
-        (
-            "motions of the smallest truncation not followed",
-            "abs(motions.shifts) <= _NEAR",
-            "abs(motions.shifts) <= 0.0 * _NEAR",
-        ),
-        (
-            "error of what was followed without its inertia",
-            "slopes = 2.0 * values[lacking]",
-            "slopes = 1e9 * values[lacking]",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/hill.py",
-        "test_hill.py",
-        (
-            "harmonics left out are those of the smallest truncation",
-            "motions = replace(motions, shapes=_widened(motions, orders), orders=orders)",
-            "pass",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/floquet_modes.py",
-        "test_hill.py::test_a_rotor_that_spins_the_other_way_has_the_same_exponents",
-        (
-            "copies of motions at a negative speed as at a positive one",
-            "partial(_one_of_each_pair, speed=system.speed)",
-            "partial(_one_of_each_pair, speed=abs(system.speed))",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/inverse_iteration.py",
-        "test_hill.py test_basis_error.py",
-        ("left vector of the transposed matrix", "left, trans=2)", "left, trans=1)"),
-        (
-            "inverse iteration with half the slope",
-            "linear = 2.0 * shifted * M + D",
-            "linear = shifted * M + D",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/harmonics.py",
-        "test_hill.py",
-        (
-            "copies shifted the other way",
-            "first, last = max(-steps, 0), max(steps, 0)",
-            "first, last = max(steps, 0), max(-steps, 0)",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/fundamental.py",
-        "test_stability.py::test_magnus_steps_are_of_sixth_order",
-        ("commutator with the wrong sign", "- a3 + c1, a2 + c2", "- a3 - c1, a2 + c2"),
-        ("second commutator with the wrong sign", "c2 = -_commutator(", "c2 = _commutator("),
     ),
     *mutations(
         "theory/rotating_axes.py",
@@ -219,40 +29,12 @@ LINEAR = [
         ("loads turn against the rotor", "turned = {-n: R @ vector", "turned = {n: R @ vector"),
     ),
     *mutations(
-        "linear/periodic/harmonic_balance.py",
-        "test_response.py",
-        ("damping with the wrong sign", "A = K + 1j * self.rate * D", "A = K - 1j * self.rate * D"),
-    ),
-    *mutations(
-        "linear/periodic/harmonic_balance.py",
-        "test_structural_damping.py::test_whirl_of_a_turning_rotor",
-        (
-            "structural damping whatever the sense of the turning",
-            "np.where(zero, 0.0, np.sign(frequencies))",
-            "np.where(zero, 0.0, 1.0)",
-        ),
-        (
-            "structural damping by the frequency in the inertial frame",
-            "np.diag(senses), self.system.H",
-            "np.sign(self.rate) * np.eye(len(orders)), self.system.H",
-        ),
-    ),
-    *mutations(
         "linear/modal/whirl.py",
         "test_campbell_frames.py",
         (
             "forward and backward exchanged",
             "seen = nu + (orders[:, None, None] + n) * speed",
             "seen = nu + (orders[:, None, None] - n) * speed",
-        ),
-    ),
-    *mutations(
-        "linear/models/waves.py",
-        "test_campbell_frames.py",
-        (
-            "waves of the other sense",
-            "np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)",
-            "np.sqrt(0.5) * (u1 - 1j * u2), np.sqrt(0.5) * (u1 + 1j * u2)",
         ),
     ),
     *mutations(
@@ -370,58 +152,6 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/periodic/companion.py",
-        "test_growth_by_rounding.py",
-        (
-            "lengths of states that are no energies",
-            "sizes = np.sqrt(np.where(squared > 0.0, squared, scale[..., None] ** 2))",
-            "sizes = np.broadcast_to(scale[..., None], squared.shape)",
-        ),
-        (
-            "small eigenvalues as eigh finds them beside large ones",
-            "squares = np.sum(turn * (stiffness @ turn), axis=-2)",
-            "squares = np.linalg.eigvalsh(stiffness)",
-        ),
-        (
-            "condition of eigenvalues left out",
-            "solver = 2.0 * count * self.rounding * most * condition",
-            "solver = 1e-3 * self.rounding * most * np.minimum(condition, 1.0)",
-        ),
-        (
-            "rounding of the stiffness left out",
-            "solver + stiff * each",
-            "solver + damped * each",
-        ),
-        (
-            "rounding of the stiffness without its symmetry",
-            "if self.rounding == EPSILON else whole",
-            "if self.rounding < 0.0 else whole",
-        ),
-        (
-            "symmetric part of a product",
-            "crossed = dot(p, u) ** 2 + dot(q, v) ** 2 -",
-            "crossed = dot(p, u) ** 2 + dot(q, v) ** 2 +",
-        ),
-    ),
-    *mutations(
-        "linear/models/rotor_on_supports.py",
-        "test_campbell.py",
-        (
-            "stiffness by damping that stands still, against the spin",
-            "K.get(n, 0.0) + speed * X",
-            "K.get(n, 0.0) - speed * X",
-        ),
-    ),
-    *mutations(
-        "linear/models/waves.py",
-        "test_campbell_frames.py",
-        (
-            "waves with the amplitudes of the other sense",
-            "forward = np.sqrt(0.5) * (cosine - 1j * sine)",
-            "forward = np.sqrt(0.5) * (cosine + 1j * sine)",
-        ),
-    ),
-    *mutations(
         "linear/modal/tracking.py",
         "test_campbell_frames.py::test_a_line_breaks_where_it_would_join_different_modes",
         (
@@ -529,20 +259,6 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/periodic/eigenvalues.py",
-        "test_campbell_kinds.py",
-        (
-            "free motions as their copies come",
-            "if count < 2:\n        return otherwise",
-            "if count >= 0:\n        return otherwise",
-        ),
-        (
-            "free motions of another speed where they are none",
-            "left <= _STILL_NULL * np.linalg.norm(K)",
-            "left >= 0.0",
-        ),
-    ),
-    *mutations(
         "linear/stability/growth.py",
         "test_stability.py test_stability_names.py test_linear_properties.py",
         (
@@ -577,20 +293,6 @@ LINEAR = [
             "a limit without a secant is no number",
             "if np.isnan(root):",
             "if False:",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/floquet_modes.py",
-        "test_campbell_kinds.py",
-        (
-            "free motions of periodic equations by rounding",
-            "if free_ones is given:",
-            "if free_ones is not given:",
-        ),
-        (
-            "free motions without what turns",
-            "if n >= 0]",
-            "if n == 0]",
         ),
     ),
     *mutations(
@@ -645,15 +347,6 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/models/scene_coordinates.py",
-        "test_steady_state.py",
-        (
-            "velocity of the turning axes reversed",
-            "T @ y_t + speed * T1 @ y",
-            "T @ y_t - speed * T1 @ y",
-        ),
-    ),
-    *mutations(
         "linear/modal/excitation.py",
         "test_export.py",
         ("crossings of the spin speed for all orders", "line = order * np", "line = 1.0 * np"),
@@ -667,20 +360,6 @@ LINEAR = [
             "margin on the wrong side",
             "((1.0 - margins[0]) * low, low)",
             "(low, (1.0 + margins[0]) * low)",
-        ),
-    ),
-    *mutations(
-        "linear/models/journal_start.py",
-        "test_journal_bearing.py::test_steady_state_is_the_equilibrium_of_the_journals",
-        ("journals begin in the centre", "if np.any(load) and speed", "if False and speed"),
-    ),
-    *mutations(
-        "linear/models/probe.py",
-        "test_journal_bearing.py::test_scene_and_linear_rotor_agree",
-        (
-            "films differentiated by large steps",
-            "_VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)",
-            "_VELOCITY_STEPS = (1e-3,)",
         ),
     ),
 ]
