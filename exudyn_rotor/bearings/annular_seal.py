@@ -16,8 +16,8 @@ is
     μ_2 = [1/3 (1+ξ)² (2ξ−1) σ + (1+ξ)(1+2ξ) σ² + 2(1+ξ) σ³ + 4/3 σ⁴]/n⁴
 
 This is the theory of H. F. Black, D. N. Jenssen, Proc. IMechE 184 (1970), and D. W. Childs,
-*Turbomachinery Rotordynamics* (1993), Ch. 4; the coefficients are integrated anew. λ is that of
-Y. Yamada, Bull. JSME 5 (1962),
+*Turbomachinery Rotordynamics* (1993), Ch. 4; the coefficients are integrated anew, which gives
+4/3 ξ in μ_1 where reprints of the formula have 2 ξ. λ is that of Y. Yamada, Bull. JSME 5 (1962),
 
     λ = 0.079 Ra^{−1/4} [1 + (7 Rc/8 Ra)²]^{3/8},   Ra = 2 ρVc/η,   Rc = ρRΩc/η.           (3)
 
