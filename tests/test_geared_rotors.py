@@ -220,7 +220,7 @@ def test_a_full_body_meshes():
 
 
 def test_teeth_part_and_hit_as_two_inertias_do():
-    """A torque to and fro, by the scene and by an equation of two inertias on stiff bearings."""
+    """A torque that swings, by the scene and by an equation of two inertias on stiff bearings."""
     gears = mesh(backlash=2e-4, stiffness=1e5, damping=20.0, pressure_angle=1e-3)
     mbs, bodies, connection = pair(gears, support=1e9)
     swing = lambda t: 6.0 * np.sin(80.0 * t)  # noqa: E731

@@ -52,7 +52,7 @@ class Sensitivity(Result):
 
     @property
     def peaks(self) -> np.ndarray:
-        """Largest |S| of each axis, shape (axes,)."""
+        """Largest ``|S|`` of each axis, shape (axes,)."""
         return np.abs(self.values).max(axis=1)
 
     @property
@@ -88,7 +88,7 @@ class Sensitivity(Result):
         return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
-        """Draw |S| of each axis over the frequency, with the limits of the zones."""
+        """Draw ``|S|`` of each axis over the frequency, with the limits of the zones."""
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
         places = shown.frequencies(self.frequencies)
