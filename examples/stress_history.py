@@ -1,7 +1,7 @@
 """Stress of a bored disc over a run-up: the static part, the dynamic part, and the peak.
 
 The centrifugal stress comes from the static solution that ``stiffening='full'`` uses anyway; the
-bending stress from the recorded modal coordinates. The bore of the disc is hottest.
+bending stress from the recorded modal coordinates. The sum is largest at the bore.
 """
 
 import exudyn
