@@ -1,7 +1,7 @@
-// Sphinx's own scores; headings that hold the whole question come first.
+// Sphinx's own scores; headings that hold the whole question come first, then pages by task.
 var Scorer = {
-  score: ([_page, _title, _anchor, _description, score, _file, kind]) =>
-    kind === "title" ? score + 100 : score,
+  score: ([page, _title, _anchor, _description, score, _file, kind]) =>
+    score + (kind === "title" ? 100 : 0) + (page.startsWith("howto/") ? 20 : 0),
   objNameMatch: 11,
   objPartialMatch: 6,
   objPrio: { 0: 15, 1: 5, 2: -5 },
