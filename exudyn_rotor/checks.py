@@ -97,6 +97,12 @@ def _scalar(value: object, name: str, needed: str) -> float:
         raise ValueError(_told(name, needed, value)) from error
 
 
+def keep_numbers(item: object, units: Mapping[str, str], **bounds: float) -> None:
+    """Check attributes of a frozen object, given with their units, and keep them as floats."""
+    for name, unit in units.items():
+        object.__setattr__(item, name, number(getattr(item, name), name, unit, **bounds))
+
+
 def tolerance(value: float, name: str = "tolerance") -> float:
     """Return a relative tolerance: a number above 0 and below 1."""
     return number(value, name, above=0.0, below=1.0)

@@ -109,7 +109,7 @@ class LinearActuator(_Law):
         Raises
         ------
         ValueError
-                Where the gain does not hold against the negative stiffness.
+            Where the gain does not hold against the negative stiffness.
         """
         _check_balance(load, gain, offset)
         check_hold(self, gain)

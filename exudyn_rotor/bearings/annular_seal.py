@@ -30,6 +30,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,6 +87,8 @@ class AnnularSeal(Bearing):
      [-2.96  4.62]]
     """
 
+    _unloaded: ClassVar[bool] = True
+
     radius: float
     length: float
     clearance: float
@@ -97,8 +100,8 @@ class AnnularSeal(Bearing):
     def __post_init__(self) -> None:
         super().__post_init__()
         units = {"radius": "m", "length": "m", "clearance": "m", "pressure_drop": "Pa"}
-        self._set_numbers(units | {"density": "kg/m³", "viscosity": "Pa s"}, above=0.0)
-        self._set_numbers({"inlet_loss": ""}, least=0.0)
+        checks.keep_numbers(self, units | {"density": "kg/m³", "viscosity": "Pa s"}, above=0.0)
+        checks.keep_numbers(self, {"inlet_loss": ""}, least=0.0)
         if self.clearance >= self.radius:
             raise ValueError(
                 "clearance: needs the radial clearance, far below the radius of "
@@ -197,9 +200,6 @@ class AnnularSeal(Bearing):
         K, D = _matrices(self, speed)
         fx, fy = -K @ (x, y) - D @ (vx, vy)
         return float(fx), float(fy)
-
-    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
-        return np.zeros(2) if load is None else super()._static_load(load)
 
 
 @lru_cache(maxsize=64)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import hypot
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +37,8 @@ class LoadedBearing(ABC):
         see :func:`exudyn_rotor.bearing_loads`. Scenes do not need it.
     """
 
+    _unloaded: ClassVar[bool] = False  # whether no load counts as one of zero
+
     interface: str
     load: np.ndarray | None = None
 
@@ -54,15 +56,11 @@ class LoadedBearing(ABC):
         """Return the bearing with a static load on the journal [N], shape (2,)."""
         return replace(self, load=checks.vector(load, "load", "N", size=2))
 
-    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
-        """Check attributes, given with their units, and keep them as floats."""
-        for name, unit in units.items():
-            value = checks.number(getattr(self, name), name, unit, **bounds)
-            object.__setattr__(self, name, value)
-
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
         if load is not None:
             return checks.vector(load, "load", "N", size=2)
+        if self.load is None and self._unloaded:
+            return np.zeros(2)
         if self.load is None:
             raise ValueError(
                 f"bearing at {self.interface!r}: linear analyses need its static load; give "

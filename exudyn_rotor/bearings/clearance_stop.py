@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot, tanh
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,6 +68,8 @@ class ClearanceStop(Bearing):
     array([-1000.,  -100.])
     """
 
+    _unloaded: ClassVar[bool] = True
+
     radius: float
     clearance: float
     stiffness: float
@@ -77,8 +80,8 @@ class ClearanceStop(Bearing):
     def __post_init__(self) -> None:
         super().__post_init__()
         positive = {"radius": "m", "clearance": "m", "stiffness": "N/m", "slip_speed": "m/s"}
-        self._set_numbers(positive, above=0.0)
-        self._set_numbers({"damping": "N s/m", "friction": ""}, least=0.0)
+        checks.keep_numbers(self, positive, above=0.0)
+        checks.keep_numbers(self, {"damping": "N s/m", "friction": ""}, least=0.0)
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike, speed: float) -> np.ndarray:
         """Return the force on the journal (1), (2) [N], shape (2,).
@@ -165,6 +168,3 @@ class ClearanceStop(Bearing):
         """
         self.equilibrium(speed, load)
         return np.zeros((2, 2)), np.zeros((2, 2))
-
-    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
-        return np.zeros(2)

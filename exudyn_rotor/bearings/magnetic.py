@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, sin
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -76,6 +77,8 @@ class MagneticBearing(LoadedBearing):
     [  0.   -40.88]
     """
 
+    _unloaded: ClassVar[bool] = True
+
     actuator: Actuator
     controller: PIDController
     angle: float = 0.0
@@ -86,7 +89,7 @@ class MagneticBearing(LoadedBearing):
         super().__post_init__()
         checks.instance(self.actuator, "actuator", (LinearActuator, SaturatingActuator))
         checks.instance(self.controller, "controller", PIDController)
-        self._set_numbers({"angle": "rad"})
+        checks.keep_numbers(self, {"angle": "rad"})
         if self.sensor is not None:
             checks.label(self.sensor, "sensor")
         offset = checks.read_only(checks.vector(self.sensor_offset, "sensor_offset", "m", size=2))
@@ -154,11 +157,6 @@ class MagneticBearing(LoadedBearing):
             return [(-offset, actuator.current_for(-pull, -offset)) for pull, offset in pairs]
         pairs = [(actuator.place_under(pull, gain, offset), offset) for pull, offset in pairs]
         return [(place, -gain * (place + offset)) for place, offset in pairs]
-
-    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
-        if load is None and self.load is None:
-            return np.zeros(2)
-        return super()._static_load(load)
 
     def linearised(self) -> ControlledSupport:
         """Return the equations for linear analyses, about the equilibrium under the load.

@@ -97,10 +97,10 @@ class RollingBearing(Bearing):
         super().__post_init__()
         checks.count(self.count, "count", least=3)
         sizes = {"pitch_radius": "m", "element_radius": "m", "stiffness": "N/m^n"}
-        self._set_numbers(sizes, above=0.0)
-        self._set_numbers({"clearance": "m", "damping": "N s/m"}, least=0.0)
+        checks.keep_numbers(self, sizes, above=0.0)
+        checks.keep_numbers(self, {"clearance": "m", "damping": "N s/m"}, least=0.0)
         checks.choice(self.elements, "elements", _EXPONENTS)
-        self._set_numbers({"contact_angle": "rad"}, least=0.0, below=pi / 2)
+        checks.keep_numbers(self, {"contact_angle": "rad"}, least=0.0, below=pi / 2)
         if self.element_radius >= self.pitch_radius * sin(pi / self.count):
             raise ValueError(
                 f"element_radius: {self.count} elements of {self.element_radius:g} m do not fit "

@@ -70,7 +70,7 @@ class ShortFilmBearing(Bearing):
     def __post_init__(self) -> None:
         super().__post_init__()
         units = {"radius": "m", "length": "m", "clearance": "m", "viscosity": "Pa s"}
-        self._set_numbers(units, above=0.0)
+        checks.keep_numbers(self, units, above=0.0)
         if self.clearance >= self.radius:
             raise ValueError(
                 "clearance: needs the radial clearance, far below the radius of "

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot, pi, sqrt
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -66,13 +67,15 @@ class SqueezeFilmDamper(ShortFilmBearing):
     5806248.0 2901.8
     """
 
+    _unloaded: ClassVar[bool] = True
+
     centring_stiffness: float = 0.0
     orbit: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._set_numbers({"centring_stiffness": "N/m"}, least=0.0)
-        self._set_numbers({"orbit": ""}, least=0.0, below=1.0)
+        checks.keep_numbers(self, {"centring_stiffness": "N/m"}, least=0.0)
+        checks.keep_numbers(self, {"orbit": ""}, least=0.0, below=1.0)
 
     def force(self, displacement: ArrayLike, velocity: ArrayLike) -> np.ndarray:
         """Return the force of film and spring on the journal [N], shape (2,).
@@ -145,8 +148,3 @@ class SqueezeFilmDamper(ShortFilmBearing):
         film = 2.0 * size * abs(speed) * self.orbit / s2**2
         damping = 0.5 * pi * size / (s2 * sqrt(s2))
         return (self.centring_stiffness + film) * np.eye(2), damping * np.eye(2)
-
-    def _static_load(self, load: ArrayLike | None) -> np.ndarray:
-        if load is None and self.load is None:
-            return np.zeros(2)
-        return super()._static_load(load)

@@ -85,7 +85,7 @@ class TiltingPadBearing(Bearing):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
-        self._set_numbers({"pivot": "", "whirl_ratio": ""}, above=0.0)
+        checks.keep_numbers(self, {"pivot": "", "whirl_ratio": ""}, above=0.0)
         checks.number(self.pivot, "pivot", below=1.0)
         if self.film.pads[0].closed or self.film.cavitation == "mass-conserving":
             raise ValueError(

@@ -73,12 +73,11 @@ class CardanJoint(Connection):
         def keep(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        angle = checks.number(self.joint_angle, "joint_angle", "rad", least=0.0, below=0.5 * pi)
-        keep("joint_angle", angle)
-        keep("stiffness", checks.number(self.stiffness, "stiffness", "N m/rad", above=0.0))
-        keep("damping", checks.number(self.damping, "damping", "N m s/rad", least=0.0))
-        for name in ("turn_direction", "fork_angle"):
-            keep(name, checks.number(getattr(self, name), name, "rad"))
+        checks.keep_numbers(self, {"joint_angle": "rad"}, least=0.0, below=0.5 * pi)
+        checks.keep_numbers(self, {"stiffness": "N m/rad"}, above=0.0)
+        checks.keep_numbers(self, {"damping": "N m s/rad"}, least=0.0)
+        checks.keep_numbers(self, {"turn_direction": "rad", "fork_angle": "rad"})
+        angle = self.joint_angle
         a = np.array([cos(self.turn_direction), sin(self.turn_direction), 0.0])
         beside = np.array([-a[1], a[0], 0.0])  # e₁ × a
         axis = np.array([0.0, 0.0, cos(angle)]) - sin(angle) * beside

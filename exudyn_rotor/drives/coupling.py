@@ -79,8 +79,8 @@ class FlexibleCoupling(Connection):
         def keep(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        keep("torsion", checks.number(self.torsion, "torsion", "N m/rad", above=0.0))
-        keep("axial", checks.number(self.axial, "axial", "N/m", least=0.0))
+        checks.keep_numbers(self, {"torsion": "N m/rad"}, above=0.0)
+        checks.keep_numbers(self, {"axial": "N/m"}, least=0.0)
         for name, unit in (("lateral", "N/m"), ("angular", "N m/rad")):
             keep(name, _pair(getattr(self, name), name, unit))
         damping = checks.vector(self.damping, "damping", size=4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -52,12 +52,6 @@ class Drive(ABC):
 
     @abstractmethod
     def _torque(self, speed: float, time: float) -> float: ...
-
-    def _set_numbers(self, units: Mapping[str, str], **bounds: float) -> None:
-        """Check attributes, given with their units, and keep them as floats."""
-        for name, unit in units.items():
-            value = checks.number(getattr(self, name), name, unit, **bounds)
-            object.__setattr__(self, name, value)
 
     def _refuse_zero(self, name: str, unit: str) -> None:
         if getattr(self, name) == 0.0:
@@ -157,8 +151,8 @@ class Drag(Drive):
 
     def __post_init__(self) -> None:
         units = {"constant": "N m", "linear": "N m s/rad", "quadratic": "N m s²/rad²"}
-        self._set_numbers(units, least=0.0)
-        self._set_numbers({"smooth_speed": "rad/s"}, above=0.0)
+        checks.keep_numbers(self, units, least=0.0)
+        checks.keep_numbers(self, {"smooth_speed": "rad/s"}, above=0.0)
         if not (self.constant or self.linear or self.quadratic):
             raise ValueError("drag: needs constant, linear or quadratic above zero, got none")
 

@@ -98,16 +98,15 @@ class GearMesh(Connection):
         if np.any(radii <= 0.0):
             raise ValueError(f"radii: needs two numbers [m] > 0, got {radii.tolist()}")
         keep("radii", radii)
-        keep("stiffness", checks.number(self.stiffness, "stiffness", "N/m", above=0.0))
-        keep("damping", checks.number(self.damping, "damping", "N s/m", least=0.0))
-        for name, least in (("pressure_angle", 0.0), ("helix_angle", -0.5 * pi)):
-            angle = checks.number(getattr(self, name), name, "rad", above=least, below=0.5 * pi)
-            keep(name, angle)
-        keep("line_angle", checks.number(self.line_angle, "line_angle", "rad"))
+        checks.keep_numbers(self, {"stiffness": "N/m"}, above=0.0)
+        checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
+        checks.keep_numbers(self, {"pressure_angle": "rad"}, above=0.0, below=0.5 * pi)
+        checks.keep_numbers(self, {"helix_angle": "rad"}, above=-0.5 * pi, below=0.5 * pi)
+        checks.keep_numbers(self, {"line_angle": "rad"})
         if checks.whole_number(self.flank, "flank") not in (1, -1):
             raise ValueError(f"flank: needs 1 or -1, got {self.flank}")
         if self.backlash is not None:
-            keep("backlash", checks.number(self.backlash, "backlash", "m", least=0.0))
+            checks.keep_numbers(self, {"backlash": "m"}, least=0.0)
         if self.teeth is not None:
             keep("teeth", self._checked_teeth())
         keep("variation", self._checked_variation())

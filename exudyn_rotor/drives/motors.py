@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from exudyn_rotor import checks
 from exudyn_rotor.drives.drive import Drive
 
 
@@ -51,9 +52,9 @@ class InductionMotor(Drive):
     synchronous_speed: float
 
     def __post_init__(self) -> None:
-        self._set_numbers({"breakdown_torque": "N m"}, above=0.0)
-        self._set_numbers({"breakdown_slip": ""}, above=0.0, below=1.0)
-        self._set_numbers({"synchronous_speed": "rad/s"})
+        checks.keep_numbers(self, {"breakdown_torque": "N m"}, above=0.0)
+        checks.keep_numbers(self, {"breakdown_slip": ""}, above=0.0, below=1.0)
+        checks.keep_numbers(self, {"synchronous_speed": "rad/s"})
         self._refuse_zero("synchronous_speed", "rad/s")
 
     def _torque(self, speed: float, time: float) -> float:
@@ -89,8 +90,8 @@ class DirectCurrentMotor(Drive):
     no_load_speed: float
 
     def __post_init__(self) -> None:
-        self._set_numbers({"stall_torque": "N m"}, above=0.0)
-        self._set_numbers({"no_load_speed": "rad/s"})
+        checks.keep_numbers(self, {"stall_torque": "N m"}, above=0.0)
+        checks.keep_numbers(self, {"no_load_speed": "rad/s"})
         self._refuse_zero("no_load_speed", "rad/s")
 
     def _torque(self, speed: float, time: float) -> float:
@@ -126,8 +127,8 @@ class LimitedPower(Drive):
     stall_torque: float
 
     def __post_init__(self) -> None:
-        self._set_numbers({"power": "W"}, above=0.0)
-        self._set_numbers({"stall_torque": "N m"})
+        checks.keep_numbers(self, {"power": "W"}, above=0.0)
+        checks.keep_numbers(self, {"stall_torque": "N m"})
         self._refuse_zero("stall_torque", "N m")
 
     def _torque(self, speed: float, time: float) -> float:
