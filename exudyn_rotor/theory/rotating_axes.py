@@ -5,7 +5,7 @@ Axes are (n1, n2, e) of :attr:`SpinAxis.plane` and the spin axis.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 
 import numpy as np
@@ -40,19 +40,22 @@ def into_rotor_frame(vector: np.ndarray) -> dict[int, np.ndarray]:
 
 def into_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
     """Return the harmonics of ``R(θ) u`` for a motion (p, 6) seen in the rotor frame."""
-    turned: dict[int, np.ndarray] = {}
-    for m, amplitudes in motion.items():
-        for n, R in turning_harmonics(amplitudes.shape[-1]).items():
-            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ R.T
-    return turned
+    return _turned(motion, lambda R: R.T)
 
 
 def out_of_inertial_frame(motion: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
     """Return the harmonics of ``Rᵀ(θ) u`` for a motion (p, 6) in inertial axes."""
+    return _turned(motion, lambda R: R)
+
+
+def _turned(
+    motion: Mapping[int, np.ndarray], from_right: Callable[[np.ndarray], np.ndarray]
+) -> dict[int, np.ndarray]:
+    """Multiply harmonics of rows (p, 6) by R_n or its transpose, `from_right`."""
     turned: dict[int, np.ndarray] = {}
     for m, amplitudes in motion.items():
         for n, R in turning_harmonics(amplitudes.shape[-1]).items():
-            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ R
+            turned[m + n] = turned.get(m + n, 0.0) + amplitudes @ from_right(R)
     return turned
 
 

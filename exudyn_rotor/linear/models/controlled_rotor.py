@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as la
@@ -22,9 +21,9 @@ import scipy.linalg as la
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, add_terms
-from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -37,7 +36,7 @@ _TURN = skew([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class ControlledRotor:
+class ControlledRotor(ExtendedRotor):
     """A rotor on supports, some of which have coordinates of their own; see :class:`LinearModel`.
 
     Attributes
@@ -46,8 +45,6 @@ class ControlledRotor:
         The rotor on all else, and on the stiffness that acts without controllers.
     controlled : tuple of ControlledSupport
     """
-
-    gives_all: ClassVar[bool] = True
 
     plain: LinearRotor
     controlled: tuple[ControlledSupport, ...]
@@ -92,9 +89,8 @@ class ControlledRotor:
         return replace(self.plain, supports=tuple(supports)).undamped()
 
     @property
-    def size(self) -> int:
-        """Number of coordinates, the controllers' last."""
-        return self.plain.size + sum(one.size for one in self.controlled)
+    def _more(self) -> int:
+        return sum(one.size for one in self.controlled)
 
     @property
     def interfaces(self) -> tuple[str, ...]:
@@ -112,44 +108,9 @@ class ControlledRotor:
         return self.plain.standing_interfaces
 
     @property
-    def free_motions(self) -> tuple[str, ...]:
-        """Rigid motions that neither springs nor controllers hold."""
-        return self.plain.free_motions
-
-    @property
-    def is_balanced(self) -> bool:
-        """True where centre of mass and principal axis are on the spin axis but for rounding."""
-        return self.plain.is_balanced
-
-    @property
-    def has_structural_damping(self) -> bool:
-        """True where steady motions have structural damping, which other analyses leave out."""
-        return self.plain.has_structural_damping
-
-    @property
-    def radius(self) -> float:
-        """The rotor's radius of gyration [m]."""
-        return self.plain.radius
-
-    @property
     def is_full(self) -> bool:
         """True where no basis leaves anything out."""
         return self.plain.is_full
-
-    @property
-    def stiffening(self) -> str:
-        """Level of centrifugal stiffening."""
-        return self.plain.stiffening
-
-    @property
-    def stiffness_varies(self) -> bool:
-        """True where supports or a static displacement have a stiffness that is not in Ω²."""
-        return self.plain.stiffness_varies
-
-    @property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², rotor frame."""
-        return self._wide(self.plain.unit_unbalance)
 
     @property
     def base_loads(self) -> np.ndarray:
@@ -159,13 +120,7 @@ class ControlledRotor:
     @property
     def mass_matrix(self) -> np.ndarray:
         """Mass matrix, the controllers' inertia last."""
-        return la.block_diag(self.plain.mass_matrix, np.diag(self._inertia))
-
-    @property
-    def mesh(self) -> Mesh | None:
-        """Nodes of the mesh; None where the rotor was stored without mode shapes."""
-        mesh = self.plain.mesh
-        return None if mesh is None else replace(mesh, columns=self._wide(mesh.columns))
+        return self._joined(self.plain.mass_matrix, np.diag(self._inertia))
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
@@ -197,7 +152,7 @@ class ControlledRotor:
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
         plain, own = self.plain.at(speed), self._inertia
-        D, K = ({n: self._padded(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
+        D, K = ({n: self._joined(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
         beside = slice(self.plain.size, None)
         gyroscopic = np.kron(np.eye(len(own) // 2), _TURN[:2, :2])
         D[0][beside, beside] += 2.0 * speed * own[:, None] * gyroscopic
@@ -206,25 +161,8 @@ class ControlledRotor:
             factor = speed if added is self._between[2] else 1.0
             for n, X in added.items():
                 terms[n] = terms.get(n, 0.0) + factor * X
-        H = None if plain.H is None else self._padded(plain.H)
+        H = None if plain.H is None else self._joined(plain.H)
         return PeriodicSystem(plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding)
-
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
-        space = self.plain.space(count, fastest, loads=loads, held=held, residual=residual)
-        others = space.others
-        if others is not None:
-            others = la.block_diag(others, np.eye(len(self._inertia)))
-        light = replace(self, plain=space.equations)
-        return replace(space, equations=light, others=others)
 
     @cached_property
     def _inertia(self) -> np.ndarray:
@@ -253,11 +191,3 @@ class ControlledRotor:
     def _place(self, index: int) -> int:
         """Return where a controller's pair of supports is among those of the plain rotor."""
         return len(self.plain.supports) - 2 * len(self.controlled) + 2 * index
-
-    def _wide(self, rows: np.ndarray) -> np.ndarray:
-        """Return rows (…, k) of the rotor with zeros for the controllers."""
-        more = [(0, 0)] * (rows.ndim - 1) + [(0, self.size - self.plain.size)]
-        return np.pad(rows, more)
-
-    def _padded(self, X: np.ndarray) -> np.ndarray:
-        return np.pad(X, (0, self.size - self.plain.size))

@@ -15,7 +15,7 @@ all places.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -25,7 +25,7 @@ import scipy.linalg
 
 from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -38,7 +38,7 @@ _DEPENDENT = 1e-3  # of singular values of rows of unit length
 
 
 @dataclass(frozen=True, eq=False)
-class FinerScene:
+class FinerScene(InAllCoordinates):
     """A scene with a finer rotor; its coordinates are those of the scene, then c.
 
     Attributes
@@ -104,18 +104,6 @@ class FinerScene:
         place, at_marker = _seen_by(body, body.mbs.GetMarker(body.marker(name)))
         more = at_marker @ self.rotor.interfaces[place].motion[:, self._kept :]
         return np.hstack([self.given.interface_motion(name), self._turned(more)])
-
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
-        return WholeSpace(self, can_be_sent=False)
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""

@@ -26,7 +26,7 @@ from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 from exudyn_rotor.multibody.full_body import reduced_body
@@ -47,7 +47,7 @@ _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may h
 
 
 @dataclass(frozen=True, eq=False)
-class LinearScene(SceneCoordinates):
+class LinearScene(SceneCoordinates, InAllCoordinates):
     """An assembled scene around one rotor, ready for any spin speed; made by :meth:`of`.
 
     Attributes
@@ -228,18 +228,6 @@ class LinearScene(SceneCoordinates):
         amplitudes = np.zeros((len(values), self.size))
         amplitudes[:, self.standing] = share * (vectors * np.sqrt(np.maximum(values, 0.0))).T
         return amplitudes
-
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
-        return WholeSpace(self, can_be_sent=False)
 
 
 def _resolved(

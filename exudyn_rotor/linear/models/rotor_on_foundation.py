@@ -8,9 +8,8 @@ x and y turn once a revolution, whatever the support is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -18,9 +17,9 @@ import scipy.linalg
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, congruent
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, add_terms
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
 
@@ -31,25 +30,24 @@ Harmonics = Mapping[int, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class RotorOnFoundation:
+class RotorOnFoundation(ExtendedRotor):
     """A reduced rotor whose supports stand on a foundation; see :class:`LinearModel`.
 
     Attributes
     ----------
-    grounded : LinearRotor
+    plain : LinearRotor
         The same rotor with its supports on the ground.
     foundation : Foundation
         In modal coordinates, along (n1, n2, e).
     """
 
-    gives_all: ClassVar[bool] = True
     is_full: ClassVar[bool] = False
 
-    grounded: LinearRotor
+    plain: LinearRotor
     foundation: Foundation
 
     @classmethod
-    def of(cls, grounded: LinearRotor, foundation: Foundation) -> RotorOnFoundation:
+    def of(cls, plain: LinearRotor, foundation: Foundation) -> RotorOnFoundation:
         """Put a rotor with its supports on a foundation in the axes of its mesh.
 
         Raises
@@ -58,32 +56,31 @@ class RotorOnFoundation:
             Where a support has no point there, or is off it; for springs that hold the spin by
             their distance from the axis, or turn with the rotor, whose steady forces bear on it.
         """
-        axis = grounded.rotor.axis
-        for support in grounded.supports:
-            place = axis.project(grounded.rotor.interfaces[support.interface].reference)
+        axis = plain.rotor.axis
+        for support in plain.supports:
+            place = axis.project(plain.rotor.interfaces[support.interface].reference)
             foundation.motion(support.interface, place)
-        if grounded.spin is not None and grounded.spin.coupled:
+        if plain.spin is not None and plain.spin.coupled:
             raise ValueError(
                 "foundation: springs that hold the rotor's spin, off its axis or turning with it, "
                 "can stand on the ground only; linearise a scene with them"
             )
-        model = cls(grounded, foundation.modal().turned(axes_of(axis).T))
+        model = cls(plain, foundation.modal().turned(axes_of(axis).T))
         for name in model.standing_interfaces:
-            if name in grounded.interfaces:
+            if name in plain.interfaces:
                 raise ValueError(f"foundation: {name!r} is an interface of the rotor; rename it")
         return model
 
     # -------------------------------------------------------------- what it consists of
 
     @property
-    def size(self) -> int:
-        """Number of coordinates k."""
-        return self.grounded.size + self.foundation.size
+    def _more(self) -> int:
+        return self.foundation.size
 
     @property
     def standing(self) -> np.ndarray:
         """Coordinates of the foundation."""
-        return np.arange(self.grounded.size, self.size)
+        return np.arange(self.plain.size, self.size)
 
     @property
     def standing_interfaces(self) -> tuple[str, ...]:
@@ -93,7 +90,7 @@ class RotorOnFoundation:
     @property
     def interfaces(self) -> tuple[str, ...]:
         """Names of the rotor's interfaces and of the foundation's points."""
-        return self.grounded.interfaces + self.standing_interfaces
+        return self.plain.interfaces + self.standing_interfaces
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k) in the rotor frame, a point's in inertial axes."""
@@ -102,14 +99,8 @@ class RotorOnFoundation:
             point = list(self.foundation.points)[self.standing_interfaces.index(name)]
             motion[:, self.standing] = self.foundation.points[point]
         else:
-            motion[:, : self.grounded.size] = self.grounded.interface_motion(name)
+            motion[:, : self.plain.size] = self.plain.interface_motion(name)
         return motion
-
-    @cached_property
-    def mesh(self) -> Mesh | None:
-        """Nodes of the rotor's mesh; None where it was stored without mode shapes."""
-        mesh = self.grounded.mesh
-        return None if mesh is None else replace(mesh, columns=self._widened(mesh.columns))
 
     def point_motions(self, most: int) -> PointMotions:
         """Return points of the rotor, and the foundation's motion as large as theirs.
@@ -117,12 +108,12 @@ class RotorOnFoundation:
         Mass for mass: a coordinate of unit modal mass moves as much as all points of the rotor by
         ``1/√m``.
         """
-        points = self.grounded.point_motions(most)
+        points = self.plain.point_motions(most)
         moving = len(points.points) - (not points.is_mesh)  # rings have one at rest
-        share = np.sqrt(moving / self.grounded.invariants.mass)
+        share = np.sqrt(moving / self.plain.invariants.mass)
         return replace(
             points,
-            motion=self._widened(points.motion),
+            motion=self._wide(points.motion),
             standing=share * np.eye(self.size)[self.standing],
         )
 
@@ -131,112 +122,48 @@ class RotorOnFoundation:
     @property
     def mass_matrix(self) -> np.ndarray:
         """M, shape (k, k)."""
-        return self._joined(self.grounded.mass_matrix, self.foundation.mass)
+        return self._joined(self.plain.mass_matrix, self.foundation.mass)
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
-        system, y = self.grounded.at(speed), self.foundation
+        system, y = self.plain.at(speed), self.foundation
         own = {"M": y.mass, "D": y.damping, "K": y.stiffness}
         terms = {
             name: {
-                n: self._joined(X, own[name] if n == 0 else np.zeros_like(y.mass))
+                n: self._joined(X, own[name] if n == 0 else None)
                 for n, X in getattr(system, name).items()
             }
             for name in own
         }
-        for support, U in zip(self.grounded.supports, self.grounded.supported_motions, strict=True):
+        for support, U in zip(self.plain.supports, self.plain.supported_motions, strict=True):
             pulled = scipy.linalg.block_diag(U, y.points[support.interface])
             for name, harmonics in zip("DK", _coupling(support, speed), strict=True):
-                for n, X in harmonics.items():
-                    block = congruent(X.real, pulled) if n == 0 else pulled.T @ X @ pulled
-                    terms[name][n] = terms[name].get(n, 0.0) + block
-        H = system.H if system.H is None else self._joined(system.H, np.zeros_like(y.mass))
+                add_terms(terms[name], harmonics, pulled)
+        H = system.H if system.H is None else self._joined(system.H)
         return PeriodicSystem(float(speed), *terms.values(), H)
-
-    @property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², shape (k,), rotor frame."""
-        return self._widened(self.grounded.unit_unbalance)
 
     @property
     def base_loads(self) -> np.ndarray | None:
         """Loads of unit accelerations of the ground; None where the foundation does not tell S."""
         if self.foundation.participation is None:
             return None
-        return np.hstack([self.grounded.base_loads, -self.foundation.participation])
+        return np.hstack([self.plain.base_loads, -self.foundation.participation])
 
     def undamped(self) -> RotorOnFoundation:
         """Return the model without damping, and without the skew part of supports' stiffness."""
-        return replace(
-            self, grounded=self.grounded.undamped(), foundation=self.foundation.undamped()
-        )
-
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
-        space = self.grounded.space(count, fastest, held=held)
-        others = space.others
-        if others is not None:
-            others = self._joined(others, np.eye(self.foundation.size))
-        light = replace(self.grounded, rotor=self.grounded.rotor.without_shapes())
-        return replace(space, equations=replace(self, grounded=light), others=others)
+        return replace(self, plain=self.plain.undamped(), foundation=self.foundation.undamped())
 
     # -------------------------------------------------------------- as the rotor on the ground
 
     @property
     def invariants(self) -> object:
         """Those of the rotor."""
-        return self.grounded.invariants
+        return self.plain.invariants
 
     @property
     def supports(self) -> tuple[Support, ...]:
         """Supports between rotor and foundation."""
-        return self.grounded.supports
-
-    @property
-    def free_motions(self) -> tuple[str, ...]:
-        """Rigid motions of the rotor that no spring holds."""
-        return self.grounded.free_motions
-
-    @property
-    def is_balanced(self) -> bool:
-        """True where the rotor has no unbalance at all."""
-        return self.grounded.is_balanced
-
-    @property
-    def has_structural_damping(self) -> bool:
-        """True where steady motions have structural damping, which other analyses leave out."""
-        return self.grounded.has_structural_damping
-
-    @property
-    def radius(self) -> float:
-        """The rotor's radius of gyration [m]."""
-        return self.grounded.radius
-
-    @property
-    def stiffening(self) -> str:
-        """Level of centrifugal stiffening."""
-        return self.grounded.stiffening
-
-    @property
-    def stiffness_varies(self) -> bool:
-        """True where supports or a static displacement have a stiffness that is not in Ω²."""
-        return self.grounded.stiffness_varies
-
-    def _widened(self, columns: np.ndarray) -> np.ndarray:
-        """Return what the rotor's coordinates do, the foundation's doing nothing."""
-        given = np.asarray(columns)
-        return np.concatenate([given, np.zeros((*given.shape[:-1], self.foundation.size))], axis=-1)
-
-    def _joined(self, rotor: np.ndarray, foundation: np.ndarray) -> np.ndarray:
-        return scipy.linalg.block_diag(np.asarray(rotor), foundation)
+        return self.plain.supports
 
 
 def _coupling(support: Support, speed: float) -> tuple[Harmonics, Harmonics]:

@@ -99,6 +99,22 @@ class WholeSpace:
         return True
 
 
+class InAllCoordinates:
+    """Base of models that are solved in all coordinates, and cannot go to other processes."""
+
+    def space(
+        self,
+        count: int,
+        fastest: float,
+        *,
+        loads: Sequence[np.ndarray] = (),
+        held: bool = False,
+        residual: float = 1e-7,
+    ) -> WholeSpace:
+        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+        return WholeSpace(self, can_be_sent=False)
+
+
 @dataclass(frozen=True, eq=False)
 class _Tabulated:
     """Equations at the speeds needed."""
