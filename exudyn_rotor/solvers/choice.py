@@ -20,7 +20,7 @@ _QUICK_MEMORY = 1e9
 # takes for every entry and for every coordinate; peaks of runs with 20 modes
 _DIRECT_PER_ENTRY = 30.0
 _ITERATIVE_PER_ENTRY = 6.0
-_ITERATIVE_PER_COORDINATE = 4000.0
+_ITERATIVE_PER_COORDINATE = 5200.0
 # seconds of 20 modes, one thread: per operation of the factorisation, per entry of the factor in 60
 # solutions, and per entry of the matrix by iteration; only their ratios count
 _PER_OPERATION, _PER_FACTOR_ENTRY, _PER_MATRIX_ENTRY = 7e-11, 1.6e-7, 2e-6

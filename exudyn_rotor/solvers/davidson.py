@@ -12,7 +12,7 @@ from tqdm import tqdm
 from exudyn_rotor.solvers.lanczos import Modes
 from exudyn_rotor.solvers.rounding import rounding_unit
 
-_BLOCKS = 3  # of as many columns as modes are sought are kept
+_BLOCKS = 5  # of as many columns as modes are sought are kept
 _MORE = 5  # modes are sought beside those that are wanted
 _GUARDS = 2  # of them must nearly converge, so that none below is missed
 _GUARD_MULTIPLE = 1e4
@@ -106,6 +106,7 @@ class _Space:
         self._basis, self._forces, self._momenta = (
             np.empty((len(columns), limit), order="F") for _ in range(3)
         )
+        self._energy = np.zeros((limit, limit))
         self._count = 0
         self._latest = self._before = np.zeros((0, 0))
         self.extend(columns)
@@ -113,8 +114,7 @@ class _Space:
     def lowest(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return eigenvalues, modes, ``Kφ − ω²Mφ`` and ``ω²Mφ`` of the lowest Ritz vectors."""
         basis, forces, momenta = self._columns()
-        energy = basis.T @ forces
-        values, turn = np.linalg.eigh(0.5 * (energy + energy.T))
+        values, turn = np.linalg.eigh(self._energy[: self._count, : self._count])
         values, turn = values[:count], turn[:, :count]
         self._before, self._latest = self._latest, turn
         inertia = (momenta @ turn) * values
@@ -129,6 +129,8 @@ class _Space:
         self._basis[:, added], self._momenta[:, added] = new, momenta
         self._forces[:, added] = self._stiffness @ new
         self._count = added.stop
+        energy = self._basis[:, : added.stop].T @ self._forces[:, added]
+        self._energy[: added.stop, added], self._energy[added, : added.stop] = energy, energy.T
 
     def _columns(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         every = (self._basis, self._forces, self._momenta)
@@ -141,7 +143,9 @@ class _Space:
         kept, _ = np.linalg.qr(np.hstack([self._latest, before])[:, :room])
         for array in self._columns():
             array[:, : kept.shape[1]] = array @ kept
+        energy = kept.T @ self._energy[: self._count, : self._count] @ kept
         self._count = kept.shape[1]
+        self._energy[: self._count, : self._count] = energy
         self._latest = np.eye(self._count, self._latest.shape[1])
 
     def _orthonormal(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -143,6 +143,11 @@ SOLVERS = [
             "share = min(_RESIDUAL, np.sqrt(tolerance))",
             "share = 0.03",
         ),
+        (
+            "restarts with another energy",
+            "energy = kept.T @ self._energy[: self._count, : self._count] @ kept",
+            "energy = self._energy[: kept.shape[1], : kept.shape[1]].copy()",
+        ),
     ),
     *mutations(
         "solvers/fill.py",
