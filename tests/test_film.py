@@ -7,6 +7,7 @@ import pytest
 
 from exudyn_rotor import OilFilm, Pad, grooved_pads, plot_pressure
 from exudyn_rotor.bearings.film.grid import Axial
+from validation.references import film as tables
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 STILL = (0.0, 0.0)
@@ -103,27 +104,41 @@ def test_surface_carries_the_same_oil_through_a_void():
 # ------------------------------------------------------------------ published tables
 
 
-# two axial grooves of 20°, L/D = 0.5: ε, attitude [°], K11, K12, K21, K22 of W/c, C of W/(c Ω).
-# Lund and Thomsen, in "Topics in Fluid OilFilm Bearing and Rotor Bearing System Design", ASME 1978
-LUND = {
-    2.634: (0.165, 72.36, [1.61, 6.74, -3.01, 1.91], [13.36, 2.00, 2.00, 6.28]),
-    0.378: (0.570, 45.43, [3.33, 3.64, -0.43, 1.68], [6.76, 1.87, 1.87, 1.89]),
-    0.151: (0.734, 35.20, [5.48, 3.98, 0.15, 1.61], [7.26, 1.79, 1.79, 1.27]),
-}
-
-
-@pytest.mark.parametrize("sommerfeld", LUND)
-def test_coefficients_are_those_of_lunds_table(sommerfeld):
-    ratio, attitude, stiffness, damping = LUND[sommerfeld]
+@pytest.mark.parametrize("row", tables.rows(tables.LUND), ids=lambda row: f"{row[0]:g}")
+def test_coefficients_are_those_of_lunds_table(row):
+    """Two axial grooves of 20°, L/D = 0.5, all rows (ASME 1978, `validation.references.film`)."""
+    sommerfeld, ratio, attitude, *given = row
     state = carried(film(nodes=240, axial_nodes=12), sommerfeld)
     assert state.sommerfeld_number == pytest.approx(sommerfeld, rel=1e-8)
     assert state.eccentricity_ratio == pytest.approx(ratio, abs=2e-3)
     assert np.degrees(state.attitude) == pytest.approx(attitude, abs=0.2)
-    found = state.coefficients()
-    scales = CLEARANCE / 1e3 * np.array([1.0, state.speed])
     # the place −n1 turns both axes of the table by half a turn, which changes no coefficient
-    for matrix, scale, given in zip(found, scales, (stiffness, damping), strict=True):
-        assert scale * matrix.ravel() == pytest.approx(given, abs=1e-2 * np.max(given))
+    for found, expected in zip(tables.coefficients(state), (given[:4], given[4:]), strict=True):
+        assert found == pytest.approx(expected, abs=1e-2 * np.max(expected))
+
+
+@pytest.mark.parametrize("row", tables.rows(tables.SOMEYA), ids=lambda row: f"{row[1]:g}")
+def test_coefficients_are_those_of_someyas_bore_which_turns(row):
+    """Two grooves of 10°, L/D = 0.5, all rows; his bore turns with the journal's line of centres.
+
+    His damping is that of films whose changes of pressure reach 0.5° to 1.5° beyond their end,
+    which is what a grid of 1° to 3° leaves open; here 1°, as far as the rows have one value.
+    """
+    state = tables.carried(tables.film(width=10.0, axial_nodes=6, nodes=360), row[0])
+    stiffness, _ = tables.coefficients(state)
+    assert tables.turning(state, stiffness) == pytest.approx(row[5:9], abs=0.025 * max(row[5:9]))
+    _, damping = tables.coefficients(tables.reaching(state, np.radians(1.0)))
+    assert damping == pytest.approx(row[9:], abs=0.025 * max(row[9:]))
+
+
+@pytest.mark.parametrize("case", tables.ross_cases()[:3], ids=lambda case: f"{case['load']:g}")
+def test_coefficients_are_those_of_ross(case):
+    """ROSS 2.3.0, 40 × 10 elements, two of its entries times √2 (`validation.references.film`)."""
+    state = tables.ross_state(case)
+    assert state.eccentricity_ratio == pytest.approx(case["ratio"], rel=5e-3)
+    for found, name in zip(state.coefficients(), ("stiffness", "damping"), strict=True):
+        expected = np.reshape(case[name], (2, 2))
+        assert found == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
 
 
 def test_losses_are_those_of_someyas_table():

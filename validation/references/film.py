@@ -4,7 +4,9 @@ Two axial grooves beside the load. The tables are those of J. W. Lund and K. K. 
 in Fluid Film Bearing and Rotor Bearing System Design*, ASME 1978, table 1a: grooves of 20°), as the
 course 41524 of DTU holds it (I. F. Santos, 2023), and of T. Someya (*Journal-Bearing Databook*,
 1989, p. 14 and 17: grooves of 10°). ROSS 2.3.0 cuts negative pressures (``film_ross.json``, by
-``film_ross.py`` beside it).
+``film_ross.py`` beside it). Its perturbation divides differences of dimensionless forces by the
+size of that force, for the force across the load (in its code k_yx and k_yy) by |(F_y, F_y)|
+instead of |(F_x, F_y)|: those two are 1/√2 of what they should be, and compared times √2.
 
     python -m validation film
 """
@@ -14,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -116,49 +119,86 @@ def lund() -> list[str]:
     return lines
 
 
-def someya() -> list[str]:
-    """Return Someya's row beside ours; his stiffness turns with the journal, ours does not.
+def turning(state, stiffness: np.ndarray) -> np.ndarray:
+    """Return the stiffness over W/c of a bore that turns with the journal's line of centres.
 
-    In a bore without grooves a step across the line of centres turns the force: K e_t = W/e across
-    the load, nothing along it. His table keeps this to the last digit, with grooves: it is
-    compared in that form, beside the step along the line of centres.
+    A step along that line is that of the bore at rest; one across turns film and force by its
+    angle about the bore's centre: K e_t = 1/ε across the load.
     """
-    bearing = film(width=10.0, axial_nodes=12)
+    radial, across = polar_axes(state.attitude).T
+    step = np.array([0.0, 1.0 / state.eccentricity_ratio])
+    along = stiffness.reshape(2, 2) @ radial
+    return (np.outer(along, radial) + np.outer(step, across)).ravel()
+
+
+def polar_axes(attitude: float) -> np.ndarray:
+    """Return the directions along and across the line of centres, columns."""
+    c, s = np.cos(attitude), np.sin(attitude)
+    return np.array([[c, -s], [s, c]])
+
+
+def reaching(state, angle: float):
+    """Return a state whose change of pressure reaches beyond the film's end by an angle [rad].
+
+    Only :meth:`FilmState.coefficients` differ: there the change is zero where the film is broken.
+    """
+    grid, empty = state.film.grid, state.solution.empty
+    for _ in range(round(angle / grid.step.max())):
+        empty = empty & np.where(grid.at_left[:, None], empty[grid.left], False)
+    return replace(state, solution=replace(state.solution, empty=empty))
+
+
+def someya() -> list[str]:
+    """Return Someya's rows beside ours, matrices in parts of their largest entry.
+
+    His stiffness is that of a bore that turns with the journal (`turning`): so compared, and in
+    the form of ours, whose bore stands still. His damping along the line of centres is larger:
+    that of films whose change of pressure reaches beyond their end, by 0.5° to 1.5°.
+    """
+    bearing = film(width=10.0, axial_nodes=12, nodes=720)
     lines = [
-        "Someya, L/D = 0.5    S    ε: table  here   attitude      flow          torque        "
-        "largest deviation of C   table's |K e_t − (0, 1/ε)| ε   ours"
+        "Someya, L/D = 0.5  S     ε: table here   attitude      flow          torque       "
+        "K, turning  at rest  C   by 0.5°  1°  1.5° beyond"
     ]
     for s, ratio, attitude, flow, torque, *rest in rows(SOMEYA):
         state = carried(bearing, s)
         stiffness, damping = coefficients(state)
         unit = CLEARANCE * RADIUS * state.speed * bearing.length
-        table = np.array(rest[:4]).reshape(2, 2)
-        across = [-np.sin(np.radians(attitude)), np.cos(np.radians(attitude))]
-        turned = [
-            ratio * np.linalg.norm(k @ across - [0.0, 1.0 / ratio])
-            for k in (table, stiffness.reshape(2, 2))
-        ]
+        farther = [coefficients(reaching(state, np.radians(a)))[1] for a in (0.5, 1.0, 1.5)]
+        compared = [(turning(state, stiffness), rest[:4]), (stiffness, rest[:4])]
+        compared += [(each, rest[4:]) for each in (damping, *farther)]
         lines.append(
-            f"{s:23.4f} {ratio:6.2f} {state.eccentricity_ratio:7.3f} {attitude:7.1f} "
+            f"{s:21.4f} {ratio:6.2f} {state.eccentricity_ratio:6.3f} {attitude:6.1f} "
             f"{np.degrees(state.attitude):5.1f} {flow:7.3f} {state.side_flow / unit:6.3f} "
-            f"{torque:7.2f} {state.torque / (CLEARANCE * LOAD):6.2f} "
-            f"{np.max(np.abs(damping - rest[4:])) / rest[4]:18.1%} "
-            f"{turned[0]:21.1%} {turned[1]:18.0%}"
+            f"{torque:7.2f} {state.torque / (CLEARANCE * LOAD):6.2f}    "
+            + " ".join(f"{np.max(np.abs(a - b)) / np.max(np.abs(b)):7.1%}" for a, b in compared)
         )
     return lines
 
 
+def ross_cases() -> list[dict]:
+    """Return ROSS's cases; its perturbation's k_yx and k_yy times √2 (see above)."""
+    cases = json.loads(Path(__file__).with_name("film_ross.json").read_text())
+    for case in cases:
+        if case["method"] == "perturbation":
+            case["stiffness"][2:] = (np.sqrt(2.0) * np.array(case["stiffness"][2:])).tolist()
+    return cases
+
+
+def ross_state(case: dict):
+    """Return our equilibrium of a case of ROSS."""
+    clearance = CLEARANCE / (1.0 - case["preload"])
+    pads = grooved_pads(clearance, [0.0, np.pi], np.radians(20.0), case["preload"])
+    bearing = OilFilm(RADIUS, RADIUS, VISCOSITY, pads, "half-sommerfeld", nodes=240)
+    return bearing.equilibrium(SPEED, [0.0, -case["load"]])
+
+
 def ross() -> list[str]:
     """Return ROSS's rows beside ours, and what its stiffness says of its own equilibria."""
-    cases = json.loads(Path(__file__).with_name("film_ross.json").read_text())
     lines = ["ROSS            load   ε: ROSS  here   angle: ROSS  here   K (11, 12, 21, 22)   C"]
     places = {}
-    for case in cases:
-        preload = case["preload"]
-        clearance = CLEARANCE / (1.0 - preload)
-        pads = grooved_pads(clearance, [0.0, np.pi], np.radians(20.0), preload)
-        bearing = OilFilm(RADIUS, RADIUS, VISCOSITY, pads, "half-sommerfeld", nodes=240)
-        state = bearing.equilibrium(SPEED, [0.0, -case["load"]])
+    for case in ross_cases():
+        state = ross_state(case)
         ours = np.array([m.ravel() for m in state.coefficients()])
         theirs = np.array([case["stiffness"], case["damping"]])
         angle = np.arctan2(state.position[1], state.position[0])
