@@ -13,9 +13,7 @@ import numpy as np
 
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.left_out import LeftOut
-from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -49,12 +47,8 @@ class BasisError:
     @classmethod
     def of(cls, model: LinearModel, accuracy: float | None, held: bool = False) -> BasisError:
         """Prepare the check of a model; `held` where a free spin is no coordinate."""
-        known = (
-            isinstance(model, LinearRotor | LinearScene)
-            and not model.is_full
-            and accuracy is not None
-        )
-        return cls(model, accuracy, LeftOut.of(model, held) if known else None)
+        looked_at = accuracy is not None and not model.is_full
+        return cls(model, accuracy, LeftOut.of(model, held) if looked_at else None)
 
     @property
     def is_known(self) -> bool:
@@ -109,19 +103,17 @@ class BasisError:
         worst = np.max(np.nan_to_num(errors), initial=0.0)
         if self.left_out is None or worst <= self.accuracy:
             return
-        rotor = self.left_out.rotor
-        elastic = rotor.size - len(rotor.rigid_kinds)
-        highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
+        bases = " and ".join(map(str, self.left_out.finer.bases))
         warnings.warn(
-            f"{what} errs by about {worst:.2g} of its value, for the {elastic} flexible modes of "
-            f"the reduced rotor (up to {highest:.4g} Hz) are too few for the accuracy of "
-            f"{self.accuracy:g}: {self._advice()}, give another accuracy=…, or None for no check",
+            f"{what} errs by about {worst:.2g} of its value, for {bases} are too few for the "
+            f"accuracy of {self.accuracy:g}: {self._advice()}, give another accuracy=…, or None "
+            "for no check",
             UserWarning,
             stacklevel=user_level(),
         )
 
     def _advice(self) -> str:
-        if self.left_out.lacks_flexibility():
+        if any(basis.lacks_flexibility for basis in self.left_out.finer.bases):
             return (
                 "they lack flexibility at the interfaces; reduce the rotor with "
                 "craig_bampton_modes(rotor, …), whose static modes have it"

@@ -54,7 +54,6 @@ class FinerScene(InAllCoordinates):
     rotor: ReducedRotor
     places: dict[str, np.ndarray]
 
-    spin: ClassVar[None] = None
     mesh: ClassVar[None] = None
     base_loads: ClassVar[None] = None
     standing_interfaces: ClassVar[tuple[str, ...]] = ()

@@ -79,7 +79,7 @@ class LinearTrain:
         for name, rotor in train.rotors.items():
             alone = LinearRotor.of(rotor, (), stiffening)
             _check(name, alone, supports.get(name, ()))
-            at = _places(name, elements)
+            at = places_of(name, elements)
             parts[name] = TurnedRotor.of(
                 name, alone, train.ratios[name], at, train.largest_unevenness
             )
@@ -97,7 +97,7 @@ class LinearTrain:
             return None
         parts = {}
         for name, part in self.parts.items():
-            given = self.train.ratios[name], _places(name, self.elements)
+            given = self.train.ratios[name], places_of(name, self.elements)
             uneven = self.train.largest_unevenness
             parts[name] = TurnedRotor.of(name, part.alone, *given, uneven, frame=0.0)
             if not parts[name].is_even:
@@ -321,7 +321,7 @@ class LinearTrain:
         return StandingSpace(self, **options, standing=self._standing, turnings=turnings)
 
 
-def _places(name: str, elements: Sequence[Element]) -> tuple[str, ...]:
+def places_of(name: str, elements: Sequence[Element]) -> tuple[str, ...]:
     """Return the interfaces of a rotor that elements act on."""
     return tuple(at for element in elements for owner, at in element.ends if owner == name)
 

@@ -67,22 +67,32 @@ class Turning:
         rigid = len(kinds)
         omega[:rigid], V[:, :rigid] = 0.0, np.eye(len(V), rigid)
         first = omega[rigid] if rigid < len(omega) else 1.0
-        orders, amplitudes = _amplitudes(rotor, V)
-        gram = sum((W.conj().T @ W).real for W in amplitudes)
-        floor = _SEEN * gram.diagonal().max() or 1.0
-        E, waves = np.eye(len(V), dtype=complex), np.zeros(len(omega), dtype=int)
+        E, waves = _flexible_waves(rotor, V, omega, rigid)
         for pair in _RIGID_PAIRS:
             if set(pair) <= set(kinds):
                 columns = [kinds.index(kind) for kind in pair]
                 E[np.ix_(columns, columns)] = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)
                 waves[columns] = 1, -1
-        for group in _groups(omega, rigid):
-            energies = np.array([W[:, group].conj().T @ W[:, group] for W in amplitudes])
-            seen = gram[np.ix_(group, group)] + floor * np.eye(len(group))
-            E[np.ix_(group, group)], waves[group] = _waves_of(orders, energies, seen)
         T = V @ E
         weights = 1.0 / (1.0 + (omega / first) ** 2)
         return cls(T, T.conj().T @ inv.M, waves, weights)
+
+    def widened(self, rotor: LinearRotor) -> Turning:
+        """Return how a rotor turns that has further coordinates after these.
+
+        They are mass-orthonormal, diagonalise the stiffness, and turn by themselves. Their
+        weights are zero.
+        """
+        kept = len(self.waves)
+        omega = np.sqrt(rotor.invariants.K.diagonal()[kept:])
+        V = np.eye(rotor.size)[:, kept:]
+        E, waves = _flexible_waves(rotor, V, omega, 0)
+        return Turning(
+            la.block_diag(self.T, E),
+            la.block_diag(self.inverse, E.conj().T),
+            np.r_[self.waves, waves],
+            np.r_[self.weights, np.zeros(len(waves))],
+        )
 
     @property
     def generator(self) -> np.ndarray:
@@ -138,6 +148,21 @@ def _amplitudes(rotor: LinearRotor, V: np.ndarray) -> tuple[np.ndarray, list[np.
             # R_n projects on what turns with n
             amplitudes[at] = np.vstack([amplitudes[at], weight * (turn @ U)])
     return orders, amplitudes
+
+
+def _flexible_waves(
+    rotor: LinearRotor, V: np.ndarray, omega: np.ndarray, rigid: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the waves of modes V (k, c) as columns of E (c, c), and their n; the first not."""
+    orders, amplitudes = _amplitudes(rotor, V)
+    gram = sum((W.conj().T @ W).real for W in amplitudes)
+    floor = _SEEN * gram.diagonal().max(initial=0.0) or 1.0
+    E, waves = np.eye(len(omega), dtype=complex), np.zeros(len(omega), dtype=int)
+    for group in _groups(omega, rigid):
+        energies = np.array([W[:, group].conj().T @ W[:, group] for W in amplitudes])
+        seen = gram[np.ix_(group, group)] + floor * np.eye(len(group))
+        E[np.ix_(group, group)], waves[group] = _waves_of(orders, energies, seen)
+    return E, waves
 
 
 def _groups(omega: np.ndarray, rigid: int) -> list[np.ndarray]:

@@ -285,7 +285,7 @@ def _basis_errors(
         return None
     if basis.left_out is None:
         return np.zeros((len(solved), len(observation.rows)))
-    finer = basis.left_out.finer
+    finer = basis.left_out.equations
     rows = np.array([one.motion for one in places(finer, at)])
     tolerance = max(observation.tolerance, HARMONICS)
     better = task(finer, replace(observation, rows=rows, keeps=False, tolerance=tolerance))

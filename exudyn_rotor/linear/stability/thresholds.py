@@ -348,7 +348,7 @@ class _Finer:
     def growth(self, value: float) -> Growth:
         """Return the growth at a value of the parameter."""
         basis, speed = self.made.basis(value)
-        space = basis.left_out.finer.space(0, speed, held=True)
+        space = basis.left_out.equations.space(0, speed, held=True)
         return GrowthAt(space, *self.made.solver)(speed)
 
 

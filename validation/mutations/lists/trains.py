@@ -2,7 +2,7 @@
 
 from validation.mutations.mutation import mutations
 
-_TESTS = "test_rotor_trains.py::"
+_TESTS, _DUAL = "test_rotor_trains.py::", "test_dual_spool.py::"
 _DISCS = _TESTS + "test_two_rigid_discs_are_those_of_the_closed_form"
 _REFUSED = _TESTS + "test_what_does_not_repeat_is_refused"
 TRAINS = [
@@ -51,12 +51,12 @@ TRAINS = [
     ),
     *mutations(
         "linear/models/turning.py",
-        _TESTS + "test_axisymmetric_part_and_what_is_left",
+        _DUAL + "test_axisymmetric_part_and_what_is_left",
         ("unevenness of fast motions", "1.0 + (omega / first) ** 2", "1.0 + 0.0 * omega"),
     ),
     *mutations(
         "linear/models/links.py",
-        _TESTS + "test_unbalance_of_either_rotor",
+        "test_train_responses.py::test_unbalance_of_either_rotor",
         ("links push as they pull", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, 1.0], [1.0, 1.0]]"),
     ),
     *mutations(
@@ -66,12 +66,12 @@ TRAINS = [
     ),
     *mutations(
         "linear/models/linear_train.py",
-        _TESTS + "test_loads_that_turn_with_another_rotor_are_refused",
+        "test_train_responses.py::test_loads_that_turn_with_another_rotor_are_refused",
         ("unbalance of any rotor at the common speed", "if ratio != 1.0:", "if False:"),
     ),
     *mutations(
         "linear/models/linear_train.py",
-        _TESTS + "test_geared_rotors_are_those_of_constant_equations_at_rest",
+        "test_geared_trains.py::test_geared_rotors_are_those_of_constant_equations_at_rest",
         ("free spins of geared rotors held", "values <= _HELD", "values < -_HELD"),
     ),
     *mutations(
@@ -79,5 +79,24 @@ TRAINS = [
         _TESTS + "test_modes_from_axes_at_rest_hold_in_turning_ones",
         ("waves turn back", "- 1j * strongest * speed", "+ 1j * strongest * speed"),
         ("harmonics of the wrong wave", "+ strongest - n", "- strongest + n"),
+    ),
+    *mutations(
+        "linear/models/turning.py",
+        _DUAL + "test_estimates_are_the_errors_against_more_modes",
+        (
+            "shapes that lack stand still",
+            "np.r_[self.waves, waves]",
+            "np.r_[self.waves, 0 * waves]",
+        ),
+    ),
+    *mutations(
+        "linear/models/left_out.py",
+        _DUAL + "test_estimates_are_the_errors_against_more_modes",
+        (
+            "shapes that lack count in the central harmonics only",
+            "(central | (sizes > _MOVES))",
+            "(central & (sizes > -1.0))",
+        ),
+        ("a large shift is found once", "for _ in range(2):", "for _ in range(1):"),
     ),
 ]

@@ -1,0 +1,51 @@
+"""A linear model beside the shapes that the bases of its rotors lack first."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_rotor.linear.models.finer_rotor import Basis, FinerRotor, finer_rotor
+from exudyn_rotor.linear.models.finer_scene import FinerScene
+from exudyn_rotor.linear.models.finer_train import FinerTrain
+from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.linear.models.linear_train import LinearTrain
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+
+
+class FinerModel(NamedTuple):
+    """A model with further coordinates of its rotors.
+
+    Attributes
+    ----------
+    equations : LinearModel
+    lacking : ndarray of bool, shape (k,)
+        Which coordinates the given model lacks; the others are its own, in their order.
+    bases : tuple of Basis
+        Those of the rotors of the given model.
+    """
+
+    equations: LinearModel
+    lacking: np.ndarray
+    bases: tuple[Basis, ...]
+
+
+def finer_model(model: LinearModel) -> FinerModel | None:
+    """Return a model with the shapes that its bases lack first; None where these are not known."""
+    if isinstance(model, LinearTrain):
+        train = FinerTrain.beside(model)
+        return None if train is None else FinerModel(train, train.lacking, train.bases)
+    if isinstance(model, LinearScene):
+        source = model.body.selection.source
+        rotor = finer_rotor(source)
+        finer = None if rotor is None else FinerScene.of(model, rotor)
+    elif isinstance(model, LinearRotor):
+        source, finer = model.rotor, FinerRotor.beside(model)
+    else:
+        return None
+    if finer is None:
+        return None
+    lacking = np.arange(finer.size) >= model.size
+    return FinerModel(finer, lacking, (Basis(source, finer.loaded),))

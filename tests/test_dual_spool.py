@@ -1,0 +1,157 @@
+"""A dual spool of solids against beams of ROSS; what its mesh and too few modes do to it."""
+
+import dataclasses
+import warnings
+
+import numpy as np
+import pytest
+from spool_models import ROSS, dual_spool, spool
+from train_models import lateral, two_discs
+
+from exudyn_rotor import (
+    GearMesh,
+    Link,
+    RotorTrain,
+    Support,
+    Unbalance,
+    campbell,
+    critical_speeds,
+    linear_model,
+    stability,
+    unbalance_response,
+)
+
+SPEED = 800.0
+LIMIT = 2000.0  # rad/s, of the frequencies that are looked at
+BEARING = np.diag([2e7, 6e7])
+
+
+@pytest.mark.parametrize("ratio", [1.5, -1.3])
+def test_dual_spool_against_ross(ratio):
+    """Frequencies of beams within the give of a solid's sections, which speed does not change."""
+    found = campbell(dual_spool(ratio), ROSS["speeds"], accuracy=None)
+    exact = ROSS["dual"][str(ratio)]
+    errors = []
+    for row, reference in enumerate(exact):
+        values = lateral(found, row)[: len(reference["frequencies"])]
+        errors.append(values.imag / reference["frequencies"] - 1.0)
+        np.testing.assert_allclose(values.real, reference["growth"], rtol=0.05, atol=0.1)
+    # the mesh of this test errs by 1 %, one with three times the nodes by half of that
+    assert np.abs(errors).max() < 1.2e-2
+    assert np.abs(np.diff(errors, axis=0)).max() < 2.5e-3
+    assert stability(dual_spool(ratio), ROSS["speeds"][-1:], accuracy=None).stable[0]
+
+
+@pytest.mark.parametrize(("name", "order"), [("inner", 1.0), ("outer", 1.5)])
+def test_critical_speeds_of_the_dual_spool_against_ross(name, order):
+    """By unbalance of each spool, in speeds of the inner one."""
+    found = critical_speeds(
+        dual_spool(1.5), order=order, nodal_diameters=[1], max_speed=4000.0, accuracy=None
+    )
+    forward = found.speeds[np.array(found.whirl) == "forward"][:4]
+    np.testing.assert_allclose(forward, ROSS["critical"][name], rtol=1.2e-2)
+
+
+def test_axisymmetric_part_and_what_is_left():
+    """Mean over a turn: even to rounding for rings, of the mesh for a solid."""
+    assert linear_model(two_discs(1.7)).unevenness["B"] < 1e-12
+    train = dual_spool(1.5)
+    assert 1e-3 < linear_model(train).unevenness["outer"] < 5e-2
+    assert 1e-3 < linear_model(train.relative_to("outer")).unevenness["inner"] < 5e-2
+
+
+def test_turned_mesh_in_full_and_in_the_mean():
+    """A solid at the ratio 2 with all its harmonics: the mean errs by the unevenness squared."""
+    train = dual_spool(2.0)
+    exact = dataclasses.replace(train, largest_unevenness=0.0)
+    mean, full = (lateral(campbell(one, [0.0, 500.0], accuracy=None))[:8] for one in (train, exact))
+    uneven = linear_model(train).unevenness["outer"]
+    assert 1e-9 < np.abs(mean.imag / full.imag - 1.0).max() < 5.0 * uneven**2
+
+
+def geared(modes: int, free: bool = False) -> RotorTrain:
+    """Return the spools side by side, geared 1 : -1."""
+    rotors = {name: spool(name, modes, free) for name in ("inner", "outer")}
+    held = Support("front", 2e7 * np.eye(3)), Support("rear", 2e7, 200.0)
+    gears = GearMesh(radii=[0.1, 0.1], stiffness=2e8)
+    links = [Link("inner:middle", "outer:rear", gears)]
+    return RotorTrain(rotors, {"inner": 1.0, "outer": -1.0}, dict.fromkeys(rotors, held), links)
+
+
+def uneven(modes: int, free: bool = False) -> RotorTrain:
+    """Return the dual spool with unequal bearings of the outer one."""
+    given = dual_spool(1.5, modes, free)
+    supports = {"inner": given.supports["inner"], "outer": [Support("front", BEARING, 300.0)]}
+    return RotorTrain(given.rotors, given.ratios, supports, given.links)
+
+
+TRAINS = {
+    "1.5": lambda *modes: dual_spool(1.5, *modes),
+    "uneven": uneven,
+    "geared": geared,
+}
+
+
+def nearest(values: np.ndarray, given: np.ndarray, speed: float) -> np.ndarray:
+    """Return those of `values` nearest to given ones, in any frame that turns with n Ω."""
+    copies = np.r_[values, values.conj()] + 1j * speed * np.arange(-4, 5)[:, None]
+    copies = copies.ravel()
+    return copies[np.argmin(np.abs(copies - given[:, None]), axis=1)]
+
+
+@pytest.mark.parametrize("name", TRAINS)
+def test_estimates_are_the_errors_against_more_modes(name):
+    """Five free modes of each rotor lack flexibility; 16 with static ones are the truth."""
+    with pytest.warns(UserWarning, match=r"rotor 'inner' .* rotor 'outer' .* they lack fl"):
+        found = campbell(TRAINS[name](5, True), [0.0, SPEED], modes=18)
+    exact = campbell(TRAINS[name](16), [0.0, SPEED], accuracy=None)
+    for row, speed in enumerate(found.speeds):
+        given, true = (r.growth[row] + 1j * r.frequencies_rotor[row] for r in (found, exact))
+        looked_at = (found.frequencies_inertial[row] < LIMIT) & (np.abs(given) > 1.0)
+        given, shifts = given[looked_at], found.basis_shifts[row, looked_at]
+        errors = nearest(true, given + shifts, speed) - given
+        assert np.abs(errors).max() > 20.0
+        assert np.all(np.abs(shifts - errors) < 0.05 * np.abs(errors) + 0.02)
+
+
+@pytest.mark.parametrize("order", [1.0, 1.5])
+def test_estimates_of_critical_speeds(order):
+    """By unbalance of either spool."""
+    given = {"order": order, "nodal_diameters": [1], "max_speed": 1400.0}
+    with pytest.warns(UserWarning, match="the critical speed of"):
+        found = critical_speeds(dual_spool(1.5, 5, True), **given)
+    exact = critical_speeds(dual_spool(1.5, 16), accuracy=None, **given)
+    errors = 1.0 - exact.speeds[: len(found.speeds)] / found.speeds
+    assert errors.max() > 0.02
+    np.testing.assert_allclose(found.basis_errors, errors, rtol=0.05)
+
+
+@pytest.mark.parametrize("name", ["1.5", "uneven"])
+def test_estimates_of_responses(name):
+    """Where coefficients change they are made at some speeds only."""
+    speeds, unbalance = [150.0, 300.0, 350.0, 600.0], Unbalance("inner:front", 1e-3)
+    with pytest.warns(UserWarning, match="the motion of"):
+        found = unbalance_response(TRAINS[name](5, True), speeds, unbalance, own=False)
+    exact = unbalance_response(TRAINS[name](16), speeds, unbalance, own=False, accuracy=None)
+    known = np.isfinite(found.basis_errors[:, 0])
+    assert known.sum() == (4 if name == "1.5" else 3)
+    for row in np.flatnonzero(known):
+        given, true = (
+            one.motion[row, :, one.orders.tolist().index(1), :3] for one in (found, exact)
+        )
+        sizes = np.linalg.norm(true, axis=1)
+        away = np.linalg.norm(given - true, axis=1) / np.maximum(sizes, 0.1 * sizes.max())
+        np.testing.assert_allclose(found.basis_errors[row], away, rtol=0.1, atol=1e-3)
+
+
+def test_free_spins_and_good_bases():
+    """Exponents without the free spin are shifted alike; with enough modes there is no warning."""
+    train = geared(5, True)
+    with pytest.warns(UserWarning, match="errs by about"):
+        free = campbell(train, [SPEED], modes=18)
+    held = stability(train, [SPEED])
+    assert np.abs(np.abs(free.basis_shifts) - np.abs(held.basis_shifts)).min() < 1e-4
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        good = campbell(dual_spool(1.5, 16), [0.0, SPEED], modes=8)
+    assert 0.0 < good.basis_errors.max() < 1e-3
