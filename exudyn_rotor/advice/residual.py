@@ -29,26 +29,47 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     rotor = body.selection.source
     if rotor.with_attachments is None or not rotor.interfaces or "marker_body" not in body.objects:
         return None
-    count = len(rotor.interfaces)
     if len(record.time) < 2:
         return 0.0
-    scale = np.tile([1.0] * 3 + [size] * 3, count)
+    picked = instants(record)
     motion, flexible = _motion(rotor)
-    rest = (_flexibility(rotor.with_attachments) - _flexibility(rotor)) * scale
-    equations = _equations(body, motion) * scale
-    solve = np.linalg.pinv(equations, rcond=_SEEN)
+    loads, zeta, frame = recorded_states(body, record, picked)
+    rest = _flexibility(rotor.with_attachments) - _flexibility(rotor)
     stretch = _stretch(rotor.with_attachments, body) - _stretch(rotor, body)
-    missing, largest = 0.0, 0.0
-    shown = np.tile([True] * 3 + [False] * 3, count)
-    for index in instants(record):
-        loads, zeta, frame = _state(body, record, index)
-        columns = body.selection.T @ zeta
-        bent = motion @ np.where(flexible, columns, 0.0)
-        moved = motion @ columns + np.tile(np.append(frame, [0.0] * 3), count)
-        left_out = rest @ (solve @ loads) + record.speed[index] ** 2 * stretch
-        missing = max(missing, np.linalg.norm(left_out[shown]))
-        largest = max(largest, np.linalg.norm(moved[shown]), np.linalg.norm(bent[shown]))
-    return float(missing / largest) if largest else 0.0
+    columns = body.selection.T @ zeta
+    bent = motion @ np.where(flexible[:, None], columns, 0.0)
+    moved = motion @ columns
+    moved += np.tile(np.vstack([frame, np.zeros_like(frame)]), (len(rotor.interfaces), 1))
+    left_out = rest @ interface_loads(body, loads, size)
+    left_out += np.outer(stretch, record.speed[picked] ** 2)
+    shown = np.tile([True] * 3 + [False] * 3, len(rotor.interfaces))
+    missing, *sizes = (
+        np.linalg.norm(values[shown], axis=0).max() for values in (left_out, moved, bent)
+    )
+    return float(missing / max(sizes)) if max(sizes) else 0.0
+
+
+def interface_loads(body: RotorBody, loads: np.ndarray, size: float) -> np.ndarray:
+    """Return forces and moments at all interfaces (6n, s), mesh axes, turning with the rotor.
+
+    `loads` are those of :func:`recorded_states`; `size` [m] makes forces and moments comparable.
+    """
+    motion = _motion(body.selection.source)[0]
+    scale = np.tile([1.0] * 3 + [size] * 3, len(motion) // 6)
+    solve = np.linalg.pinv(_equations(body, motion) * scale, rcond=_SEEN)
+    return scale[:, None] * (solve @ loads)
+
+
+def recorded_states(
+    body: RotorBody, record: Record, picked: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the states at instants, in columns.
+
+    Loads on modes and frame as in :func:`_equations`, without the weight; modal coordinates; how
+    far the frame's axis has moved, in its own axes (3, s).
+    """
+    rows = [_state(body, record, index) for index in picked]
+    return tuple(np.array(part).T for part in zip(*rows, strict=True))
 
 
 def _motion(rotor: ReducedRotor) -> tuple[np.ndarray, np.ndarray]:

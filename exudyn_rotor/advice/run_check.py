@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.check_result import CheckRow, RunCheck
+from exudyn_rotor.advice.left_out_fields import check_model
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.request import PERIOD_ERROR
-from exudyn_rotor.advice.residual import residual_deflection
 from exudyn_rotor.advice.run_measures import Measures
-from exudyn_rotor.advice.unresisted import unresisted_load
+from exudyn_rotor.advice.run_rows import rows, rows_at_nodes
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.solid_rotor import SolidRotor
 
 _SAME = 1e-6  # relative difference of masses and moments of one rotor
 
@@ -38,6 +39,8 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "unresisted load": 0.01,
         "top modes": 0.01,
         "residual": accuracy,
+        "displacement": accuracy,
+        "stress": root,
         "strain": accuracy,
         "stiffening": accuracy,
         "divergence": 0.5,
@@ -53,6 +56,8 @@ def check_run(
     body: RotorBody,
     *,
     reduced: ReducedRotor | None = None,
+    solid: SolidRotor | None = None,
+    nodes: ArrayLike | None = None,
     proposal: Proposal | None = None,
     accuracy: float | None = None,
     limits: Mapping[str, float] | None = None,
@@ -68,6 +73,12 @@ def check_run(
         state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
+    solid : SolidRotor, optional
+        The full model of `reduced`, which must be the rotor in the scene, with shapes. Adds the
+        errors at nodes: the residual of the full model under the recorded motion and loads, solved
+        statically at 60 instants. Takes a factor of the stiffness and as many solutions.
+    nodes : array_like of int, optional
+        Nodes to look at in these, as of ``solid.nearest_node(…)``; all by default.
     proposal : Proposal, optional
         Adds the check of the speed range, and gives the accuracy.
     accuracy : float, optional
@@ -114,6 +125,11 @@ def check_run(
                                   rotor, by loads at interfaces and the centrifugal load, that the
                                   modes leave out, over their displacement; stiff supports let the
                                   interfaces themselves err by less; not for other loads elsewhere
+    ``displacement``     a        what the modes leave out at nodes, likewise, over the largest
+                                  displacement there; with `solid`
+    ``stress``           √a       von Mises stress of that, over the largest there, the static
+                                  stress by the spin added as by :class:`StressField`; with `solid`
+                                  and stress modes. Not the error of the mesh
     ``strain``           a        mean centrifugal strain as the modes show it; the relative error
                                   of linear elasticity
     ``stiffening``       a        stiffening that the level leaves out, as relative change of
@@ -160,14 +176,17 @@ def check_run(
         accuracy = proposal.accuracy if proposal is not None else 1e-3
     checks.flag(warn, "warn")
     known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
+    at_nodes = _nodes(body, reduced, solid, nodes)
     record = body.recorded()
     measures = Measures(body, record)
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
-        made = _rows(measures, reduced, proposal)
+        made = list(rows(measures, reduced, proposal))
+        if at_nodes is not None and len(record.time) > 1:
+            made += rows_at_nodes(measures, reduced, solid, at_nodes)
     else:
         made = [("finite", "coordinates that are not finite", np.inf, "the solution failed")]
-    rows = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
-    result = RunCheck(rows, len(record.time))
+    checked = tuple(CheckRow(name, what, v, known[name], then) for name, what, v, then in made)
+    result = RunCheck(checked, len(record.time))
     for message in _messages(result, ran=record.time[-1] > 0.0) if warn else ():
         warnings.warn(f"rotor {body.name!r}: {message}", AssumptionWarning, stacklevel=2)
     return result
@@ -191,6 +210,26 @@ def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:
         )
 
 
+def _nodes(
+    body: RotorBody, reduced: ReducedRotor | None, solid: SolidRotor | None, nodes: ArrayLike | None
+) -> np.ndarray | None:
+    """Return the nodes whose errors are asked for; None for none."""
+    if solid is None:
+        if nodes is not None:
+            raise ValueError("nodes: the error at nodes needs the full model; give solid, too")
+        return None
+    checks.instance(solid, "solid", SolidRotor, "the one that was reduced")
+    if reduced is None:
+        raise ValueError("solid: the error at nodes needs the modes; give reduced, too")
+    check_model(body, reduced, solid)
+    if nodes is None:
+        return np.arange(solid.node_count)
+    chosen = checks.whole_numbers(nodes, "nodes", most=solid.node_count - 1)
+    if chosen.size == 0:
+        raise ValueError("nodes: needs one or more, got none; leave it out for all")
+    return chosen
+
+
 def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, float]:
     known = default_limits(accuracy)
     if limits is not None:
@@ -198,136 +237,3 @@ def _limits(accuracy: float, limits: Mapping[str, float] | None) -> dict[str, fl
         for name, value in limits.items():
             known[name] = checks.number(value, f"limits: {name!r}", least=0.0)
     return known
-
-
-_Row = tuple[str, str, float, str]
-# name, measure of Measures, meaning, what to do
-_ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
-    (
-        "tilt",
-        Measures.tilt,
-        "largest tilt [rad]",
-        "the error grows with its square; use Exudyn's 3D body for wide tilts",
-    ),
-    (
-        "deflection",
-        Measures.deflection,
-        "flexible displacement over the size",
-        "small deformations are assumed; check loads and supports",
-    ),
-    (
-        "travel",
-        Measures.travel,
-        "centre of mass off the frame, over the size",
-        "let the frame follow: translation='free'",
-    ),
-    (
-        "adrift",
-        Measures.adrift,
-        "centre of mass off its place in the frame, over the size",
-        "support the rotor against the centrifugal force of its eccentricity, or let the frame "
-        "follow: translation='free'",
-    ),
-    (
-        "locked",
-        Measures.locked,
-        "locked coordinates off their place [rad], [size]",
-        "use locking='constraints', a smaller step, or load an interface instead of the frame",
-    ),
-    (
-        "connections",
-        lambda m: len(m.body.check_connections(warn=False)),
-        "connections, joints and loads that the rotor cannot carry",
-        "body.check_connections() names them; use markers at interfaces or mesh nodes",
-    ),
-    (
-        "unresisted load",
-        lambda m: unresisted_load(m.body, m.record, m.size),
-        "load that no equation resists, over the largest",
-        "put loads on rigid markers; coordinates of the frame's node carry spin and translation "
-        "only, and loads get no moment arm by deflection",
-    ),
-    (
-        "top modes",
-        Measures.top_share,
-        "energy in the highest fifth of the modes",
-        "keep more modes, or use craig_bampton_modes",
-    ),
-    (
-        "strain",
-        Measures.strain,
-        "mean centrifugal strain shown by the modes",
-        "linear elasticity errs by about this; a nonlinear model is needed at this speed",
-    ),
-    (
-        "stiffening",
-        Measures.missing_stiffness,
-        "stiffening left out, relative change of frequency",
-        "reduce with prestress=True and use stiffening='full', or 'tilt' in place of 'none'",
-    ),
-    (
-        "divergence",
-        Measures.divergence,
-        "Ω²/Ω_d², Ω_d where flexible modes grow",
-        "stay below that speed, or use stiffening='full'; without it the growth may be false",
-    ),
-    (
-        "spin step",
-        Measures.spin_step,
-        "spin angle per step [rad]",
-        "take smaller steps; the error falls with their square",
-    ),
-)
-
-
-def _rows(
-    measures: Measures, reduced: ReducedRotor | None, proposal: Proposal | None
-) -> Iterator[_Row]:
-    for name, measure, meaning, advice in _ALWAYS:
-        yield name, meaning, float(measure(measures)), advice
-    yield (
-        "step",
-        "relative error of the motion's period",
-        measures.step_error(),
-        f"the motion has {measures.frequency:.4g} rad/s on average, in its own coordinates; take "
-        "smaller steps, whose square the error follows, or start without a jump if it rings",
-    )
-    left_out = measures.frozen()
-    if left_out is not None:
-        yield (
-            "frozen spin",
-            "angular momentum left out, over the whole",
-            left_out,
-            "add the rotor with spin_coupling='full'",
-        )
-    missing = residual_deflection(measures.body, measures.record, measures.size)
-    if missing is not None:
-        yield (
-            "residual",
-            "deflection at interfaces that the modes leave out",
-            missing,
-            "reduce with more modes, or with craig_bampton_modes",
-        )
-    explicit = measures.explicit_step()
-    if explicit:
-        yield (
-            "explicit",
-            "step over the stable one",
-            explicit,
-            "take smaller steps, keep fewer modes, or use an implicit solver",
-        )
-    static = None if reduced is None else reduced.centrifugal
-    if static is not None and static.stress is not None and static.yield_stress:
-        # the stress is a + ω²b and its von Mises stress convex in ω²: largest at an end
-        ends = (static.stress_at(speed) for speed in (0.0, measures.fastest))
-        peak = max(float(von_mises(stress).max()) for stress in ends)
-        advice = "the elastic prestress holds below the yield stress only"
-        yield "yield", "static stress over yield stress", peak / static.yield_stress, advice
-    if proposal is not None:
-        ratio = measures.fastest / proposal.speeds[1] if proposal.speeds[1] else np.inf
-        yield (
-            "speed",
-            "highest speed over that of the proposal",
-            ratio if measures.fastest else 0.0,
-            f"{measures.fastest:.6g} rad/s were reached; propose again with that",
-        )

@@ -11,9 +11,9 @@ from exudyn_rotor.theory.axis import SpinAxis
 _MOST = 400
 
 
-def instants(record: Record) -> np.ndarray:
-    """Return which instants to look at, 400 at most; the first has no accelerations."""
-    return np.unique(np.linspace(1, len(record.time) - 1, _MOST).astype(int))
+def instants(record: Record, most: int = _MOST) -> np.ndarray:
+    """Return which instants to look at, evenly over the run; the first has no accelerations."""
+    return np.unique(np.linspace(1, len(record.time) - 1, most).astype(int))
 
 
 def external_load(body: RotorBody, record: Record, index: int) -> tuple[np.ndarray, np.ndarray]:

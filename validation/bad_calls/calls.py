@@ -159,7 +159,14 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
     "bearing_masses": lambda w: {"rotor": w.reduced, "bearings": ["left", "right"]},
     "campbell": lambda w: {**_rotor(w), "speeds": SPEEDS[:2]},
     "energy_balance": lambda w: {"body": w.recorded},
-    "check_run": lambda w: {"body": w.body, "limits": {"tilt": 0.1}, "warn": False},
+    "check_run": lambda w: {
+        "body": w.body,
+        "reduced": w.reduced,
+        "solid": w.solid,
+        "nodes": [0],
+        "limits": {"tilt": 0.1},
+        "warn": False,
+    },
     "craig_bampton_modes": lambda w: {"rotor": w.solid, "count": 1, "interfaces": ["left"]},
     "sensitivity": lambda w: {
         "rotor": w.reduced,

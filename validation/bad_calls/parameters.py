@@ -253,6 +253,7 @@ BY_NAME: dict[str, Kind] = {
     "showMarkers": v.FLAG,
     "show_markers": v.FLAG,
     "sizes": _FIELD,
+    "solid": v.OBJECT,
     "solver": v.WORD.but(another_word="quick"),
     "speed": v.SIGNED,
     "speeds": v.SERIES,

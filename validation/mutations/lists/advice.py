@@ -153,8 +153,8 @@ ADVICE = [
         ),
         (
             "centrifugal stretch left out",
-            "+ record.speed[index] ** 2 * stretch",
-            "",
+            "left_out += np.outer(stretch, record.speed[picked] ** 2)",
+            "left_out += np.outer(0.0 * stretch, record.speed[picked] ** 2)",
         ),
         ("stretch of the modes added", ", body) - _stretch(", ", body) + _stretch("),
         (
@@ -162,5 +162,28 @@ ADVICE = [
             "np.concatenate([on_modes, on_frame / np.sqrt(mass)])",
             "np.concatenate([on_modes, 0.0 * on_frame])",
         ),
+    ),
+    *mutations(
+        "advice/left_out_fields.py",
+        "test_errors_at_nodes.py::test_left_out_is_the_static_solution_of_the_residual",
+        ("damping added", "- inv.D @ rate", "+ inv.D @ rate"),
+        ("gyroscopic forces reversed", "- 2.0 * (inv.G @", "+ 2.0 * (inv.G @"),
+        ("spin softening reversed", "forces += terms.C_hat @", "forces -= terms.C_hat @"),
+        ("Euler force reversed", "- terms.W @", "+ terms.W @"),
+        ("stiffness of the static stretch reversed", "forces -= terms.K4", "forces += terms.K4"),
+        ("stretch by the speed", "np.outer(terms.h, omega**2)", "np.outer(terms.h, omega)"),
+        ("stretch of the modes added", "forces[:, count:] -= solid", "forces[:, count:] += solid"),
+        ("static stress counted twice", "left - speed**2 * stretch", "left"),
+        ("loads at interfaces left out", "at_nodes += end.mean", "at_nodes += 0.0 * end.mean"),
+        (
+            "work on the modes left in",
+            "(columns.T @ forces[:, :count])",
+            "(0.0 * columns.T @ forces[:, :count])",
+        ),
+    ),
+    *mutations(
+        "advice/left_out_fields.py",
+        "test_errors_at_nodes.py::test_held_rotor_errs_by_its_weight_too",
+        ("weight reversed", "forces += inv.S.T", "forces -= inv.S.T"),
     ),
 ]

@@ -1,0 +1,249 @@
+"""Errors of reduced runs at mesh nodes: what `check_run` estimates, against full runs."""
+
+import exudyn
+import netgen.occ as occ
+import ngsolve
+import numpy as np
+import pytest
+
+from exudyn_rotor import (
+    PrescribedMotion,
+    SolidRotor,
+    SpinAxis,
+    StressField,
+    add_rotor,
+    check_run,
+    craig_bampton_modes,
+    keep_modes,
+    recommended_settings,
+)
+from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
+from exudyn_rotor.advice.run_measures import Measures
+from exudyn_rotor.multibody.full_plan import make_full_plan
+from exudyn_rotor.solid.tensor import von_mises
+from exudyn_rotor.theory.nodal import rotations, translations
+
+STEP, STEPS = 2e-4, 60  # no more instants than are looked at
+RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)
+FAST = PrescribedMotion.run_up(0.0, 800.0, STEPS * STEP)
+RUBBER = {"youngsModulus": 2.1e9, "poissonsRatio": 0.3, "density": 7850.0}
+AXES = {"x": ([1.0, 0.0, 0.0], [0.0, 0.01, 0.0]), "z": ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])}
+
+
+def bar(name):
+    """A soft bar of 20 nodes with an unbalance, about z, or about an axis beside it along x."""
+    along, shift = map(np.array, AXES[name])
+    across = np.roll(along, 1)
+    low = -0.03 * across - 0.025 * np.roll(across, 1)
+    solid = occ.Box(tuple(low), tuple(0.3 * along - low))
+    direction = occ.X if name == "x" else occ.Z
+    solid.faces.Min(direction).name, solid.faces.Max(direction).name = "left", "right"
+    mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.3))
+    rotor = SolidRotor.from_ngsolve(mesh, RUBBER, SpinAxis(along, shift), order=1)
+    return rotor.add_point_mass(0.03 * across + 0.3 * along, 0.2).with_damping(stiffness=1e-4)
+
+
+@pytest.fixture(scope="module")
+def upright():
+    rotor = bar("z")
+    return rotor.with_prestress(rotor.prestress(initial_displacement=True, euler=True))
+
+
+@pytest.fixture(scope="module")
+def eccentric():
+    rotor = bar("x")
+    return rotor.with_prestress(rotor.prestress())
+
+
+@pytest.fixture(scope="module")
+def ran(upright):
+    """A run-up with four modes."""
+    reduced = upright.reduce(4, stress=True)
+    return reduced, run(upright, reduced, **SCENES["run-up"])
+
+
+def run(rotor, model, damping=200.0, **options):
+    """Run on two bearings, with the weight; all steps are recorded."""
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, model, gravity=[1.0, -9.81, 3.0], markers="position", **options)
+    ground = mbs.CreateGround()
+    for name in ("left", "right"):
+        mbs.CreateCartesianSpringDamper(
+            itemNumbers=[ground, body.marker(name)],
+            localPosition0=rotor.interfaces[name].reference,
+            stiffness=[2e5] * 3,
+            damping=[damping] * 3,
+        )
+    whole = model is rotor
+    body.start_recording(*([STEP * np.arange(STEPS + 1)] if whole else []))
+    mbs.Assemble()
+    settings = recommended_settings(STEPS * STEP, STEP, body=body)
+    settings.timeIntegration.newton.relativeTolerance = 1e-9
+    settings.timeIntegration.newton.absoluteTolerance = 1e-12
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = STEP
+    mbs.SolveDynamic(settings)
+    return body
+
+
+def recorded(body, reduced):
+    """Return record, modal coordinates (m, s) and displacements of the nodes (3n, s)."""
+    record = body.recorded()
+    zeta = record.q[:, body.layout.unknowns][:, body.motion.modes].T
+    return record, zeta, reduced.shapes.matrix @ body.selection.T @ zeta
+
+
+SCENES = {
+    "run-up": {"translation": "none", "spin": RUN_UP},
+    "free": {"translation": "free", "spin": "free", "initial_speed": 300.0},
+    "tilt": {"translation": "in-plane", "spin": 300.0, "stiffening": "tilt"},
+}
+
+
+@pytest.mark.parametrize(
+    ("rotor", "scene"), [("upright", "run-up"), ("eccentric", "free"), ("upright", "tilt")]
+)
+def test_errors_are_those_of_the_full_run(rotor, scene, request):
+    """The estimate is the first correction: within a factor of 2 with few modes, 1.5 with more.
+
+    Rubber and a sudden start: the lowest mode that is left out moves by half of its static motion.
+    """
+    solid, options = request.getfixturevalue(rotor), SCENES[scene]
+    full = run(solid, solid, **options).recorded()
+    for modes, factor in ((4, 2.0), (craig_bampton_modes(solid, 4, coupling="RBE3"), 1.5)):
+        reduced = solid.reduce(modes, stress=True)
+        body = run(solid, reduced, **options)
+        record, zeta, moved = recorded(body, reduced)
+        off = np.linalg.norm(moved.T.reshape(STEPS + 1, -1, 3) - full.displacement, axis=2)
+        stress = StressField.of(reduced, body).history(zeta.T, record.speed, slice(None))
+        wrong = von_mises(stress - full.stress)
+        left_out = at_nodes(body, reduced, solid)
+        for truth, estimate in ((off, left_out.displacement), (wrong, left_out.stress)):
+            assert 1.0 / factor < truth[1:].max() / estimate.max() < factor
+        np.testing.assert_allclose(
+            left_out.stressed.max(), von_mises(full.stress).max(), rtol=0.3 * (factor - 1.0)
+        )
+
+
+def at_nodes(body, reduced, solid, nodes=None):
+    record = body.recorded()
+    nodes = np.arange(solid.node_count) if nodes is None else np.array(nodes)
+    return left_out_at_nodes(body, record, Measures(body, record).size, reduced, solid, nodes)
+
+
+def spring_forces(solid, body, moved, record):
+    """Return the nodal forces (3n, s) of both springs in the turning axes; the frame stays."""
+    forces = np.zeros_like(moved)
+    for end in solid.interfaces.values():
+        mean = end.mean_motion(solid.node_count)[:3]
+        arm = end.reference - body.axis.project(end.reference)
+        for index, t in enumerate(record.time):
+            A = body.axis.rotation(body.formulation.spin.value(t))
+            u = A @ (mean @ moved[:, index] + arm) - arm
+            forces[:, index] -= mean.T @ (A.T @ (2e5 * u))
+    return forces
+
+
+@pytest.mark.parametrize("level", ["full", "tilt"])
+def test_left_out_is_the_static_solution_of_the_residual(upright, level):
+    """With forces of the springs by their law, the full equations, and a pseudo-inverse of K.
+
+    To the tolerance of Newton's method, 1e-9, to which the motion keeps its equations, times the
+    largest stiffness over the lowest, some hundreds.
+    """
+    reduced = upright.reduce(8, stress=True)  # these tell all loads of both interfaces
+    body = run(upright, reduced, damping=0.0, translation="none", spin=FAST, stiffening=level)
+    record, _, moved = recorded(body, reduced)
+    basis, modes = reduced.shapes.matrix @ body.selection.T, body.motion.modes
+    rate, second = (
+        basis @ rows[:, body.layout.unknowns][:, modes].T for rows in (record.q_t, record.q_tt)
+    )
+    springs = spring_forces(upright, body, moved, record)
+    full = make_full_plan(upright, body.plan.setup).motion
+    stiffness = np.linalg.pinv(upright.stiffness.toarray(), rcond=1e-12, hermitian=True)
+    rigid = np.hstack([translations(upright.node_count), rotations(upright.nodes, np.zeros(3))])
+    relief = np.linalg.solve(rigid.T @ (upright.mass @ rigid), rigid.T)
+    picked = np.arange(1, STEPS + 1)
+    missing = np.zeros_like(moved)
+    for i in picked:
+        r = springs[:, i] + full.varying_forces(record.time[i], moved[:, i], rate[:, i])
+        r -= upright.stiffness @ moved[:, i] + upright.damping @ rate[:, i]
+        r -= upright.mass @ second[:, i]
+        u = stiffness @ (r - upright.mass @ (rigid @ (relief @ r)))
+        missing[:, i] = u - rigid @ (relief @ (upright.mass @ u))
+    expected = np.linalg.norm(missing.reshape(-1, 3, STEPS + 1), axis=1).T[picked]
+    found = at_nodes(body, reduced, upright)
+    np.testing.assert_allclose(found.displacement, expected, atol=1e-6 * expected.max())
+    whole = von_mises(np.moveaxis(upright.stress_recovery(moved + missing)[:, :, 1:], 2, 0))
+    np.testing.assert_allclose(found.stressed, whole, atol=1e-6 * whole.max())
+    lengths = np.linalg.norm((moved + missing).reshape(-1, 3, STEPS + 1), axis=1).T[1:]
+    np.testing.assert_allclose(found.moved, lengths, atol=1e-6 * lengths.max())
+
+
+def test_rows_are_the_largest_of_the_nodes_asked_for(ran, upright):
+    reduced, body = ran
+    for nodes in (None, [3, 7]):
+        found = at_nodes(body, reduced, upright, nodes)
+        check = check_run(body, reduced=reduced, solid=upright, nodes=nodes, warn=False)
+        for name, part, whole in (
+            ("displacement", found.displacement, found.moved),
+            ("stress", found.stress, found.stressed),
+        ):
+            assert check[name].value == pytest.approx(part.max() / whole.max(), rel=1e-12)
+            worst = (nodes or range(upright.node_count))[part.max(axis=0).argmax()]
+            assert check[name].meaning.endswith(f"at node {worst}")
+            assert not check[name].ok
+    assert "stress" not in str(check_run(body, reduced=reduced, warn=False))
+    bare = upright.reduce(4)
+    rows = check_run(
+        run(upright, bare, **SCENES["run-up"]), reduced=bare, solid=upright, warn=False
+    )
+    assert rows["displacement"].value > 0.0
+    assert "stress" not in {row.name for row in rows.rows}
+
+
+def test_held_rotor_errs_by_its_weight_too(upright):
+    """A blade that hangs in its frame: what its modes lack of the static sag under its weight."""
+    blade = bar("z").clamped("left")
+    reduced = blade.reduce(2)
+    mbs = exudyn.SystemContainer().AddSystem()
+    options = {"spin": 0.0, "translation": "none", "gravity": [0.0, -9.81, 0.0]}
+    body = add_rotor(mbs, reduced, marker_body=True, markers="position", **options)
+    body.start_recording()
+    mbs.Assemble()
+    settings = recommended_settings(0.5, 0.01)
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.0
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.1
+    mbs.SolveDynamic(settings)
+    load = blade.mass @ np.tile([0.0, -9.81, 0.0], blade.node_count)
+    sag = np.linalg.solve(blade.stiffness.toarray(), load)
+    modes = reduced.shapes.matrix
+    lacking = sag - modes @ (modes.T @ load / reduced.frequencies**2)
+    found = at_nodes(body, reduced, blade).displacement[-1].max()
+    assert found == pytest.approx(np.linalg.norm(lacking.reshape(-1, 3), axis=1).max(), rel=1e-2)
+
+
+def test_what_does_not_fit_is_refused(ran, upright, eccentric):
+    reduced, body = ran
+    fewer, bare = keep_modes(reduced, [0, 1]), reduced.without_shapes()
+    for given, text in (
+        ({"nodes": [1]}, "nodes: the error at nodes needs the full model"),
+        ({"solid": upright}, "solid: the error at nodes needs the modes"),
+        ({"solid": upright, "reduced": fewer}, "reduced: has other modes"),
+        ({"solid": upright, "reduced": bare}, "reduced: has no shapes"),
+        ({"solid": eccentric, "reduced": reduced}, "solid: .* is not the model of"),
+        ({"solid": upright, "reduced": reduced, "nodes": [20]}, "nodes"),
+        ({"solid": upright, "reduced": reduced, "nodes": []}, "nodes: needs one or more"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            check_run(body, **given)
+    with pytest.raises(TypeError, match="solid"):
+        check_run(body, reduced=reduced, solid=reduced)
+    mbs = exudyn.SystemContainer().AddSystem()
+    lone = add_rotor(mbs, reduced, marker_body=False)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"solid: .* marker_body=False"):
+        check_run(lone, reduced=reduced, solid=upright)
