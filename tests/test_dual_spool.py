@@ -1,4 +1,4 @@
-"""A dual spool of solids against beams of ROSS; what its mesh and too few modes do to it."""
+"""Two spools of solids, coaxial and geared, against beams of ROSS; what mesh and few modes do."""
 
 import dataclasses
 import warnings
@@ -21,6 +21,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 
+GEARS = ROSS["geared"]
 SPEED = 800.0
 LIMIT = 2000.0  # rad/s, of the frequencies that are looked at
 BEARING = np.diag([2e7, 6e7])
@@ -155,3 +156,58 @@ def test_free_spins_and_good_bases():
         warnings.simplefilter("error")
         good = campbell(dual_spool(1.5, 16), [0.0, SPEED], modes=8)
     assert 0.0 < good.basis_errors.max() < 1e-3
+
+
+def gears() -> GearMesh:
+    """Return the mesh of the reference."""
+    names = ("stiffness", "pressure_angle", "line_angle")
+    return GearMesh(radii=GEARS["base_radii"], **{name: GEARS[name] for name in names})
+
+
+def geared_spools(meshing: bool) -> RotorTrain:
+    """Return the spools of the reference side by side."""
+    supports = {
+        name: [
+            Support(at, np.diag([k, k, along]), np.diag([c, c, 0.0]))
+            for at, (_, k, c, along) in zip(("front", "rear"), each, strict=True)
+        ]
+        for name, each in GEARS["bearings"].items()
+    }
+    links = [Link("inner:middle", "outer:rear", gears())] if meshing else []
+    rotors = {name: spool(name) for name in supports}
+    first, second = GEARS["teeth"]
+    return RotorTrain(rotors, {"inner": 1.0, "outer": -first / second}, supports, links)
+
+
+def test_gear_mesh_is_that_of_ross():
+    """``k v vᵀ``; ROSS's torsion of the driven rotor is positive as that rotor turns."""
+    v = gears().direction
+    v = v * np.r_[np.ones(11), -1.0]
+    np.testing.assert_allclose(np.outer(v, v), GEARS["coupling"], atol=1e-15)
+
+
+@pytest.mark.parametrize("meshing", [True, False], ids=["meshing", "apart"])
+def test_geared_spools_against_ross(meshing):
+    """As far from the beams with gears as without: the solids' mesh errs by up to 1 %."""
+    found = campbell(geared_spools(meshing), ROSS["speeds"], accuracy=None)
+    assert len(found.free_motions) == (1 if meshing else 2)
+    for row, reference in enumerate(GEARS["meshing" if meshing else "apart"]):
+        values = found.growth[row] + 1j * found.frequencies_inertial[row]
+        values = values[values.imag > 1.0]
+        values = values[np.argsort(values.imag)][:12]
+        np.testing.assert_allclose(values.imag, reference["frequencies"], rtol=1e-2)
+        np.testing.assert_allclose(values.real, reference["growth"], rtol=0.05, atol=0.1)
+
+
+def test_modes_of_geared_spools_are_those_of_ross():
+    """Motions of both gears at rest: the angle between ours and theirs in twelve coordinates."""
+    train, sizes = geared_spools(True), np.tile(np.repeat([1.0, 0.075], 3), 2)
+    found, model = campbell(train, [0.0], accuracy=None), linear_model(train)
+    seen = np.vstack([model.interface_motion(at) for at in ("inner:middle", "outer:rear")])
+    moving = np.flatnonzero(found.frequencies_inertial[0] > 1.0)[:12]
+    given, theirs = seen @ found.vectors[0][:, moving], np.array(GEARS["shapes"]).T
+    theirs[-1] *= -1.0
+    given, theirs = (sizes[:, None] * each for each in (given, theirs))
+    products = np.abs(np.sum(given.conj() * theirs, axis=0)) ** 2
+    lengths = np.sum(np.abs(given) ** 2, axis=0) * np.sum(theirs**2, axis=0)
+    assert (products / lengths).min() > 0.99

@@ -1,4 +1,4 @@
-"""Reference numbers of a dual spool, by matrices of the package ROSS.
+"""Reference numbers of a dual spool and of geared rotors, by the package ROSS.
 
 Run it in an environment with ``ross-rotordynamics`` (not needed by anything else here); it writes
 ``rotor_trains_ross.json``, which the tests read:
@@ -7,7 +7,9 @@ Run it in an environment with ``ross-rotordynamics`` (not needed by anything els
 
 Steel shafts of Timoshenko elements with rotatory inertia and gyroscopics; discs are rigid, and so
 is the shaft inside them. The spools are hollow about solid, with a bearing between them; ROSS gives
-the matrices of each, and here their gyroscopic matrices are multiplied by speeds of their own.
+the matrices of each, and here their gyroscopic matrices are multiplied by speeds of their own. The
+same spools side by side are geared by ROSS's ``MultiRotor`` with spur gears: with a helix its
+direction of the mesh has ``sin α sin β`` along the axis, and is not of unit length.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ YOUNG, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 ELEMENT = 0.02
 RATIOS = [1.5, -1.3]  # of the outer spool
 SPEEDS = [0.0, 300.0, 700.0]  # of the inner one
-MODES = 8
+MODES, GEARED_MODES = 8, 12
 SPOOLS = {
     "inner": {
         "start": 0.0, "length": 0.8, "bore": 0.0, "diameter": 0.04,
@@ -43,6 +45,15 @@ SPOOLS = {
 # from position to position along z; the last is between the spools
 SPRINGS = [("inner", 0.0, 2e7), ("inner", 0.8, 1e7), ("outer", 0.24, 1.5e7)]
 BETWEEN = {"position": 0.6, "stiffness": 2e7, "damping": 800.0}
+GEARS = {
+    "teeth": [20, 30], "base_radii": [0.06, 0.09], "pressure_angle": 0.38, "line_angle": 0.3,
+    "stiffness": 1e8, "position": 0.6,
+    # position along z, stiffness and damping across the axis, stiffness along it
+    "bearings": {
+        "inner": [(0.0, 2e7, 200.0, 2e7), (0.8, 1e7, 200.0, 0.0)],
+        "outer": [(0.24, 2e7, 200.0, 2e7), (0.6, 3e7, 200.0, 0.0)],
+    },
+}  # fmt: skip
 
 
 def shaft(length: float, bore: float, diameter: float, discs: list[dict], start: float) -> list:
@@ -64,8 +75,8 @@ def shaft(length: float, bore: float, diameter: float, discs: list[dict], start:
     return elements
 
 
-def spool(data: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return M, G per speed and K of the lateral coordinates of one spool without bearings."""
+def parts(data: dict) -> tuple[list, list]:
+    """Return elements and discs of a spool."""
     names = ("length", "bore", "diameter", "discs", "start")
     elements = shaft(*(data[name] for name in names))
     discs = [
@@ -74,7 +85,12 @@ def spool(data: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         )
         for d in data["discs"]
     ]
-    made = ross.Rotor(elements, discs, [ross.BearingElement(n=0, kxx=0.0, cxx=0.0)])
+    return elements, discs
+
+
+def spool(data: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, G per speed and K of the lateral coordinates of one spool without bearings."""
+    made = ross.Rotor(*parts(data), [ross.BearingElement(n=0, kxx=0.0, cxx=0.0)])
     count = made.number_dof
     lateral = [count * n + i for n in range(len(made.nodes)) for i in (0, 1, 3, 4)]
     cut = np.ix_(lateral, lateral)
@@ -88,12 +104,12 @@ def node(data: dict, position: float) -> int:
 
 def dual(ratio: float, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return M, damping with gyroscopics, and K of both spools."""
-    parts = [spool(data) for data in SPOOLS.values()]
+    each = [spool(data) for data in SPOOLS.values()]
     rates = [speed, ratio * speed]
-    M = la.block_diag(*(part[0] for part in parts))
-    D = la.block_diag(*(rate * part[1] for rate, part in zip(rates, parts, strict=True)))
-    K = la.block_diag(*(part[2] for part in parts))
-    first = {"inner": 0, "outer": len(parts[0][0])}
+    M = la.block_diag(*(one[0] for one in each))
+    D = la.block_diag(*(rate * one[1] for rate, one in zip(rates, each, strict=True)))
+    K = la.block_diag(*(one[2] for one in each))
+    first = {"inner": 0, "outer": len(each[0][0])}
 
     def row(name: str, position: float) -> int:
         return first[name] + 4 * node(SPOOLS[name], position)
@@ -109,12 +125,14 @@ def dual(ratio: float, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray
     return M, D, K
 
 
-def exponents(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> dict[str, list[float]]:
+def exponents(
+    M: np.ndarray, D: np.ndarray, K: np.ndarray, count: int = MODES
+) -> dict[str, list[float]]:
     """Return the lowest frequencies [rad/s] and their growth [1/s]."""
     zero, one = np.zeros_like(M), np.eye(len(M))
     values = la.eigvals(np.block([[zero, one], [-la.solve(M, K), -la.solve(M, D)]]))
     values = values[values.imag > 1.0]
-    values = values[np.argsort(values.imag)][:MODES]
+    values = values[np.argsort(values.imag)][:count]
     return {"frequencies": values.imag.tolist(), "growth": values.real.tolist()}
 
 
@@ -138,6 +156,44 @@ def critical(ratio: float, order: float) -> list[float]:
     return sorted(found)[:4]
 
 
+def geared() -> ross.MultiRotor:
+    """Return the spools side by side, with gears that weigh nothing."""
+    rotors, nodes = [], []
+    for index, (name, data) in enumerate(SPOOLS.items()):
+        elements, discs = parts(data)
+        nodes.append(node(data, GEARS["position"]))
+        gear = ross.GearElement(
+            n=nodes[-1], m=1e-9, Id=1e-12, Ip=1e-12, n_teeth=GEARS["teeth"][index],
+            base_diameter=2.0 * GEARS["base_radii"][index], pr_angle=GEARS["pressure_angle"],
+        )  # fmt: skip
+        bearings = [
+            ross.BearingElement(n=node(data, z), kxx=k, cxx=c, kzz=along)
+            for z, k, c, along in GEARS["bearings"][name]
+        ]
+        rotors.append(ross.Rotor(elements, [*discs, gear], bearings))
+    return ross.MultiRotor(
+        *rotors, coupled_nodes=tuple(nodes), gear_mesh_stiffness=GEARS["stiffness"],
+        orientation_angle=GEARS["line_angle"],
+    )  # fmt: skip
+
+
+def geared_results() -> dict:
+    """Return the coupling matrix, and modes with the gears meshing and apart."""
+    pair = geared()
+    gears = [*pair.mesh.driving_gear.dof_global_index.values()]
+    gears += pair.mesh.driven_gear.dof_global_index.values()
+    coupling, found = pair.coupling_matrix(), {"meshing": [], "apart": []}
+    for speed in SPEEDS:
+        M, D, K = pair.M(), pair.C(speed) + speed * pair.G(), pair.K(speed)
+        found["meshing"].append(exponents(M, D, K, GEARED_MODES))
+        K[np.ix_(gears, gears)] -= pair.mesh.stiffness * coupling
+        found["apart"].append(exponents(M, D, K, GEARED_MODES))
+    M, K = pair.M(), pair.K(0.0)
+    squares, shapes = la.eigh(K, M)
+    shapes = shapes[gears][:, squares > 1.0][:, :GEARED_MODES]
+    return {**GEARS, **found, "coupling": coupling.tolist(), "shapes": shapes.T.tolist()}
+
+
 def main() -> None:
     """Write the reference file."""
     data = {
@@ -152,6 +208,7 @@ def main() -> None:
             str(ratio): [exponents(*dual(ratio, speed)) for speed in SPEEDS] for ratio in RATIOS
         },
         "critical": {"inner": critical(1.5, 1.0), "outer": critical(1.5, 1.5)},
+        "geared": geared_results(),
     }
     target = Path(__file__).with_suffix(".json")
     target.write_text(json.dumps(data, indent=1) + "\n")
