@@ -24,7 +24,6 @@ from exudyn_rotor import (
     add_supports,
     bearing_loads,
     campbell,
-    critical_speed_map,
     energy_balance,
     linear_model,
     recommended_settings,
@@ -406,9 +405,7 @@ def test_refused_input():
             rigid(), [1.0, 2.0], supports=[AXIAL])),
         (ValueError, "needs values above zero", lambda: sensitivity(
             rigid(), [0.0, 2.0], supports=pair())),
-        (ValueError, "has states of its own", lambda: critical_speed_map(
-            rigid(), ["left"], [1e6, 1e7], supports=pair())),
-        (ValueError, "dense=True", lambda: linear_model(
+        (ValueError, "dense=True takes all nodes", lambda: linear_model(
             three_masses(), supports=pair(), dense=False)),
     ):  # fmt: skip
         with pytest.raises(error, match=match):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
@@ -12,8 +12,10 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.given import checked_supports
+from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.critical_speeds import (
@@ -25,6 +27,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -160,7 +163,8 @@ def critical_speed_map(
     interfaces: Sequence[str] | str,
     stiffnesses: ArrayLike,
     *,
-    supports: Sequence[Support] = (),
+    supports: Sequence[Given] | Given = (),
+    foundation: Foundation | None = None,
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (1,),
@@ -178,8 +182,10 @@ def critical_speed_map(
         Where a support of each stiffness is put, the same at all of them.
     stiffnesses : array_like, shape (s,)
         Positive [N/m].
-    supports : sequence of Support, optional
-        Further supports that do not change.
+    supports : sequence of Support or bearings, optional
+        Further supports that do not change; magnetic bearings by their static stiffness.
+    foundation : Foundation, optional
+        What carries all supports, as in :func:`linear_model`.
     order, max_speed, nodal_diameters, stiffening, accuracy
         See :func:`critical_speeds`.
     executor : concurrent.futures.Executor, optional
@@ -214,16 +220,20 @@ def critical_speed_map(
     names = checks.labels(interfaces, "interfaces", target.interfaces)
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
-    supports = checked_supports(supports)
+    supports = tuple(
+        one if isinstance(one, MagneticBearing | Support) else one.linearised()
+        for one in given_supports(supports)
+    )
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
     options.check_basis_accuracy(accuracy)
     options.check_sweep(executor, progress)
-    model = linear_model(target, supports=supports, stiffening=stiffening)
+    made = partial(linear_model, target, foundation=foundation, stiffening=stiffening)
+    model = made(supports=supports).undamped()
     basis = BasisError.of(model, accuracy)
     content = WhirlContent.of(model)
     given = {"content": content, "order": order, "waves": waves, "max_speed": max_speed}
-    task = partial(_at_stiffness, target, names, supports, stiffening, given, accuracy)
+    task = partial(_at_stiffness, made, names, supports, given, accuracy)
     solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
     most = max(len(entry.speeds) for entry in solved)
     speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
@@ -248,15 +258,13 @@ def critical_speed_map(
 
 
 def _at_stiffness(
-    target: ReducedRotor | SolidRotor,
+    made: Callable[..., LinearModel],
     names: tuple[str, ...],
-    supports: tuple[Support, ...],
-    stiffening: str,
+    supports: tuple[Given, ...],
     given: dict,
     accuracy: float | None,
     stiffness: float,
 ) -> CriticalSpeeds:
     varied = tuple(Support(name, stiffness) for name in names)
-    model = linear_model(target, supports=supports + varied, stiffening=stiffening)
-    model = model.undamped()
+    model = made(supports=supports + varied).undamped()
     return critical_speeds_of(model, **given, basis=BasisError.of(model, accuracy))

@@ -6,7 +6,8 @@ the inertia μ that stands still has those of a point mass beside the rotor,
     μ (q̈ + 2Ω ẽ q̇ − Ω² q),
 
 and what is between rotor and controller turns as any support does: where both control axes are
-alike, all coefficients are constant.
+alike, all coefficients are constant. On a foundation magnets act, and sensors measure, against its
+points.
 """
 
 from __future__ import annotations
@@ -16,14 +17,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.links import join_turning, stacked
+from exudyn_rotor.linear.models.points import with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, add_terms
+from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
+from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -31,7 +35,6 @@ from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import turned_harmonics
 
 _ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
-_LITTLE = 1e-3
 _TURN = skew([0.0, 0.0, 1.0])
 
 
@@ -41,12 +44,12 @@ class ControlledRotor(ExtendedRotor):
 
     Attributes
     ----------
-    plain : LinearRotor
+    plain : LinearRotor or RotorOnFoundation
         The rotor on all else, and on the stiffness that acts without controllers.
     controlled : tuple of ControlledSupport
     """
 
-    plain: LinearRotor
+    plain: LinearRotor | RotorOnFoundation
     controlled: tuple[ControlledSupport, ...]
 
     @classmethod
@@ -56,13 +59,14 @@ class ControlledRotor(ExtendedRotor):
         supports: Sequence[Support],
         controlled: Sequence[ControlledSupport],
         stiffening: str = "auto",
+        foundation: Foundation | None = None,
     ) -> ControlledRotor:
         """Put a rotor on supports, those with coordinates of their own apart.
 
         Raises
         ------
         ValueError
-            For an unknown interface.
+            For an unknown interface; as :meth:`RotorOnFoundation.of`.
         """
         made = LinearRotor.of if isinstance(rotor, ReducedRotor) else LinearRotor.of_solid
         check_interfaces(controlled, rotor.interfaces)
@@ -77,16 +81,19 @@ class ControlledRotor(ExtendedRotor):
             for one in controlled
             for support in (Support(one.interface, one.direct_stiffness), Support(one.sensor))
         ]
-        return cls(replace(held, supports=(*supports, *direct)), tuple(controlled))
+        plain = held.with_supports((*supports, *direct))
+        if foundation is not None:
+            plain = RotorOnFoundation.of(plain, foundation)
+        return cls(plain, tuple(controlled))
 
-    def undamped(self) -> LinearRotor:
+    def undamped(self) -> LinearRotor | RotorOnFoundation:
         """Return the rotor with the static stiffness of its controllers, and without damping."""
         own = 2 * len(self.controlled)
         supports = list(self.plain.supports)
         supports[len(supports) - own :: 2] = [
             Support(one.interface, one.static_stiffness) for one in self.controlled
         ]
-        return replace(self.plain, supports=tuple(supports)).undamped()
+        return self.plain.with_supports(tuple(supports)).undamped()
 
     @property
     def _more(self) -> int:
@@ -99,12 +106,12 @@ class ControlledRotor(ExtendedRotor):
 
     @property
     def standing(self) -> np.ndarray:
-        """No coordinates: the controllers' turn with the rotor."""
+        """Coordinates of a foundation; the controllers' turn with the rotor."""
         return self.plain.standing
 
     @property
     def standing_interfaces(self) -> tuple[str, ...]:
-        """No interfaces."""
+        """Names of the foundation's points."""
         return self.plain.standing_interfaces
 
     @property
@@ -113,9 +120,10 @@ class ControlledRotor(ExtendedRotor):
         return self.plain.is_full
 
     @property
-    def base_loads(self) -> np.ndarray:
-        """Loads of unit accelerations of the ground, with all bearings and sensors on it."""
-        return self._wide(self.plain.base_loads)
+    def base_loads(self) -> np.ndarray | None:
+        """Loads of unit accelerations of the ground; None where a foundation does not tell S."""
+        loads = self.plain.base_loads
+        return None if loads is None else self._wide(loads)
 
     @property
     def mass_matrix(self) -> np.ndarray:
@@ -127,27 +135,24 @@ class ControlledRotor(ExtendedRotor):
         return self._wide(self.plain.interface_motion(name))
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return up to `most` points spread over the rotor, and how they move.
-
-        With a point on the axis for each pair of the controllers, which moves little: it tells the
-        sense of motions in which the rotor itself rests.
-        """
-        given, own = self.plain.point_motions(most), len(self._inertia)
-        pairs = np.kron(np.eye(own // 2), _LITTLE * _ACROSS)
-        return replace(
+        """Return points of the rotor, and one for each pair of the controllers' coordinates."""
+        given = self.plain.point_motions(most)
+        standing = given.standing
+        wide = replace(
             given,
-            points=np.vstack([given.points, np.zeros((own // 2, 3))]),
-            motion=la.block_diag(given.motion, pairs),
+            motion=self._wide(given.motion),
+            standing=None if standing is None else self._wide(standing),
         )
+        return with_pairs(wide, np.eye(self.size)[self.plain.size :])
 
     def own_rows(self, index: int) -> slice:
         """Return where the coordinates of a controller are."""
         start = self.plain.size + sum(one.size for one in self.controlled[:index])
         return slice(start, start + self.controlled[index].size)
 
-    def sensed(self, index: int) -> np.ndarray:
-        """Return the displacement along (n1, n2, e) that a controller measures, shape (3, k)."""
-        return self._wide(self.plain.supported_motions[self._place(index) + 1][:3])
+    def sensed(self, index: int) -> Terms:
+        """Return the displacement (3, k) along (n1, n2, e) that a controller measures."""
+        return self._displacement(self._place(index) + 1)
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
@@ -172,7 +177,7 @@ class ControlledRotor(ExtendedRotor):
     @cached_property
     def _between(self) -> tuple[Terms, Terms, Terms]:
         """Fourier terms of damping, stiffness and stiffness per Ω that controllers bring."""
-        damping, stiffness, carried = {}, {}, {}
+        sums = {}, {}, {}
         for index, one in enumerate(self.controlled):
             count = len(one.damping) // 2
             lifted = np.kron(np.eye(count), _ACROSS)
@@ -180,13 +185,16 @@ class ControlledRotor(ExtendedRotor):
             K[:3, :3] = 0.0  # of the plain rotor
             own = np.zeros((one.size, self.size))
             own[:, self.own_rows(index)] = np.eye(one.size)
-            own = np.kron(np.eye(count - 2), _ACROSS) @ own
-            acting = self._wide(self.plain.supported_motions[self._place(index)][:3])
-            ports = np.vstack([acting, self.sensed(index), own])
+            own = {0: np.kron(np.eye(count - 2), _ACROSS) @ own}
+            ports = stacked([self._displacement(self._place(index)), self.sensed(index), own])
             turning = D @ np.kron(np.eye(count), _TURN)
-            for terms, X in zip((damping, stiffness, carried), (D, K, turning), strict=True):
-                add_terms(terms, turned_harmonics(X), ports)
-        return damping, stiffness, carried
+            join_turning(sums, tuple(map(turned_harmonics, (D, K, turning))), ports)
+        return sums
+
+    def _displacement(self, place: int) -> dict[int, np.ndarray]:
+        """Return the displacement (3, k) of one of the plain rotor's supports."""
+        motion = self.plain.supported_motion(place)
+        return {n: self._wide(U[:3]) for n, U in motion.items()}
 
     def _place(self, index: int) -> int:
         """Return where a controller's pair of supports is among those of the plain rotor."""

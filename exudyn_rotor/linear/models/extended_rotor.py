@@ -14,6 +14,7 @@ import scipy.linalg as la
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.theory.invariants import Invariants
 
 
 class ExtendedRotor(ABC):
@@ -21,13 +22,13 @@ class ExtendedRotor(ABC):
 
     Attributes
     ----------
-    plain : LinearRotor
+    plain : LinearRotor or ExtendedRotor
         The rotor without the further coordinates, which come last.
     """
 
     gives_all: ClassVar[bool] = True
 
-    plain: LinearRotor
+    plain: LinearRotor | ExtendedRotor
 
     @property
     @abstractmethod
@@ -68,6 +69,11 @@ class ExtendedRotor(ABC):
     def stiffness_varies(self) -> bool:
         """True where supports or a static displacement have a stiffness that is not in Ω²."""
         return self.plain.stiffness_varies
+
+    @property
+    def invariants(self) -> Invariants:
+        """Those of the rotor."""
+        return self.plain.invariants
 
     @property
     def unit_unbalance(self) -> np.ndarray:

@@ -13,6 +13,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.full_rotor import FullRotor
 from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
 from exudyn_rotor.linear.models.linear_train import LinearTrain
@@ -130,8 +131,7 @@ def linear_model(
         return target
     if isinstance(target, ReducedRotor):
         if controlled:
-            _check_without_foundation(foundation)
-            return ControlledRotor.of(target, linear, controlled, stiffening)
+            return ControlledRotor.of(target, linear, controlled, stiffening, foundation)
         return _founded(LinearRotor.of(target, linear, stiffening), foundation)
     how = (
         "needs a ReducedRotor, a SolidRotor, a linear model, a RotorTrain, or an exudyn.MainSystem "
@@ -143,24 +143,15 @@ def linear_model(
         target = with_chosen_prestress(target, None)
     if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
         if controlled:
-            _check_without_foundation(foundation)
-            return ControlledRotor.of(target, linear, controlled, stiffening)
+            return ControlledRotor.of(target, linear, controlled, stiffening, foundation)
         return _founded(LinearRotor.of_solid(target, linear, stiffening), foundation)
-    if foundation is not None:
-        raise ValueError("foundation: needs a reduced rotor: give rotor.reduce(…)")
-    if controlled:
+    if foundation is not None or controlled:
         raise ValueError(
-            f"target: a SolidRotor of more than {DENSE_SIZE} degrees of freedom on magnetic "
-            "bearings needs dense=True, or to be reduced"
+            f"target: a SolidRotor of {3 * target.node_count} degrees of freedom, more than "
+            f"{DENSE_SIZE}, on a foundation or magnetic bearings: give the reduced rotor, "
+            "rotor.reduce(…), whose error the analyses estimate; dense=True takes all nodes"
         )
     return FullRotor.of(target, linear, stiffening).with_spin()
-
-
-def _check_without_foundation(foundation: Foundation | None) -> None:
-    if foundation is not None:
-        raise ValueError(
-            "foundation: not with magnetic bearings; linearise a scene of add_foundation with them"
-        )
 
 
 def _founded(model: LinearRotor, foundation: Foundation | None) -> LinearModel:
@@ -175,7 +166,5 @@ def warn_of_structural_damping(model: LinearModel, what: str) -> None:
 
 def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
     """Warn where the level 'tilt', which nobody asked for, errs much at a speed [rad/s]."""
-    if isinstance(model, ControlledRotor):
-        model = model.plain
-    if isinstance(model, LinearRotor | RotorOnFoundation):
+    if isinstance(model, LinearRotor | ExtendedRotor):
         warn_of_left_out(model.invariants, speed, user_level() + 1)

@@ -22,7 +22,7 @@ import scipy.linalg
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.journal_start import journal_start
-from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size
+from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
@@ -210,14 +210,18 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         return self
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return rings of the rotor's radius of gyration, one for every marker, side by side."""
+        """Return rings of the rotor's radius of gyration, one for every marker, side by side.
+
+        And points for the coordinates of magnetic bearings.
+        """
         inertia = self.body.motion.invariants
         radius = np.sqrt(inertia.Theta / inertia.mass)
         rings = [
             Ring(np.array([0.0, 0.0, float(i)]), radius, self.interface_motion(name))
             for i, name in enumerate(self.interfaces)
         ]
-        return replace(ring_motions(rings, self.size), standing=self._standing_amplitudes(rings))
+        given = replace(ring_motions(rings, self.size), standing=self._standing_amplitudes(rings))
+        return with_pairs(given, self.N[self.pairs.ravel()])
 
     def _standing_amplitudes(self, rings: Sequence[Ring]) -> np.ndarray:
         """Return the motion of everything but the rotor, mass for mass as large as the rings'."""

@@ -22,9 +22,9 @@ from exudyn_rotor.linear.models.free_motions import named_motions
 from exudyn_rotor.linear.models.links import (
     Element,
     add,
-    rate_of,
+    join,
+    join_turning,
     stacked,
-    turning_congruence,
 )
 from exudyn_rotor.linear.models.points import radius_of_gyration
 from exudyn_rotor.linear.models.protocol import PointMotions
@@ -246,7 +246,7 @@ class LinearTrain:
         sums: tuple[dict, dict, dict] = ({}, {}, {})
         for element, U in zip(self.elements, self._motions, strict=True):
             if not element.varies:
-                _join_element(sums, element, U, 0.0)
+                join_turning(sums, element.parts(0.0), U)
         return sums
 
     def at(self, speed: float) -> PeriodicSystem:
@@ -254,8 +254,8 @@ class LinearTrain:
         D, K, carried = (dict(terms) for terms in self._constant)
         for element, U in zip(self.elements, self._motions, strict=True):
             if element.varies:
-                _join_element((D, K, carried), element, U, speed)
-        _join(K, {n: speed * X for n, X in carried.items()})
+                join_turning((D, K, carried), element.parts(speed), U)
+        join(K, {n: speed * X for n, X in carried.items()})
         for name, part in self.parts.items():
             own = self._slices[name]
             for terms, blocks in zip((D, K), part.terms(speed), strict=True):
@@ -324,22 +324,6 @@ class LinearTrain:
 def places_of(name: str, elements: Sequence[Element]) -> tuple[str, ...]:
     """Return the interfaces of a rotor that elements act on."""
     return tuple(at for element in elements for owner, at in element.ends if owner == name)
-
-
-def _join_element(sums: tuple[dict, dict, dict], element: Element, U: Terms, speed: float) -> None:
-    """Add damping, stiffness and stiffness per Ω of an element whose ends move by ``x = U(θ) y``.
-
-    ``ẋ = U ẏ + Ω U′ y``: the damping is a stiffness where U changes.
-    """
-    parts = element.parts(speed)
-    for terms, part in zip(sums, parts, strict=True):
-        _join(terms, turning_congruence(U, part, U))
-    _join(sums[2], turning_congruence(U, parts[0], rate_of(U)))
-
-
-def _join(terms: dict[int, np.ndarray], more: Terms) -> None:
-    for n, X in more.items():
-        add(terms, n, X)
 
 
 def _check(name: str, alone: LinearRotor, supports: Sequence) -> None:

@@ -17,7 +17,6 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
-from exudyn_rotor.linear.models.rotor_on_supports import congruent
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import turned_harmonics
@@ -212,16 +211,47 @@ def whole(multiple: float, what: str) -> int:
 
 
 def turning_congruence(U: Terms, X: Terms, V: Terms) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of ``Uᵀ(θ) X(θ) V(θ)``."""
+    """Return the Fourier terms of ``Uᵀ(θ) X(θ) V(θ)``.
+
+    Where V is U, with exactly symmetric and skew parts: the rounding of a stiff support would else
+    be a circulatory force.
+    """
+    if U is not V:
+        return _products(U, X, V)
+    terms: dict[int, np.ndarray] = {}
+    for sign in (1.0, -1.0):
+        halves = {n: 0.5 * (part + sign * part.T) for n, part in X.items()}
+        for n, Y in _products(U, halves, U).items():
+            add(terms, n, 0.5 * (Y + sign * Y.T))
+    return terms
+
+
+def _products(U: Terms, X: Terms, V: Terms) -> dict[int, np.ndarray]:
     terms: dict[int, np.ndarray] = {}
     for n, part in X.items():
         for a, left in U.items():
+            pulled = left.T @ part
             for b, right in V.items():
-                if n == a == b == 0 and left is right:
-                    add(terms, 0, congruent(part.real, left))
-                else:
-                    add(terms, n + a + b, left.T @ part @ right)
+                add(terms, n + a + b, pulled @ right)
     return terms
+
+
+def join_turning(
+    sums: tuple[dict, dict, dict], parts: tuple[Terms, Terms, Terms], U: Terms
+) -> None:
+    """Add damping, stiffness and stiffness per Ω of what acts on ``x = U(θ) y``.
+
+    ``ẋ = U ẏ + Ω U′ y``: the damping is a stiffness where U changes.
+    """
+    for terms, part in zip(sums, parts, strict=True):
+        join(terms, turning_congruence(U, part, U))
+    join(sums[2], turning_congruence(U, parts[0], rate_of(U)))
+
+
+def join(terms: dict[int, np.ndarray], more: Terms) -> None:
+    """Add Fourier terms."""
+    for n, X in more.items():
+        add(terms, n, X)
 
 
 def rate_of(U: Terms) -> dict[int, np.ndarray]:
@@ -235,7 +265,9 @@ def add(terms: dict[int, np.ndarray], n: int, X: np.ndarray) -> None:
 
 
 def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
-    """Return the motions (6, k) of several ends one below the other."""
+    """Return motions (6, k), or others over k coordinates, one below the other."""
     keys = sorted({n for motion in motions for n in motion})
-    shape = next(iter(motions[0].values())).shape
-    return {n: np.vstack([motion.get(n, np.zeros(shape)) for motion in motions]) for n in keys}
+    still = [np.zeros(next(iter(motion.values())).shape) for motion in motions]
+    return {
+        n: np.vstack([U.get(n, none) for U, none in zip(motions, still, strict=True)]) for n in keys
+    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.theory.invariants import Invariants
 
 _CORNERS = 8
+_ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
+_LITTLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +46,19 @@ def ring_motions(rings: Sequence[Ring], size: int) -> PointMotions:
         turned = np.cross(U[3:].T[None], arms[:, None]).transpose(0, 2, 1)
         motion.append((U[:3] + turned).reshape(3 * _CORNERS, -1))
     return PointMotions(np.vstack(points), np.vstack(motion), None, False)
+
+
+def with_pairs(given: PointMotions, pairs: np.ndarray) -> PointMotions:
+    """Add a point on the axis for each of the pairs of coordinates (2p, k) that turn, across it.
+
+    It moves little: it tells the sense of motions in which the rotor itself rests.
+    """
+    count = len(pairs) // 2
+    return replace(
+        given,
+        points=np.vstack([given.points, np.zeros((count, 3))]),
+        motion=np.vstack([given.motion, _LITTLE * np.kron(np.eye(count), _ACROSS) @ pairs]),
+    )
 
 
 def ring_size(rings: Sequence[Ring]) -> int:

@@ -2,14 +2,14 @@
 
 The rotor's coordinates x are those of its basis in the rotor frame, the foundation's y those of its
 modes in inertial axes. A support acts on the displacement and rotation of its interface against its
-point, ``δ = R(θ) U x − B y`` in inertial axes and ``Rᵀδ`` in the rotor's; so the blocks that couple
-x and y turn once a revolution, whatever the support is.
+point, ``U x − Rᵀ(θ) B y`` in the rotor's axes; so the blocks that couple x and y turn once a
+revolution, whatever the support is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -18,15 +18,16 @@ import scipy.linalg
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.links import join, join_turning
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor, add_terms
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
 
 ON_FOUNDATION = "{} (foundation)"
 _ROUNDING = 1e-14  # of products of coefficients with rotations
-_STILL = {0: np.eye(6)}
-Harmonics = Mapping[int, np.ndarray]
+# u − Rᵀ(θ) w in axes that turn, of (u, w)
+_SEEN = {-n: np.hstack([(n == 0) * np.eye(6), -R]) for n, R in turning_harmonics(6).items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +136,21 @@ class RotorOnFoundation(ExtendedRotor):
             }
             for name in own
         }
-        for support, U in zip(self.plain.supports, self.plain.supported_motions, strict=True):
-            pulled = scipy.linalg.block_diag(U, y.points[support.interface])
+        for support, pulled in zip(self.supports, self._both, strict=True):
             for name, harmonics in zip("DK", _coupling(support, speed), strict=True):
                 add_terms(terms[name], harmonics, pulled)
         H = system.H if system.H is None else self._joined(system.H)
         return PeriodicSystem(float(speed), *terms.values(), H)
+
+    @cached_property
+    def _both(self) -> list[np.ndarray]:
+        """The motions (12, k) of each support's interface and point."""
+        points = [self.foundation.points[support.interface] for support in self.supports]
+        return list(map(scipy.linalg.block_diag, self.plain.supported_motions, points))
+
+    def supported_motion(self, index: int) -> Terms:
+        """Return the motion (6, k) that a support acts on, along (n1, n2, e) of the rotor frame."""
+        return {n: X @ self._both[index] for n, X in _SEEN.items()}
 
     @property
     def base_loads(self) -> np.ndarray | None:
@@ -153,12 +163,11 @@ class RotorOnFoundation(ExtendedRotor):
         """Return the model without damping, and without the skew part of supports' stiffness."""
         return replace(self, plain=self.plain.undamped(), foundation=self.foundation.undamped())
 
-    # -------------------------------------------------------------- as the rotor on the ground
+    def with_supports(self, supports: tuple[Support, ...]) -> RotorOnFoundation:
+        """Return the model with other supports at the same interfaces."""
+        return replace(self, plain=self.plain.with_supports(supports))
 
-    @property
-    def invariants(self) -> object:
-        """Those of the rotor."""
-        return self.plain.invariants
+    # -------------------------------------------------------------- as the rotor on the ground
 
     @property
     def supports(self) -> tuple[Support, ...]:
@@ -166,56 +175,22 @@ class RotorOnFoundation(ExtendedRotor):
         return self.plain.supports
 
 
-def _coupling(support: Support, speed: float) -> tuple[Harmonics, Harmonics]:
+def _coupling(support: Support, speed: float) -> tuple[Terms, Terms]:
     """Return Fourier terms of damping and stiffness by (u, w), each (12, 12).
 
     u is the motion of the interface in the rotor frame, w that of the point in inertial axes. The
     block of u alone is left out: it is that of the rotor on the ground.
     """
-    support.check_range(speed)
+    sums = {}, {}, {}
+    join_turning(sums, support.parts(speed), _SEEN)
+    damping, stiffness, carried = sums
+    join(stiffness, {n: speed * X for n, X in carried.items()})
     K, D = support.matrices(speed)
-    u = turning_harmonics(6)  # how the axes of the support see the two
-    w = _STILL
-    if support.frame == "rotor":
-        u, w = _STILL, {n: R.T for n, R in u.items()}
-    u_t, w_t = ({n: 1j * n * speed * X for n, X in terms.items()} for terms in (u, w))
-    carried = _blocks(_product(u, D, w_t), _product(w, D, u_t), _product(w, D, w_t))
-    damping, stiffness = _acting(D, u, w), _added(_acting(K, u, w), carried)
     sizes = np.abs(D).max(), np.abs(K).max() + abs(speed) * np.abs(D).max()
+    for terms in (damping, stiffness):
+        for X in terms.values():
+            X[:6, :6] = 0.0
     return tuple(
         {n: X for n, X in terms.items() if np.abs(X).max() > _ROUNDING * size}
         for terms, size in zip((damping, stiffness), sizes, strict=True)
     )
-
-
-def _acting(X: np.ndarray, u: Harmonics, w: Harmonics) -> Harmonics:
-    """Return a matrix that acts on the difference of u and w, by both.
-
-    The blocks that couple them are exact transposes, of its skew part with the other sign: the
-    rounding of a stiff support would else be a circulatory force.
-    """
-    symmetric, skew = (_product(u, 0.5 * (X + sign * X.T), w) for sign in (1.0, -1.0))
-    back = _added({n: Y.T for n, Y in symmetric.items()}, {n: -Y.T for n, Y in skew.items()})
-    return _blocks(_added(symmetric, skew), back, _product(w, X, w))
-
-
-def _product(left: Harmonics, X: np.ndarray, right: Harmonics) -> Harmonics:
-    """Return the Fourier terms of ``Lᵀ(θ) X R(θ)`` from those of L and R."""
-    total: dict[int, np.ndarray] = {}
-    for m, L in left.items():
-        for n, R in right.items():
-            total[m + n] = total.get(m + n, 0.0) + L.T @ X @ R
-    return total
-
-
-def _added(first: Harmonics, second: Harmonics) -> Harmonics:
-    return {n: first.get(n, 0.0) + second.get(n, 0.0) for n in first.keys() | second.keys()}
-
-
-def _blocks(u_by_w: Harmonics, w_by_u: Harmonics, w_by_w: Harmonics) -> Harmonics:
-    """Return matrices (12, 12) of their blocks; those that couple have the minus of ``u − w``."""
-    none = np.zeros((6, 6))
-    return {
-        n: np.block([[none, -u_by_w.get(n, none)], [-w_by_u.get(n, none), w_by_w.get(n, none)]])
-        for n in u_by_w.keys() | w_by_u.keys() | w_by_w.keys()
-    }

@@ -166,6 +166,14 @@ class LinearRotor(SupportedRotor):
         shifts = zip(motions, self.spin.shifts, strict=True)
         return [U + np.outer(shift, self.spin.momentum) for U, shift in shifts]
 
+    def supported_motion(self, index: int) -> Terms:
+        """Return the motion (6, k) that a support acts on, as one Fourier term."""
+        return {0: self.supported_motions[index]}
+
+    def with_supports(self, supports: tuple[Support, ...]) -> LinearRotor:
+        """Return the rotor with other supports at the same interfaces; its spin stays as it is."""
+        return replace(self, supports=supports)
+
     @cached_property
     def _constant(self) -> tuple[Terms, Terms, Terms]:
         """Damping, stiffness and stiffness per Ω of the supports that do not vary with the speed.

@@ -20,13 +20,13 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.response.places import At, Place, checked_places, places
@@ -194,7 +194,7 @@ def base_response(
         end = checks.number(end_time, "end_time", "s", above=start)
     at = checked_places(at)
     model = linear_model(target, supports=supports, stiffening=stiffening)
-    known = isinstance(model, LinearRotor | RotorOnFoundation)
+    known = isinstance(model, LinearRotor | ExtendedRotor)
     if not known or model.base_loads is None:
         raise ValueError(
             "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
@@ -222,7 +222,7 @@ class _Problem:
     @classmethod
     def of(
         cls,
-        model: LinearRotor | RotorOnFoundation,
+        model: LinearRotor | ExtendedRotor,
         speed: float,
         record: BaseRecord,
         observed: Sequence[Place],

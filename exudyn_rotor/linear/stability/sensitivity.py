@@ -22,10 +22,12 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.protocol import Space
+from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.linear.stability.growth import GrowthAt, held_space
 from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -41,6 +43,7 @@ def sensitivity(
     frequencies: ArrayLike,
     *,
     supports: Sequence[Given],
+    foundation: Foundation | None = None,
     speed: float = 0.0,
     stiffening: str = "auto",
 ) -> Sensitivity:
@@ -54,6 +57,8 @@ def sensitivity(
         between the first and the last, of motions with damping, are added, so that no peak is
         missed.
     supports : sequence of MagneticBearing, and others
+    foundation : Foundation, optional
+        What carries them, as in :func:`linear_model`.
     speed : float, optional
         Spin speed [rad/s].
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -97,7 +102,7 @@ def sensitivity(
     bearings = [s for s in given_supports(supports) if isinstance(s, MagneticBearing)]
     if not bearings:
         raise ValueError("supports: needs a MagneticBearing, whose loop has a sensitivity")
-    model = linear_model(rotor, supports=supports, stiffening=stiffening)
+    model = linear_model(rotor, supports=supports, foundation=foundation, stiffening=stiffening)
     held = held_space(model, speed, None, _RESIDUAL)
     found = GrowthAt(held, "auto", _TOLERANCE, WhirlContent.of(model))(speed)
     if found.excess > 0.0:
@@ -138,7 +143,16 @@ def _of_axis(
     sensed, found = model.sensed(index), []
     for frequency in frequencies:
         motion = space.steady_motion(speed, loads, frequency, _TOLERANCE)
-        seen = into_inertial_frame({n: (sensed @ X)[None] for n, X in motion.items()})
+        seen = into_inertial_frame(_seen(sensed, motion))
         place = seen[0][0] if speed else sum(seen.values())[0]
         found.append(1.0 + place[:2] @ axis)
     return np.array(found)
+
+
+def _seen(sensed: Terms, motion: Terms) -> dict[int, np.ndarray]:
+    """Return the harmonics (1, 3) of what a sensor shows of a motion."""
+    seen: dict[int, np.ndarray] = {}
+    for m, U in sensed.items():
+        for n, X in motion.items():
+            seen[m + n] = seen.get(m + n, 0.0) + (U @ X)[None]
+    return seen

@@ -2,28 +2,53 @@
 
 from validation.mutations.mutation import mutations
 
-_TWO_MASSES = "test_foundations.py::test_natural_frequencies_are_those_of_two_masses_at_any_speed"
 _SCENE = "test_foundations.py::test_scene_and_linear_model_have_the_same_exponents"
 
 FOUNDATIONS = [
     *mutations(
         "linear/models/rotor_on_foundation.py",
-        _TWO_MASSES,
-        ("supports push the foundation their own way", "[-w_by_u.get", "[w_by_u.get"),
-        ("supports do not hold the foundation", "w_by_w.get(n, none)]])", "none]])"),
+        _SCENE,
+        ("supports push the foundation the other way", "np.eye(6), -R]", "np.eye(6), R]"),
+        ("the foundation turns with the rotor", "{-n: np.hstack", "{n: np.hstack"),
+        (
+            "damping does not see the rotor turn",
+            "{n: speed * X for n, X in carried",
+            "{n: 0.0 * X for n, X in carried",
+        ),
+        ("supports on the ground as well", "X[:6, :6] = 0.0", "X[:6, :6] *= 1.0"),
     ),
     *mutations(
-        "linear/models/rotor_on_foundation.py",
+        "linear/models/links.py",
         _SCENE,
         (
             "motion of the foundation not carried into the rotor's frame",
-            "_blocks(_product(u, D, w_t)",
-            "_blocks({}",
+            "turning_congruence(U, parts[0], rate_of(U))",
+            "turning_congruence(U, parts[0], {})",
         ),
-        ("damping does not see the rotor turn", "_product(w, D, u_t)", "{}"),
-        ("damping that turns does not see the foundation stand", "_product(w, D, w_t))", "{})"),
-        ("cross-coupling of the reaction with the other sign", "{n: -Y.T for", "{n: Y.T for"),
-        ("supports in the rotor's frame turn the other way", "n: R.T for n, R", "-n: R.T for n, R"),
+        ("cross-coupling lost", "for sign in (1.0, -1.0):", "for sign in (1.0,):"),
+    ),
+    *mutations(
+        "linear/models/controlled_rotor.py",
+        "test_magnetic_on_foundation.py",
+        (
+            "sensors on the ground",
+            "self.sensed(index), own",
+            "{0: self.sensed(index)[0]}, own",
+        ),
+    ),
+    *mutations(
+        "linear/stability/sensitivity.py",
+        "test_magnetic_on_foundation.py::test_sensitivity_is_that_of_the_state_space",
+        ("sensors do not see the foundation", "in sensed.items()", "in [(0, sensed[0])]"),
+    ),
+    *mutations(
+        "linear/models/linear_scene.py",
+        "test_magnetic_on_foundation.py::test_public_analyses_take_scene_and_list_alike",
+        (
+            "controllers have no sense of whirl in a scene",
+            "with_pairs(given, self.N[self.pairs.ravel()])",
+            "given",
+        ),
     ),
     *mutations(
         "linear/models/rotor_on_foundation.py",
