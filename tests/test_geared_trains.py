@@ -68,3 +68,16 @@ def test_geared_pair_at_a_low_speed():
     train = RotorTrain(rotors, {"A": 1.0, "B": -0.5}, supports, [Link("A:a", "B:a", mesh)])
     slow, still = (np.sort(row) for row in campbell(train, [0.0, 1.0]).frequencies_inertial)
     np.testing.assert_allclose(slow, still, rtol=1e-3, atol=1e-3)
+
+
+def test_gears_are_apart_by_their_centre_distance():
+    """``(r₁ + r₂)/cos α`` at the angle of the line of centres, in one plane."""
+    rotors, mesh = {"A": rigid(*FIRST), "B": rigid(*SECOND)}, gears()
+    distance, links = 0.3 / np.cos(0.35), [Link("A:a", "B:a", mesh)]
+    place = distance * np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    given = {"ratios": {"A": 1.0, "B": -0.5}, "links": links}
+    start = np.array([1.0, 2.0, 3.0])
+    RotorTrain(rotors, positions={"A": start, "B": start + place}, **given)
+    for off in ([0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]):
+        with pytest.raises(ValueError, match=r"gears need axes 0\.31\d+ m apart"):
+            RotorTrain(rotors, positions={"A": np.zeros(3), "B": place + off}, **given)

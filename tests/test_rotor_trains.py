@@ -227,3 +227,34 @@ def test_modes_from_axes_at_rest_hold_in_turning_ones():
                 left += system.K.get(j, 0.0 * system.M[0]) @ given[m - j]
                 left += (system.M[0] @ given[m - j]) * rate**2 if j == 0 else 0.0
         assert np.abs(left).max() < 1e-9 * size
+
+
+def test_links_are_where_their_ends_are():
+    """Two links put the second rotor at two places; given positions are checked along every axis.
+
+    A third rotor closes the circle.
+    """
+    rotor, ratios = rigid(*FIRST), {"A": 1.0, "B": 1.5}
+    both, half = {"A": rotor, "B": rotor}, FIRST[1]
+    straight, crossed = (
+        [Link("A:a", f"B:{first}", Support("a", 1e5)), Link("A:b", f"B:{last}", Support("b", 1e5))]
+        for first, last in ("ab", "ba")
+    )
+    RotorTrain(both, ratios, links=straight)
+    with pytest.raises(ValueError, match=rf"A:b – B:a is off .* {-4.0 * half:g} m along"):
+        RotorTrain(both, ratios, links=crossed)
+    RotorTrain(
+        both, ratios, links=crossed[:1], positions={"A": [0, 0, 1], "B": [0, 0, 1 - 2 * half]}
+    )
+    for off, words in (([0.01, 0, 0], "0.01 m across"), ([0, 0, 0.02], "0.02 m along")):
+        with pytest.raises(ValueError, match=words):
+            RotorTrain(both, ratios, links=straight, positions={"A": np.zeros(3), "B": off})
+    with pytest.raises(ValueError, match="'C' is unknown"):
+        RotorTrain(both, ratios, positions={"C": np.zeros(3)})
+    three = {name: rigid(*FIRST, axis=axis) for name, axis in zip("ABC", "zxz", strict=True)}
+    circle = [("A:a", "B:b"), ("B:b", "C:a"), ("C:b", "A:b")]
+    links = [Link(one, other, Support(one[-1], 1e5)) for one, other in circle]
+    RotorTrain(three, {**ratios, "C": 2.0}, links=links)
+    links[2] = Link("C:b", "A:a", Support("b", 1e5))
+    with pytest.raises(ValueError, match="C:b – A:a is off by 0 m across"):
+        RotorTrain(three, {**ratios, "C": 2.0}, links=links)

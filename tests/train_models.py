@@ -11,7 +11,7 @@ from exudyn_rotor import Link, ReducedRotor, RotorTrain, SolidRotor, Support
 LATERAL = ("forward", "backward", "mixed")
 AXIS = {"x": [1.0, 0.0, 0.0], "z": [0.0, 0.0, 1.0]}
 # radius, half length and mass of two rigid rotors; stiffness and damping of springs
-FIRST, SECOND = (0.2, 0.05, 4.0), (0.15, 0.08, 3.0)
+FIRST, SECOND = (0.2, 0.05, 4.0), (0.15, 0.05, 3.0)
 GROUND, BETWEEN = (3e5, 20.0), (2e5, 15.0)
 UNEVEN = np.array([[3e5, 2e4], [-1e4, 2e5]])
 
@@ -56,19 +56,19 @@ def two_discs(ratio: float, ground=GROUND[0], axis: str = "z", **changes) -> Rot
 
 
 def by_hand(
-    ratio: float, speed: float, ground=GROUND[0], damped: bool = True, second=SECOND
+    ratio: float, speed: float, ground=GROUND[0], damped: bool = True
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return M, D and K of two rigid rotors: per rotor x, y and the tilts α, β about them.
 
     ``I_t α̈ + I_p Ω β̇ = M_α, I_t β̈ − I_p Ω α̇ = M_β``.
     """
     M, D, K = np.zeros((8, 8)), np.zeros((8, 8)), np.zeros((8, 8))
-    for o, (r, half, m), rate in ((0, FIRST, speed), (4, second, ratio * speed)):
+    for o, (r, half, m), rate in ((0, FIRST, speed), (4, SECOND, ratio * speed)):
         polar, transverse = m * r**2, m * (0.5 * r**2 + half**2)
         M[range(o, o + 4), range(o, o + 4)] = m, m, transverse, transverse
         D[o + 2, o + 3], D[o + 3, o + 2] = polar * rate, -polar * rate
     stiff = ground if np.ndim(ground) else ground * np.eye(2)
-    (za, zb), (k, c) = (FIRST[1], second[1]), BETWEEN
+    (za, zb), (k, c) = (FIRST[1], SECOND[1]), BETWEEN
     for rows, spring, damper in (
         (at(0, -za), stiff, GROUND[1]),
         (at(0, za), 1.3 * stiff, GROUND[1]),

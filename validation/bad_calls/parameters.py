@@ -541,6 +541,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Link", "second"): v.NAME.but(no_colon="rotor"),
     ("RotorTrain", "largest_unevenness"): v.NOT_NEGATIVE.but(beyond=1.5),
     ("RotorTrain", "links"): v.OBJECTS,
+    ("RotorTrain", "positions"): v.MAPPING,
     ("RotorTrain", "ratios"): v.MAPPING,
     ("RotorTrain", "rotors"): v.MAPPING,
     ("RotorTrain", "supports"): v.MAPPING,

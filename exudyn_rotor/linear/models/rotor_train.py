@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import check_interfaces, given_supports
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.models.link_places import check_places
 from exudyn_rotor.linear.models.links import Element, Link
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
@@ -33,11 +36,15 @@ class RotorTrain:
         A rotor of another ratio than 1 counts as axisymmetric, by its mean over a turn, where no
         larger share of its matrices and of the motions of its places, as slow motions see them,
         differs around the axis: that is the mesh.
+    positions : mapping of str to array_like, each (3,), optional
+        Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
+        checked. Without them a rotor stands where its links put it.
 
     Raises
     ------
     TypeError, ValueError
-        For unknown names and bad numbers, and for gears of other ratios. Analyses refuse rotors
+        For unknown names and bad numbers, for gears of other ratios, and for links whose ends are
+        not in one place. Analyses refuse rotors
         with structural damping or with supports off the axis that hold the spin, and rotors,
         supports and links that are uneven where the equations do not repeat with the angle of Ω.
 
@@ -73,6 +80,7 @@ class RotorTrain:
     supports: Mapping[str, Sequence[Support | Bearing]] = field(default_factory=dict)
     links: Sequence[Link] = ()
     largest_unevenness: float = 0.05
+    positions: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         rotors = checks.mapping(self.rotors, "rotors", "ReducedRotor")
@@ -106,6 +114,11 @@ class RotorTrain:
                 _known(name, rotors, "links")
                 _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
             Element.of_link(link, ratios)
+        positions = {}
+        for name, given in checks.mapping(self.positions, "positions", "array_like").items():
+            _known(name, rotors, "positions")
+            positions[name] = checks.vector(given, f"positions[{name!r}]", "m", size=3)
+        check_places(rotors, links, positions)
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
@@ -113,6 +126,7 @@ class RotorTrain:
             "supports": checks.read_only_mapping(kept),
             "links": links,
             "largest_unevenness": uneven,
+            "positions": checks.read_only_mapping(positions),
         }.items():
             object.__setattr__(self, name, value)
 

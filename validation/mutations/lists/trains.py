@@ -99,4 +99,15 @@ TRAINS = [
         ),
         ("a large shift is found once", "for _ in range(2):", "for _ in range(1):"),
     ),
+    *mutations(
+        "linear/models/link_places.py",
+        "test_rotor_trains.py::test_links_are_where_their_ends_are",
+        ("rotors put on the wrong side", "at[first] - apart", "at[first] + apart"),
+        ("rotors put back on the wrong side", "at[second] + apart", "at[second] - apart"),
+    ),
+    *mutations(
+        "linear/models/link_places.py",
+        "test_geared_trains.py::test_gears_are_apart_by_their_centre_distance",
+        ("centres the other way", "places[1] - places[0] - expected", "places[1] - places[0]"),
+    ),
 ]
