@@ -295,8 +295,15 @@ def test_a_block_is_exudyns_rigid_body():
 
 
 def test_a_film_bearing_and_unbalance_on_a_foundation():
-    """Linearised about the steady state of the scene: loaded journals, a foundation that sags."""
-    rotor, gravity = rings(heavy=0.0), [0.0, -9.81, 0.0]
+    """Linearised about the steady state of the scene: loaded journals, a foundation that sags.
+
+    The spin stretches the rings, and the scene's journals whirl by it, which the linear model, about
+    their equilibria, leaves out. A whirl of the size a adds (a/h)² to the coefficients of a film of
+    the thickness h: 1e-6 with 20 nm of rings thirty times softer than these.
+    """
+    soft, gravity = ring_rotor(0.1, 0.15, 5.0), [0.0, -9.81, 0.0]
+    rotor = SolidRotor.from_matrices(soft.mass, 30.0 * soft.stiffness, soft.nodes, "z")
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(2)
     loads = dict(zip(POINTS, bearing_loads(rotor, list(POINTS), gravity), strict=True))
     film = {"radius": 0.02, "length": 0.015, "clearance": 5e-5, "viscosity": 0.02}
     bearings = [ShortJournalBearing(interface=n, load=loads[n], **film) for n in POINTS]
@@ -308,15 +315,14 @@ def test_a_film_bearing_and_unbalance_on_a_foundation():
     model = linear_model(rotor, supports=supports, foundation=BLOCK)
     scene = linear_model(mbs, body=body)
     worst = [stability(each, [SPEED], accuracy=None).growth[0].max() for each in (model, scene)]
-    # differences of forces over a share of the clearance
-    assert worst[0] == pytest.approx(worst[1], rel=1e-5)
+    assert worst[0] == pytest.approx(worst[1], rel=1e-6)
     at, unbalance = ["left", "right"], [Unbalance("left", 1e-6)]
     ours, theirs = (
         unbalance_response(each, [SPEED], unbalance, at=at, accuracy=None)
         for each in (model, scene)
     )
     first = [each.motion[0, :, each.orders.tolist().index(1), :2] for each in (ours, theirs)]
-    np.testing.assert_allclose(*first, rtol=0.0, atol=1e-5 * np.abs(first[0]).max())
+    np.testing.assert_allclose(*first, rtol=0.0, atol=1e-6 * np.abs(first[0]).max())
 
 
 # ------------------------------------------------------------------ other descriptions

@@ -200,7 +200,7 @@ def test_scene_and_linear_rotor_agree():
         stability(target, [SPEED, 2.0 * SPEED]).growth
         for target in (linear_model(mbs, body=body), linear_model(rotor, supports=bearings))
     ]
-    np.testing.assert_allclose(*growths, rtol=1e-5)
+    np.testing.assert_allclose(*growths, rtol=1e-6)
 
 
 def test_a_run_begins_in_the_equilibrium_and_stays_there():
