@@ -297,9 +297,9 @@ def test_a_block_is_exudyns_rigid_body():
 def test_a_film_bearing_and_unbalance_on_a_foundation():
     """Linearised about the steady state of the scene: loaded journals, a foundation that sags.
 
-    The spin stretches the rings, and the scene's journals whirl by it, which the linear model, about
-    their equilibria, leaves out. A whirl of the size a adds (a/h)² to the coefficients of a film of
-    the thickness h: 1e-6 with 20 nm of rings thirty times softer than these.
+    The spin stretches the rings, and the scene's journals whirl by it, which the linear model,
+    about their equilibria, leaves out. A whirl of the size a adds (a/h)² to the coefficients of a
+    film of the thickness h: 1e-6 with 20 nm of rings thirty times softer than these.
     """
     soft, gravity = ring_rotor(0.1, 0.15, 5.0), [0.0, -9.81, 0.0]
     rotor = SolidRotor.from_matrices(soft.mass, 30.0 * soft.stiffness, soft.nodes, "z")
