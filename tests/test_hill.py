@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
+from models import disc_rotor
 from test_stability import anisotropic, mathieu, random_system
 
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import hill
 from exudyn_rotor.linear.periodic.exponents import motions
@@ -14,6 +16,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 WEAK = 0.2
 
@@ -110,3 +113,39 @@ def test_a_rotor_that_spins_the_other_way_has_the_same_exponents(speed):
     one, other = (np.concatenate([each, each.conj()]) for each in values)
     apart = np.abs(fold(one[:, None] - other, 2.0 * speed))
     assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-8
+
+
+@pytest.mark.parametrize(("stiffness", "damping"), [(1e7, 1e5), (1e8, 1e6)])
+def test_stiff_dampers_do_not_hide_slow_motions(stiffness, damping):
+    """Motions that are gone within a turn need many harmonics, and are not waited for."""
+    rotor = disc_rotor()
+    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
+    uneven = stiffness * np.array([[1.0, 0.3], [-0.2, 2.0]]), damping * np.diag([1.0, 3.0])
+    model = LinearRotor.of(reduced, [Support(name, *uneven) for name in ("left", "right")])
+    system = model.at(100.0)
+    found, modes = motions(system, "hill"), floquet_modes(system, tolerance=1e-11)
+    assert found.orders[-1] <= 18
+    assert len(found.values) == 2 * system.size
+    slow = modes.values[np.abs(modes.values.real) < system.speed]
+    apart = np.abs(fold(found.values[:, None] - slow, system.base))
+    assert apart.min(axis=0).max() < 1e-8 * system.speed
+
+
+@pytest.mark.parametrize(("drag", "k"), [(0.0, 0.0), (1e-3, 0.0), (5.0, 0.0), (0.0, 40.0)])
+def test_a_mass_that_one_direction_alone_holds(drag, k):
+    """Seen from axes that turn: its exponents are those of two oscillators at rest."""
+    speed, held = 7.0, 3.0
+    J = np.array([[0.0, -1.0], [1.0, 0.0]])
+    support = Support("place", np.diag([held, k]), np.diag([0.0, drag]))
+    damping, stiffness = ({n: X[:2, :2] for n, X in Y.items()} for Y in support.terms(speed))
+    damping[0] = damping.get(0, 0.0) + 2.0 * speed * J
+    stiffness[0] = stiffness[0] - speed**2 * np.eye(2)
+    system = PeriodicSystem(speed, {0: np.eye(2)}, damping, stiffness)
+    exact = np.concatenate([np.roots([1.0, 0.0, held]), np.roots([1.0, drag, k])]) + 1j * speed
+    found = floquet_modes(system)
+    values = np.concatenate([found.values, found.values.conj()])
+    if k == 0.0:  # the more damped one of two real exponents is not among the modes
+        exact = exact[np.argsort(exact.real)[drag > 0.0 :]]
+    apart = np.abs(fold(values[:, None] - exact, system.base))
+    assert len(found.values) == 2
+    assert apart.min(axis=0).max() < 1e-6  # of the double root 0, the root of rounding

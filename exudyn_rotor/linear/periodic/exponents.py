@@ -6,7 +6,7 @@ Floquet, Ann. sci. É.N.S. 12 (1883); Hill, Acta Math. 8 (1886); for rotors Fris
 Lees, Dynamics of Rotating Machines (2010), Sect. 7.
 
 Two independent ways for periodic systems: Hill's method (:mod:`.hill`), of whose copies
-``λ + i n 2π/T`` the most central one is kept, and the fundamental matrix (:mod:`.fundamental`).
+``λ + i n 2π/T`` a central one is kept, and the fundamental matrix (:mod:`.fundamental`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
@@ -24,6 +24,8 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     fold,
 )
 
+# decay over Ω above which a motion is gone before the coefficients change
+_GONE = 100.0
 METHODS = ("auto", "floquet", "hill", "eigen")
 
 
@@ -38,7 +40,8 @@ def exponents(system: PeriodicSystem, method: str = "auto", tolerance: float = 1
     method : {'auto', 'floquet', 'hill', 'eigen'}
         See :func:`exudyn_rotor.stability`.
     tolerance : float, optional
-        Error of periodic exponents relative to Ω.
+        Error of periodic exponents relative to Ω, or to a faster decay; those beyond 100 Ω are
+        not waited for.
 
     Raises
     ------
@@ -122,16 +125,28 @@ def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.
 
 
 def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
-    """Return the most central copies of all exponents, with their motions."""
+    """Return one copy of all exponents with their motions, the most central where it is told."""
 
     def choose(solution: HillSolution) -> Chosen | None:
         columns = _central(solution, system.step, 2 * system.size)
+        if columns is None:  # strongly damped motions hardly have a mean harmonic
+            columns = one_of_each_family(solution, system.speed)
         if columns is None:
             return None
-        sizes = np.full(len(columns), abs(system.speed))
-        return Chosen(columns, solution.values[columns], solution.shapes[:, :, columns], sizes)
+        values = solution.values[columns]
+        sizes = _sizes(values, abs(system.speed))
+        return Chosen(columns, values, solution.shapes[:, :, columns], sizes)
 
     return solve_hill(system, choose, tolerance)
+
+
+def _sizes(values: np.ndarray, speed: float) -> np.ndarray:
+    """Return what the error of each exponent is relative to: Ω, or a faster decay.
+
+    Motions of stiff dampers, gone after a small part of a turn, would need very many harmonics.
+    """
+    decay = np.maximum(-values.real, speed)
+    return np.where(decay > _GONE * speed, np.inf, decay)
 
 
 def _central(solution: HillSolution, step: int, count: int) -> np.ndarray | None:

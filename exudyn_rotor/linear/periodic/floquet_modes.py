@@ -101,22 +101,40 @@ def constant_modes(systems: Sequence[PeriodicSystem]) -> list[FloquetModes]:
     ]
 
 
+def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | None:
+    """Return the columns of one motion for each Floquet family; None where some are not found."""
+    _, _, columns, alone = _apart(solution, speed)
+    if columns is None:
+        return None
+    return np.concatenate([columns, columns[~alone] + 1])  # conjugates follow each other
+
+
 def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     """Choose one motion for each pair of Floquet families; None where some are not found."""
+    values, shapes, columns, alone = _apart(solution, speed)
+    if columns is None:
+        return None
+    real = columns[alone]
+    real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
+    columns = np.concatenate([columns[~alone], real])
+    columns = columns[np.lexsort((values[columns].real, values[columns].imag))]
+    sizes = np.maximum(np.abs(values[columns]), solution.step * abs(speed))
+    # what is zero to rounding has no error of truncation that could be told
+    sizes = np.where(values[columns] == 0.0, np.inf, sizes)
+    return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
+
+
+def _apart(
+    solution: HillSolution, speed: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray]:
+    """Return all exponents, unit shapes, and the columns of :func:`_families`."""
     orders, resolution = solution.orders, solution.resolution
     values = merged(solution.values, solution.states, resolution)
     lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
     shapes = solution.shapes / lengths
     for group in repeated(values, resolution):
         shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
-    base = int(orders[1] - orders[0]) * speed
-    columns = _families(values, shapes, orders, base)
-    if columns is None:
-        return None
-    sizes = np.maximum(np.abs(values[columns]), abs(base))
-    # what is zero to rounding has no error of truncation that could be told
-    sizes = np.where(values[columns] == 0.0, np.inf, sizes)
-    return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
+    return values, shapes, *_families(values, shapes, orders, solution.step * speed, resolution)
 
 
 def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray:
@@ -141,40 +159,40 @@ def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray
 
 
 def _families(
-    values: np.ndarray, shapes: np.ndarray, orders: np.ndarray, base: float
-) -> np.ndarray | None:
-    """Return the columns of one motion for each pair of families, ascending in Im λ."""
+    values: np.ndarray, shapes: np.ndarray, orders: np.ndarray, base: float, resolution: float
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """Return the columns of one motion for each pair of families, and whether it is its own one.
+
+    None for the columns where some are not found. A family that is its own conjugate counts once.
+    Two of them may share their shape, as 0 and −c/m of a motion that only a damper resists.
+    """
     size = shapes.shape[1]
     center = np.flatnonzero(orders == 0)[0]
     share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
     spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)
-    upper = np.flatnonzero(values.imag >= 0.0)
+    upper, step = np.flatnonzero(values.imag >= 0.0), abs(base)
     accepted: list[int] = []
     alone: list[bool] = []  # where a family is its own conjugate
-    # those accepted, then their conjugates
-    known_values = np.zeros((2, 2 * size), dtype=complex)
-    known_shapes = np.zeros((2, 2 * size, *shapes.shape[:2]), dtype=complex)
+    # those accepted, and their conjugates where these are other families
+    known_values = np.zeros(2 * size + 1, dtype=complex)
+    known_shapes = np.zeros((2 * size + 1, *shapes.shape[:2]), dtype=complex)
     weight = 0
     for index in upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]:
         if weight >= 2 * size:
             break
-        mode, count = (values[index], shapes[:, :, index]), len(accepted)
-        known = known_values[:, :count].ravel(), known_shapes[:, :count].reshape(-1, *mode[1].shape)
-        if _is_known(mode, *known, base):
+        mode = values[index], shapes[:, :, index]
+        if _is_known(mode, known_values[:weight], known_shapes[:weight], base, _SAME_FAMILY * step):
             continue
         other = _conjugate(mode)
-        own_pair = mode[0].imag == 0.0 or _is_known(other, mode[0], mode[1][None], base)
-        known_values[:, count], known_shapes[:, count] = zip(mode, other, strict=True)
+        own_pair = mode[0].imag == 0.0 or _is_known(
+            other, mode[0], mode[1][None], base, min(resolution, _SAME_FAMILY * step)
+        )
+        for value, shape in [mode] if own_pair else [mode, other]:
+            known_values[weight], known_shapes[weight] = value, shape
+            weight += 1
         accepted.append(int(index))
         alone.append(own_pair)
-        weight += 1 if own_pair else 2
-    if weight != 2 * size:
-        return None
-    columns, single = np.array(accepted), np.array(alone)
-    real = columns[single]
-    real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
-    columns = np.concatenate([columns[~single], real])
-    return columns[np.lexsort((values[columns].real, values[columns].imag))]
+    return np.array(accepted) if weight == 2 * size else None, np.array(alone, dtype=bool)
 
 
 def _unmixed(vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
@@ -196,15 +214,18 @@ def _conjugate(mode: Mode) -> Mode:
     return np.conj(mode[0]), mode[1][::-1].conj()
 
 
-def _is_known(mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float) -> bool:
+def _is_known(
+    mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float, distance: float
+) -> bool:
     """Return whether a motion is in the span of known ones with shifted harmonics.
 
-    At the same eigenvalue, without a shift, it is another motion: a repeated eigenvalue.
+    Their exponents may be `distance` apart. At the same eigenvalue, without a shift, it is another
+    motion: a repeated eigenvalue.
     """
     value, vector = mode
     apart = np.atleast_1d(value - values)
     steps = np.rint(apart.imag / base)
-    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base))
+    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= distance)
     copies = [shifted(shapes[i], int(steps[i])).ravel() for i in np.flatnonzero(near)]
     basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
     if not basis:

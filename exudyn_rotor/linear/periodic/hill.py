@@ -66,6 +66,11 @@ class HillSolution:
     resolution: float
     bounds: np.ndarray
 
+    @property
+    def step(self) -> int:
+        """Of the harmonics."""
+        return int(self.orders[1] - self.orders[0])
+
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
@@ -78,7 +83,7 @@ class Chosen:
     values, shapes : ndarray, shapes (j,), (h, c, j)
         λ and harmonics, which may be better than those of the solution where copies coincide.
     sizes : ndarray, shape (j,)
-        What the error of each λ is relative to [1/s].
+        What the error of each λ is relative to [1/s]; infinite where none counts.
     """
 
     columns: np.ndarray
@@ -163,7 +168,9 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         if chosen is not None:
             motions = _started(system, companion, solution, chosen)
             error = motions.error
-            near = np.all(np.abs(motions.shifts) <= _NEAR * abs(system.base))
+            near = np.all(
+                np.abs(motions.shifts[np.isfinite(motions.sizes)]) <= _NEAR * abs(system.base)
+            )
             followed = _followed(system, motions, tolerance) if near else None
             if followed is not None:
                 return followed

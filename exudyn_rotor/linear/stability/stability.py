@@ -60,7 +60,8 @@ def stability(
         ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
         where that does not converge. A large SolidRotor takes 'auto' only, without Floquet's.
     tolerance : float
-        Error of periodic exponents relative to Ω.
+        Error of periodic exponents relative to Ω, or to a faster decay; those beyond 100 Ω are
+        not waited for.
     modes : int, optional
         How many modes of a large SolidRotor, those of smallest ``|λ|`` in the rotor frame; 10 by
         default. The growth of modes above them is not looked at.

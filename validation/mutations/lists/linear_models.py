@@ -164,6 +164,24 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "linear/periodic/floquet_modes.py",
+        "test_hill.py::test_a_mass_that_one_direction_alone_holds",
+        (
+            "two free copies taken for a motion and its conjugate",
+            "min(resolution, _SAME_FAMILY * step)",
+            "_SAME_FAMILY * step",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/exponents.py",
+        "test_hill.py::test_stiff_dampers_do_not_hide_slow_motions",
+        (
+            "motions that are gone within a turn waited for",
+            "np.where(decay > _GONE * speed, np.inf, decay)",
+            "decay",
+        ),
+    ),
+    *mutations(
         "linear/periodic/inverse_iteration.py",
         "test_hill.py test_basis_error.py",
         ("left vector of the transposed matrix", "left, trans=2)", "left, trans=1)"),
