@@ -168,9 +168,8 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         if chosen is not None:
             motions = _started(system, companion, solution, chosen)
             error = motions.error
-            near = np.all(
-                np.abs(motions.shifts[np.isfinite(motions.sizes)]) <= _NEAR * abs(system.base)
-            )
+            shifts = np.abs(motions.shifts[np.isfinite(motions.sizes)])
+            near = np.all(shifts <= _NEAR * abs(system.base))
             followed = _followed(system, motions, tolerance) if near else None
             if followed is not None:
                 return followed
