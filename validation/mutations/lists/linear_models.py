@@ -136,8 +136,8 @@ LINEAR_MODELS = [
         ),
         (
             "motions of the smallest truncation not followed",
-            "abs(motions.shifts) <= _NEAR",
-            "abs(motions.shifts) <= 0.0 * _NEAR",
+            "shifts <= _NEAR",
+            "shifts <= 0.0 * _NEAR",
         ),
         (
             "error of what was followed without its inertia",
