@@ -32,14 +32,13 @@ from exudyn_rotor.linear.models.finer_model import FinerModel, finer_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, root_near
+from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, moved, nearest_root
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 _FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
 _STEP = 1e-3  # of differences by the speed, relative
 _SMALL = 1e-5  # harmonics of a mode of unit length
 _FAR = 1e-3  # share of an eigenvalue by which it moves far
-_MOVES = 1e-4  # those in which coordinates that are left out count
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,25 +95,24 @@ class LeftOut:
         vectors = modes.vectors if self.others is None else self.others.T @ modes.vectors
         start = np.zeros((len(modes.orders), len(lacking), len(shifts)), dtype=complex)
         start[:, ~lacking] = vectors
-        start = start.reshape(-1, len(shifts))
-        pencil, used = hill_matrices(system, modes.orders), self._used(system, modes, lacking)
-        for column in np.flatnonzero(modes.values):
-            rows = np.flatnonzero(used[:, column])
-            parts = pencil
-            if len(rows) < len(start):
-                parts = tuple(X[np.ix_(rows, rows)] for X in pencil)
-            shifts[column] = _shift(*parts, modes.values[column], start[rows, column])
+        moving = np.flatnonzero(modes.values)
+        used = self._used(modes, system.step)
+        values, start = modes.values[moving], start[used][..., moving]
+        found = moved(system, modes.orders[used], values, start)[0]
+        # from where a large one leads, for another eigenvalue may be nearer to λ, and the motion is
+        # not quite without that one's
+        far = np.abs(found - values) > _FAR * np.abs(values)
+        if np.any(far):
+            found[far] = moved(system, modes.orders[used], found[far], start[..., far])[0]
+        shifts[moving] = found - values
         return shifts
 
     @staticmethod
-    def _used(system: PeriodicSystem, modes: FloquetModes, lacking: np.ndarray) -> np.ndarray:
-        """Return which unknowns count for each mode: those that move, and of others the central."""
-        sizes = np.linalg.norm(modes.vectors, axis=1)
-        central = np.abs(modes.orders)[:, None] <= system.step
-        used = np.where(
-            lacking[:, None], (central | (sizes > _MOVES))[:, None], (sizes > _SMALL)[:, None]
-        )
-        return used.reshape(-1, len(modes.values))
+    def _used(modes: FloquetModes, step: int) -> np.ndarray:
+        """Return which harmonics count: the central ones and those up to where any mode moves."""
+        sizes = np.linalg.norm(modes.vectors, axis=1).max(axis=1, initial=0.0)
+        highest = np.abs(modes.orders[sizes > _SMALL]).max(initial=0)
+        return np.abs(modes.orders) <= max(highest, step)
 
     def critical_shift(self, speed: float, multiples: np.ndarray, vectors: np.ndarray) -> float:
         """Return the estimated ``Ω − Ω_reduced`` of a critical speed [rad/s].
@@ -153,20 +151,6 @@ class LeftOut:
         held = np.flatnonzero(np.abs(H).max(axis=1) > _FREE * speed**2 * M.diagonal().real)
         H, slope, square, M = (X[np.ix_(held, held)] for X in (H, slope, square, M))
         x = x.ravel()[held]
-        return float((root_near(H, slope, square, slope @ x, M @ x)[0] + shifted - speed).real)
-
-
-def _shift(M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.ndarray) -> complex:
-    """Return δ of the eigenvalue of ``λ²M + λD + K`` near `value`, beginning with a vector x.
-
-    A large δ is found once more from where it leads, for another eigenvalue may be nearer to
-    `value`, and x is not quite without its motion.
-    """
-    found = value
-    for _ in range(2):
-        shifted = found * (1.0 + OFF_ROOT)
-        dynamic, linear = shifted**2 * M + shifted * D + K, 2.0 * shifted * M + D
-        found = shifted + root_near(dynamic, linear, M, linear @ x, M @ x)[0]
-        if not abs(found - value) > _FAR * abs(value):
-            break
-    return found - value
+        z, w = np.linalg.solve(H, np.column_stack([slope @ x, M @ x])).T  # H is Hermitian
+        parts = (np.vdot(w, X) for X in (square @ z, slope @ z, slope @ x))
+        return float((nearest_root(*parts) + shifted - speed).real)

@@ -89,3 +89,36 @@ def shifted(shapes: np.ndarray, steps: int) -> np.ndarray:
     first, last = max(-steps, 0), max(steps, 0)
     moved[first : first + kept] = shapes[last : last + kept]
     return moved
+
+
+def slopes(
+    system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
+) -> np.ndarray:
+    """Return ``dH/dλ X`` of harmonics X (h, k, j): ``Σ_m [2(λ + imΩ) M_n−m + D_n−m] X_m``."""
+    rates = values + 1j * system.speed * orders[:, None, None]
+    by_mass = convolved(system.M, 2.0 * rates * shapes, orders)
+    return by_mass + convolved(system.D, shapes, orders)
+
+
+def adjoint_slopes(
+    system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
+) -> np.ndarray:
+    """Return ``(dH/dλ)ᴴ W`` of harmonics W (h, k, j)."""
+    rates = values.conj() - 1j * system.speed * orders[:, None, None]
+    M, D = ({n: X.T for n, X in terms.items()} for terms in (system.M, system.D))
+    return 2.0 * rates * convolved(M, shapes, orders) + convolved(D, shapes, orders)
+
+
+def convolved(terms: Terms, shapes: np.ndarray, orders: np.ndarray) -> np.ndarray:
+    """Return ``Σ_m X_n−m Y_m`` of Fourier terms X and harmonics Y (h, k, j)."""
+    result = np.zeros_like(shapes)
+    for n, X in terms.items():
+        steps, between = divmod(n, spacing(orders))
+        if not between:
+            result += X @ shifted(shapes, -steps)
+    return result
+
+
+def spacing(orders: np.ndarray) -> int:
+    """Return the distance of neighbouring harmonics."""
+    return int(orders[1] - orders[0]) if len(orders) > 1 else 1

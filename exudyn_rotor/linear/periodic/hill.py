@@ -21,7 +21,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import resolution_of, resolved
-from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted
+from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted, slopes
 from exudyn_rotor.linear.periodic.inverse_iteration import settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
@@ -246,25 +246,22 @@ def _in_larger(
     system: PeriodicSystem, motions: HillMotions, lacking: np.ndarray, orders: np.ndarray
 ) -> HillMotions | None:
     """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
-    shapes, lengths = _widened(motions, orders), np.sqrt(_squares(motions.shapes))
-    values, shifts, matrices = motions.values.copy(), motions.shifts, hill_matrices(system, orders)
-    lefts = np.zeros((len(orders) * system.size, lacking.size), dtype=complex)
-    for n, column in enumerate(lacking):
-        start, guess = shapes[:, :, column].ravel(), values[column] + shifts[column]
-        limit = _SETTLED * min(motions.sizes[column], abs(system.base))
-        found = settled(*matrices, guess, start, limit)
-        if found is None or abs(found[0] - guess) > _MORE * abs(shifts[column]) + limit:
-            return None
-        alike = np.vdot(found[1], start)
-        if abs(alike) < _ALIKE * np.linalg.norm(start):
-            return None
-        values[column], lefts[:, n] = found[0], found[2]
-        turned = lengths[column] * alike / abs(alike) * found[1]
-        shapes[:, :, column] = turned.reshape(len(orders), -1)
-    load, outer = feedback(system, values[lacking], shapes[:, :, lacking], orders)
-    x = shapes[:, :, lacking].reshape(lefts.shape)
-    slopes = 2.0 * values[lacking] * (matrices[0] @ x) + matrices[1] @ x
-    work = [np.sum(lefts.conj() * X.reshape(x.shape), axis=0) for X in (load, slopes)]
+    shapes, lengths = _widened(motions, orders), np.sqrt(_squares(motions.shapes))[lacking]
+    values, shifts = motions.values.copy(), motions.shifts
+    start, guess = shapes[..., lacking], values[lacking] + shifts[lacking]
+    limits = _SETTLED * np.minimum(motions.sizes[lacking], abs(system.base))
+    found = settled(system, orders, guess, start, limits)
+    if found is None:
+        return None
+    values[lacking], x, lefts = found
+    alike = np.sum(x.conj() * start, axis=(0, 1))
+    near = np.abs(values[lacking] - guess) <= _MORE * np.abs(shifts[lacking]) + limits
+    if not np.all(near & (np.abs(alike) >= _ALIKE * np.sqrt(_squares(start)))):
+        return None
+    shapes[..., lacking] = lengths * alike / np.abs(alike) * x
+    load, outer = feedback(system, values[lacking], shapes[..., lacking], orders)
+    inertia = slopes(system, values[lacking], shapes[..., lacking], orders)
+    work = [np.sum(lefts.conj() * X, axis=(0, 1)) for X in (load, inertia)]
     shifts = shifts.copy()
     shifts[lacking] = -work[0] / work[1]
     every = {n: np.zeros((system.size, len(values)), dtype=complex) for n in outer}

@@ -1,57 +1,100 @@
-"""Inverse iteration on both sides for eigenvalues of ``λ²M + λD + K`` near known motions."""
+"""Inverse iteration on both sides for eigenvalues of Hill's equations near known motions."""
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
-from scipy.linalg.lapack import zgetrf, zgetrs
+
+from exudyn_rotor.linear.periodic import harmonic_chain
+from exudyn_rotor.linear.periodic.harmonics import adjoint_slopes, convolved, slopes
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 # relative distance from an eigenvalue that keeps its matrix invertible
 OFF_ROOT = 1e-9
 _MOST_STEPS = 5
+_MOST_ENTRIES = 1_000_000  # of the matrices of motions that are iterated at once
 
 
-def root_near(
-    constant: np.ndarray,
-    linear: np.ndarray,
-    square: np.ndarray,
-    right: np.ndarray,
-    left: np.ndarray,
-) -> tuple[complex, np.ndarray, np.ndarray]:
-    """Return δ of ``(constant + δ linear + δ² square) z = 0`` with z and the left vector w.
-
-    By one inverse iteration, ``z = constant⁻¹ right`` and ``w = constant⁻ᴴ left``, and the root
-    of ``wᴴ(…)z = 0`` next to zero; NaN where the matrix is singular.
-    """
-    # LAPACK itself: with so many small matrices scipy's checks would take longer
-    lu, pivots, singular = zgetrf(constant)
-    if singular:
-        return np.nan, right, left
-    z, _ = zgetrs(lu, pivots, right)
-    w, _ = zgetrs(lu, pivots, left, trans=2)
-    a, b, c = np.vdot(w, square @ z), np.vdot(w, linear @ z), np.vdot(w, right)
+def nearest_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the root δ of ``aδ² + bδ + c = 0`` next to zero."""
     root = np.sqrt(b**2 - 4.0 * a * c + 0j)
-    return -2.0 * c / max(b + root, b - root, key=abs) if c != 0.0 else 0.0, z, w
+    larger = np.where(np.abs(b + root) > np.abs(b - root), b + root, b - root)
+    return np.where(c == 0.0, 0.0, -2.0 * c / np.where(larger == 0.0, 1.0, larger))
+
+
+def moved(
+    system: PeriodicSystem,
+    orders: np.ndarray,
+    values: np.ndarray,
+    shapes: np.ndarray,
+    forces: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return eigenvalues near others by one inverse iteration, with right and left vectors.
+
+    With H(λ) of Hill's equations, ``z = H⁻¹ H' x`` and ``w = H⁻ᴴ f``; the root δ next to zero of
+    ``wᴴ(H + δH' + δ²M)z = 0`` gives λ + δ.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    orders : ndarray of int, shape (h,)
+    values : ndarray, shape (j,)
+        λ to begin with.
+    shapes : ndarray, shape (h, k, j)
+        Harmonics x to begin with.
+    forces : ndarray, shape (h, k, j), optional
+        f; Mx by default.
+
+    Returns
+    -------
+    values : ndarray, shape (j,)
+        NaN where the matrix is singular.
+    z, w : ndarray, shape (h, k, j)
+        Of any length.
+    """
+    shifted = values * (1.0 + OFF_ROOT)
+    forces = convolved(system.M, shapes, orders) if forces is None else forces
+    loads = slopes(system, shifted, shapes, orders)
+    answers = np.full((2, *loads.shape), np.nan, dtype=complex)
+    at_once = max(1, _MOST_ENTRIES // (loads[:, :, :1].size * system.size))
+    for start in range(0, len(values), at_once):
+        few = slice(start, start + at_once)
+        given = shifted[few], loads[..., few], forces[..., few]
+        with suppress(np.linalg.LinAlgError):  # singular
+            answers[..., few] = harmonic_chain.solved(system, orders, *given)
+    z, w = answers
+    square, linear = convolved(system.M, z, orders), slopes(system, shifted, z, orders)
+    a, b, c = (np.sum(w.conj() * X, axis=(0, 1)) for X in (square, linear, loads))
+    return shifted + nearest_root(a, b, c), z, w
 
 
 def settled(
-    M: np.ndarray, D: np.ndarray, K: np.ndarray, value: complex, x: np.ndarray, limit: float
-) -> tuple[complex, np.ndarray, np.ndarray] | None:
-    """Return the eigenvalue of ``λ²M + λD + K`` near `value`, with its right and left vector.
+    system: PeriodicSystem,
+    orders: np.ndarray,
+    values: np.ndarray,
+    shapes: np.ndarray,
+    limits: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Return the eigenvalues near `values` (j,), with right and left vectors (h, k, j).
 
-    Begins with a vector x and ends with the first step below `limit` [1/s]; as convergence is
-    cubic, the error is far smaller then. None where that takes more than five steps.
+    Begins with the harmonics `shapes` (h, k, j) and ends with the first step below `limits` (j,)
+    [1/s]; as convergence is cubic, the error is far smaller then. The vectors have unit length.
+    None where that takes more than five steps.
     """
-    left = M @ x
+    values, rights = values.astype(complex), shapes.astype(complex)
+    lefts, forces = np.zeros_like(rights), convolved(system.M, rights, orders)
+    open_ones = np.arange(len(values))
     for _ in range(_MOST_STEPS):
-        shifted = value * (1.0 + OFF_ROOT)
-        linear = 2.0 * shifted * M + D
-        dynamic = shifted * (shifted * M + D) + K
-        move, z, w = root_near(dynamic, linear, M, linear @ x, left)
-        if not np.isfinite(move):
+        last, given = values[open_ones], rights[..., open_ones]
+        found, *sides = moved(system, orders, last, given, forces)
+        if not np.all(np.isfinite(found)):
             return None
-        last, value = value, shifted + move
-        x, w = z / np.linalg.norm(z), w / np.linalg.norm(w)
-        if abs(value - last) <= limit:
-            return value, x, w
-        left = linear.conj().T @ w
+        values[open_ones] = found
+        for known, side in zip((rights, lefts), sides, strict=True):
+            known[..., open_ones] = side / np.linalg.norm(side, axis=(0, 1))
+        open_ones = open_ones[np.abs(found - last) > limits[open_ones]]
+        if open_ones.size == 0:
+            return values, rights, lefts
+        forces = adjoint_slopes(system, values[open_ones], lefts[..., open_ones], orders)
     return None

@@ -13,6 +13,7 @@ from functools import cached_property
 from math import gcd
 
 import numpy as np
+import scipy.linalg as la
 
 EPSILON = float(np.finfo(float).eps)
 Terms = Mapping[int, np.ndarray]
@@ -80,6 +81,18 @@ class PeriodicSystem:
             return np.array([0])
         highest = self.step * (order // self.step)
         return np.arange(-highest, highest + 1, self.step)
+
+    @cached_property
+    def ports(self) -> np.ndarray:
+        """Orthonormal motions that coefficients which are not constant act on and by, (k, p)."""
+        terms = [X for terms in (self.M, self.D, self.K) for n, X in terms.items() if n > 0]
+        sides = [part for X in terms for Y in (X, X.T) for part in (Y.real, Y.imag)]
+        scaled = [X / np.abs(X).max() for X in sides if np.any(X)]
+        if not scaled:
+            return np.zeros((self.size, 0))
+        Q, R, _ = la.qr(np.hstack(scaled), mode="economic", pivoting=True)
+        sizes = np.abs(np.diagonal(R))
+        return Q[:, sizes > self.size * EPSILON * sizes[0]]
 
     def matrices(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return M, D, K at a spin angle [rad]."""

@@ -184,11 +184,32 @@ LINEAR_MODELS = [
     *mutations(
         "linear/periodic/inverse_iteration.py",
         "test_hill.py test_basis_error.py",
-        ("left vector of the transposed matrix", "left, trans=2)", "left, trans=1)"),
+        ("left vector of no forces", "a, b, c = (np.sum(w.conj()", "a, b, c = (np.sum(z.conj()"),
+    ),
+    *mutations(
+        "linear/periodic/harmonics.py",
+        "test_harmonic_chain.py",
+        ("half the slope", "2.0 * rates * shapes, orders)", "rates * shapes, orders)"),
+        ("half the slope of the adjoint", "2.0 * rates * convolved", "rates * convolved"),
+    ),
+    *mutations(
+        "linear/periodic/harmonic_chain.py",
+        "test_harmonic_chain.py",
         (
-            "inverse iteration with half the slope",
-            "linear = 2.0 * shifted * M + D",
-            "linear = shifted * M + D",
+            "harmonics further out push",
+            "np.linalg.solve(own, ",
+            "np.linalg.solve(own + ports[i] @ outer @ ports[i].T, ",
+        ),
+        ("middle with one side", "(X.sum(axis=1, keepdims=True) for X", "(X[:, :1] for X"),
+        (
+            "left vector of the matrix itself",
+            "np.stack([X, Y.conj().swapaxes(-1, -2)])",
+            "np.stack([X, Y.swapaxes(-1, -2)])",
+        ),
+        (
+            "harmonics do not follow inner ones",
+            "answer[..., :-1] @ (outwards.pop()",
+            "0.0 * answer[..., :-1] @ (outwards.pop()",
         ),
     ),
     *mutations(

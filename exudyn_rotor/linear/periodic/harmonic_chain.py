@@ -1,0 +1,111 @@
+"""Hill's equations of many motions at once, solved harmonic by harmonic.
+
+Coefficients with harmonics up to r couple a harmonic with r others to each side. In groups of r
+harmonics, beside one in the middle, ``H(λ)`` is block tridiagonal, and what is outside a group i
+acts on it through
+
+    S_i = H_ii − H_i,i+1 S_i+1⁻¹ H_i+1,i
+
+which begins at the outermost harmonics on both sides and ends in the middle, where a motion is
+strongest. Only the motions B at places with periodic coefficients are coupled,
+``H_i,i+1 = B c_i,i+1 Bᵀ``: of an inverse, ``S_i+1⁻¹ B`` is all that is needed. Source: matrix
+continued fractions, Risken, The Fokker-Planck Equation (1989), Sect. 9.3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.linear.periodic.harmonics import spacing
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+
+
+def solved(
+    system: PeriodicSystem,
+    orders: np.ndarray,
+    values: np.ndarray,
+    loads: np.ndarray,
+    forces: np.ndarray,
+) -> np.ndarray:
+    """Return ``H(λ)⁻¹ F`` and ``H(λ)⁻ᴴ G`` of harmonics F and G (h, k, j), shape (2, h, k, j).
+
+    The harmonics `orders` (h,) go from −N to N; of each motion λ is one of `values` (j,).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If a matrix is singular.
+    """
+    # axes: H and Hᴴ, sides above and below the middle, motions, rows, columns
+    given, links = np.stack([loads, forces]), system.projected(system.ports)
+    groups = _groups(len(orders), system.order // spacing(orders))
+    at = [orders[group] for group in groups]
+    parts = [_part(given, group) for group in groups]
+    ports = [np.kron(np.eye(group.shape[1]), system.ports) for group in groups]
+    outer, answers, outwards = np.zeros(2 * ports[-1].shape[1:]), [], []
+    for i in reversed(range(len(groups))):
+        own = _blocks(system, values, at[i], at[i])
+        own = _with_adjoint(own, own) - ports[i] @ outer @ ports[i].T
+        forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
+        answers.append(np.linalg.solve(own, np.concatenate([forced, parts[i]], axis=-1)))
+        if i > 0:
+            inward = _blocks(links, values, at[i - 1], at[i])
+            outward = _blocks(links, values, at[i], at[i - 1])
+            outwards.append(_with_adjoint(outward, inward))
+            carried = _with_adjoint(inward, outward) @ (ports[i].T @ answers[-1])
+            outer, load = carried[..., :-1] @ outwards[-1], ports[i - 1] @ carried[..., -1:]
+            if i == 1:  # the middle has both sides
+                outer, load = (X.sum(axis=1, keepdims=True) for X in (outer, load))
+            parts[i - 1] = parts[i - 1] - load
+    result, seen = np.empty_like(given), None
+    for group, port, answer in zip(groups, ports, reversed(answers), strict=True):
+        part = answer[..., -1:]
+        if seen is not None:
+            part = part - answer[..., :-1] @ (outwards.pop() @ seen)
+        seen = port.T @ part
+        shaped = part.reshape(*part.shape[:3], group.shape[1], -1)
+        result[:, group] = shaped.transpose(0, 1, 3, 4, 2)
+    return result
+
+
+def _groups(count: int, reach: int) -> list[np.ndarray]:
+    """Return the places of harmonics in groups (sides, g), of which only neighbours are coupled.
+
+    The middle comes first, with one side.
+    """
+    middle, reach = count // 2, max(reach, 1)
+    first = min(middle, reach // 2) + 1
+    groups = [middle + np.arange(1 - first, first)[None]]
+    for start in range(first, middle + 1, reach):
+        beside = np.arange(start, min(start + reach, middle + 1))
+        groups.append(np.array([middle + beside, middle - beside]))
+    return groups
+
+
+def _blocks(
+    system: PeriodicSystem, values: np.ndarray, rows: np.ndarray, columns: np.ndarray
+) -> np.ndarray:
+    """Return H(λ) between harmonics, rows (s, a) and columns (t, b), shape (…, j, a k, b k)."""
+    sides, counts = max(len(rows), len(columns)), (rows.shape[1], columns.shape[1])
+    shape = sides, len(values), counts[0], system.size, counts[1], system.size
+    result = np.zeros(shape, dtype=complex)
+    for side, row, column in np.ndindex(sides, *counts):
+        m = columns[side % len(columns), column]
+        rate = values + 1j * m * system.speed
+        n = int(rows[side % len(rows), row] - m)
+        parts = (system.M, rate**2), (system.D, rate), (system.K, np.ones_like(rate))
+        for terms, factor in parts:
+            if n in terms:
+                result[side, :, row, :, column] += factor[:, None, None] * terms[n]
+    return result.reshape(sides, len(values), *(count * system.size for count in counts))
+
+
+def _part(motions: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Return harmonics of motions (2, h, k, j) in one group, shape (2, sides, j, g k, 1)."""
+    parts = motions[:, group].transpose(0, 1, 4, 2, 3)
+    return parts.reshape(*parts.shape[:3], -1, 1)
+
+
+def _with_adjoint(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
+    """Return blocks of H and those of Hᴴ at the same place, from the mirrored ones of H."""
+    return np.stack([X, Y.conj().swapaxes(-1, -2)])
