@@ -136,8 +136,8 @@ LINEAR_MODELS = [
         ),
         (
             "error of what was followed without its inertia",
-            "slopes = 2.0 * values[lacking]",
-            "slopes = 1e9 * values[lacking]",
+            "for X in (load, inertia)]",
+            "for X in (load, 1e9 * inertia)]",
         ),
     ),
     *mutations(
