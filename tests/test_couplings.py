@@ -18,7 +18,9 @@ from exudyn_rotor import (
     add_drive,
     add_rotor,
     add_supports,
+    campbell,
     connect_rotors,
+    linear_model,
 )
 
 ENDS = ("left", "right")
@@ -255,3 +257,16 @@ def test_shafts_elsewhere_are_refused():
         with pytest.raises(ValueError, match=match):
             connect_rotors(*arguments)
         assert mbs.systemData.NumberOfObjects() == before
+
+
+def test_linear_analyses_of_a_rotor_on_a_shaft():
+    """The scene is refused with what to give instead, which they take."""
+    mbs, rotor = exu.SystemContainer().AddSystem(), rings().reduce(0)
+    body = add_rotor(mbs, rotor, spin=30.0)
+    coupling = COUPLINGS["flexible"]
+    connect_rotors(coupling, body, "left", ConstantSpeed(30.0))
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"with a shaft.*coupling.support\('left'\)"):
+        linear_model(mbs, body=body)
+    found = campbell(rotor, [30.0], supports=[coupling.support("left"), Support("right", 1e6)])
+    assert found.free_motions == ()

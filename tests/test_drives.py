@@ -20,6 +20,8 @@ from exudyn_rotor import (
     add_rotor,
     add_supports,
     energy_balance,
+    linear_model,
+    stability,
 )
 
 MOTOR = DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0)
@@ -217,3 +219,25 @@ def test_a_run_beyond_a_table_stops():
 def test_bad_numbers_are_refused(make, match):
     with pytest.raises(ValueError, match=match):
         make()
+
+
+@pytest.mark.parametrize("at", ["left", None])
+def test_linear_analyses_of_a_scene_with_a_motor(at):
+    """At an interface −dT/dΩ damps the twist there; on the whole spin it moves nothing else.
+
+    At the speed without load, as a torque itself acts on shafts that bend.
+    """
+    rotor, slope = rings().reduce(24), MOTOR.stall_torque / MOTOR.no_load_speed
+    held = [Support(name, 2e6 * np.eye(3), 50.0 * np.eye(3)) for name in ("left", "right")]
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin="free", initial_speed=MOTOR.no_load_speed)
+    add_supports(body, held)
+    add_drive(body, MOTOR, at)
+    mbs.Assemble()
+    damper = [Support(at, tilt_damping=np.diag([0.0, 0.0, slope]))] if at else []
+    models = linear_model(mbs, body=body), linear_model(rotor, supports=[*held, *damper])
+    found, expected = (
+        stability(one, [MOTOR.no_load_speed], accuracy=None).exponents[0] for one in models
+    )
+    distances = np.abs(found[:, None] - expected).min(axis=1)
+    assert (distances / np.abs(found)).max() < 1e-6

@@ -21,6 +21,7 @@ from exudyn_rotor import (
     add_supports,
     campbell,
     connect_rotors,
+    linear_model,
 )
 
 RADII = (0.06, 0.09)
@@ -294,3 +295,11 @@ def test_refused_calls_leave_the_scene_as_it_was():
             connect_rotors(*arguments)
         assert counts() == before
         assert one.drives == []
+
+
+def test_linear_analyses_of_the_scene_are_for_one_rotor():
+    mbs, bodies, _ = pair(mesh())
+    mbs.Assemble()
+    for body, other in zip(bodies, bodies[::-1], strict=True):
+        with pytest.raises(ValueError, match=f"second rotor.*{other.name!r}.*RotorTrain"):
+            linear_model(mbs, body=body)

@@ -25,11 +25,11 @@ from exudyn_rotor.linear.models.journal_start import journal_start
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.models.scene_checks import check_scene
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
-from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.marker_body import around
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
@@ -92,7 +92,7 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             For a system that is not assembled, a body of another system, a second rotor,
             coordinates of first order, and constraints that turn with the rotor.
         """
-        _check(mbs, body)
+        check_scene(mbs, body)
         checks.choice(about, "about", ABOUT)
         rotor = np.asarray(mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
         alone = SceneCoordinates.of(body)
@@ -364,25 +364,3 @@ def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
     turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
     rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
     return np.vstack([mean, rotation])
-
-
-def _check(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    checks.instance(mbs, "mbs", exudyn.MainSystem)
-    how = "exudyn_rotor.add_rotor returned it for the rotor in this system"
-    reduced_body(body, how=how)
-    if body.mbs is not mbs:
-        raise ValueError(f"rotor {body.name!r} belongs to another mbs")
-    body.check_present()
-    if not mbs.systemIsConsistent:
-        raise ValueError("the system is not assembled: call mbs.Assemble() first")
-    if mbs.systemData.ODE1Size():
-        raise ValueError("linear scene: coordinates of first order (ODE1) are not supported")
-    for number in range(mbs.systemData.NumberOfObjects()):
-        item = mbs.GetObject(number)
-        if item["objectType"] != "GenericODE2" or number == int(body.objects["physics"]):
-            continue
-        if str(mbs.GetNode(item["nodeNumbers"][0])["nodeType"]) == "RigidBodyRxyz":
-            raise ValueError(
-                "linear scene: a second rotor in this system; one revolution is a period for one "
-                "spin speed only"
-            )
