@@ -17,7 +17,6 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
-    check_run,
     linear_model,
     recommended_settings,
     steady_state,
@@ -347,7 +346,7 @@ def test_numbers_of_mesh_nodes_mean_nothing_to_the_marker_body(bar):
 def test_analyses_name_the_reduced_rotor(bar):
     mbs, body = scene(bar)
     mbs.Assemble()
-    for analysis in (check_run, steady_state, lambda body: linear_model(mbs, body=body)):
+    for analysis in (steady_state, lambda body: linear_model(mbs, body=body)):
         with pytest.raises(TypeError, match=r"full body.*rotor\.reduce"):
             analysis(body)
     with pytest.raises(ValueError, match="no marker or sensor there"):

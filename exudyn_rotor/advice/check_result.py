@@ -103,10 +103,13 @@ class RunCheck:
     def gap(self) -> str:
         """Return what a record of few instants lacks."""
         if self.instants == 1:
-            return "only the end state is known: call body.start_recording() before mbs.Assemble()"
+            return (
+                "only the end state is known: call body.start_recording(), for a full body with "
+                "instants, before mbs.Assemble()"
+            )
         return (
             f"only {self.instants} instants are known: lower solution.sensors.writePeriod of the "
-            "simulation settings"
+            "simulation settings, or give a full body's start_recording more"
         )
 
     def __str__(self) -> str:

@@ -10,13 +10,15 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.check_result import CheckRow, RunCheck
+from exudyn_rotor.advice.full_measures import FullMeasures
 from exudyn_rotor.advice.left_out_fields import check_model
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.advice.run_measures import Measures
 from exudyn_rotor.advice.run_rows import rows, rows_at_nodes
 from exudyn_rotor.advice.warning import AssumptionWarning
-from exudyn_rotor.multibody.full_body import reduced_body
+from exudyn_rotor.multibody.full_body import FullRotorBody
+from exudyn_rotor.multibody.full_record import recorded_states
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -53,7 +55,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
 
 
 def check_run(
-    body: RotorBody,
+    body: RotorBody | FullRotorBody,
     *,
     reduced: ReducedRotor | None = None,
     solid: SolidRotor | None = None,
@@ -67,10 +69,10 @@ def check_run(
 
     Parameters
     ----------
-    body : RotorBody
+    body : RotorBody or FullRotorBody
         After the solution; ``body.start_recording()`` before ``mbs.Assemble()`` records the run at
-        the instants of ``solution.sensors.writePeriod``. Before a run this checks the initial
-        state.
+        the instants of ``solution.sensors.writePeriod``, that of a full body at instants that it is
+        given. Before a run this checks the initial state.
     reduced : ReducedRotor, optional
         The rotor; adds the check of yielding where it was reduced with a yield stress.
     solid : SolidRotor, optional
@@ -100,7 +102,9 @@ def check_run(
 
     Notes
     -----
-    Checks, with a for the accuracy; "size" is the rotor's radius of gyration.
+    Checks, with a for the accuracy; "size" is the rotor's radius of gyration. A full body has no
+    modes and no record of loads, hence none of the rows ``unresisted load``, ``top modes``,
+    ``residual``, ``displacement``, ``stress``, ``divergence`` and ``explicit``.
 
     ===================  =======  ==================================================================
     name                 limit    meaning
@@ -166,8 +170,14 @@ def check_run(
     >>> check_run(body).ok
     True
     """
-    reduced_body(body, how="add_rotor returns one")
+    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_assembled()
+    asked = any(each is not None for each in (reduced, solid, nodes))
+    if isinstance(body, FullRotorBody) and asked:
+        raise ValueError(
+            f"body: rotor {body.name!r} is a full body, without an error of modes; leave reduced, "
+            "solid and nodes out"
+        )
     if reduced is not None:
         _check_same(body, checks.instance(reduced, "reduced", ReducedRotor))
     if proposal is not None:
@@ -177,8 +187,11 @@ def check_run(
     checks.flag(warn, "warn")
     known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
     at_nodes = _nodes(body, reduced, solid, nodes)
-    record = body.recorded()
-    measures = Measures(body, record)
+    if isinstance(body, FullRotorBody):
+        measures = FullMeasures(body, recorded_states(body))
+    else:
+        measures = Measures(body, body.recorded())
+    record = measures.record
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
         made = list(rows(measures, reduced, proposal))
         if at_nodes is not None and len(record.time) > 1:

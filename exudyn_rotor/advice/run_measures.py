@@ -109,9 +109,9 @@ class Measures:
         if not self.body.formulation.has_frozen_spin:
             return None
         terms, zeta = self.body.motion.spin_terms, self.zeta
-        change = 2.0 * zeta @ terms.h + np.einsum("si,ij,sj->s", zeta, terms.C_hat, zeta)
+        change = 2.0 * zeta @ terms.h + np.einsum("si,is->s", zeta, terms.C_hat @ zeta.T)
         left = 0.5 * self.record.speed * change
-        left += np.einsum("si,ij,sj->s", self.zeta_t, terms.W, zeta)
+        left += np.einsum("si,is->s", self.zeta_t, terms.W @ zeta.T)
         momentum_scale = self.invariants.Theta * self.fastest
         return float(np.abs(left).max() / momentum_scale) if momentum_scale else 0.0
 
@@ -139,10 +139,15 @@ class Measures:
         kinetic = 0.5 * np.einsum("si,ij,sj->s", self.zeta_t, inv.M, self.zeta_t)
         kinetic += omega * np.einsum("si,ij,sj->s", self.zeta_t, inv.G, self.zeta)
         kinetic += 0.5 * omega**2 * np.einsum("si,ij,sj->s", self.zeta, inv.C, self.zeta)
+        kinetic += self._drift
+        return elastic, float(elastic.sum(axis=1).max(initial=0.0) + kinetic.max(initial=0.0))
+
+    @cached_property
+    def _drift(self) -> np.ndarray:
+        """Kinetic energy (s,) of the frame's translation about its mean velocity [J]."""
         count = self.body.motion.formulation.translation_count
         drift = self._q_t[:, :count] - self._q_t[:, :count].mean(axis=0)
-        kinetic += 0.5 * inv.mass * (drift**2).sum(axis=1)
-        return elastic, float(elastic.sum(axis=1).max(initial=0.0) + kinetic.max(initial=0.0))
+        return 0.5 * self.invariants.mass * (drift**2).sum(axis=1)
 
     def top_share(self) -> float:
         """Return the elastic energy in the highest fifth of the modes over that of all motion.

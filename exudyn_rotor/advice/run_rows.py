@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from operator import methodcaller
 
 import numpy as np
 
+from exudyn_rotor.advice.full_measures import FullMeasures
 from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
 from exudyn_rotor.advice.proposal import Proposal
 from exudyn_rotor.advice.residual import residual_deflection
@@ -24,32 +26,32 @@ Row = tuple[str, str, float, str]  # name, meaning, value, what to do
 _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
     (
         "tilt",
-        Measures.tilt,
+        methodcaller("tilt"),
         "largest tilt [rad]",
         "the error grows with its square; use Exudyn's 3D body for wide tilts",
     ),
     (
         "deflection",
-        Measures.deflection,
+        methodcaller("deflection"),
         "flexible displacement over the size",
         "small deformations are assumed; check loads and supports",
     ),
     (
         "travel",
-        Measures.travel,
+        methodcaller("travel"),
         "centre of mass off the frame, over the size",
         "let the frame follow: translation='free'",
     ),
     (
         "adrift",
-        Measures.adrift,
+        methodcaller("adrift"),
         "centre of mass off its place in the frame, over the size",
         "support the rotor against the centrifugal force of its eccentricity, or let the frame "
         "follow: translation='free'",
     ),
     (
         "locked",
-        Measures.locked,
+        methodcaller("locked"),
         "locked coordinates off their place [rad], [size]",
         "use locking='constraints', a smaller step, or load an interface instead of the frame",
     ),
@@ -59,6 +61,27 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "connections, joints and loads that the rotor cannot carry",
         "body.check_connections() names them; use markers at interfaces or mesh nodes",
     ),
+    (
+        "strain",
+        methodcaller("strain"),
+        "mean centrifugal strain",
+        "linear elasticity errs by about this; a nonlinear model is needed at this speed",
+    ),
+    (
+        "stiffening",
+        methodcaller("missing_stiffness"),
+        "stiffening left out, relative change of frequency",
+        "use stiffening='full' (modes need reduce with prestress=True), or 'tilt' in place of "
+        "'none'",
+    ),
+    (
+        "spin step",
+        methodcaller("spin_step"),
+        "spin angle per step [rad]",
+        "take smaller steps; the error falls with their square",
+    ),
+)
+_OF_MODES: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
     (
         "unresisted load",
         lambda m: unresisted_load(m.body, m.record, m.size),
@@ -73,28 +96,10 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
         "keep more modes, or use craig_bampton_modes",
     ),
     (
-        "strain",
-        Measures.strain,
-        "mean centrifugal strain shown by the modes",
-        "linear elasticity errs by about this; a nonlinear model is needed at this speed",
-    ),
-    (
-        "stiffening",
-        Measures.missing_stiffness,
-        "stiffening left out, relative change of frequency",
-        "reduce with prestress=True and use stiffening='full', or 'tilt' in place of 'none'",
-    ),
-    (
         "divergence",
         Measures.divergence,
         "Ω²/Ω_d², Ω_d where flexible modes grow",
         "stay below that speed, or use stiffening='full'; without it the growth may be false",
-    ),
-    (
-        "spin step",
-        Measures.spin_step,
-        "spin angle per step [rad]",
-        "take smaller steps; the error falls with their square",
     ),
 )
 
@@ -102,6 +107,7 @@ _ALWAYS: tuple[tuple[str, Callable[[Measures], float], str, str], ...] = (
 def rows(
     measures: Measures, reduced: ReducedRotor | None, proposal: Proposal | None
 ) -> Iterator[Row]:
+    """Yield the rows that a run of a reduced or of a full body has."""
     for name, measure, meaning, advice in _ALWAYS:
         yield name, meaning, float(measure(measures)), advice
     yield (
@@ -119,6 +125,29 @@ def rows(
             left_out,
             "add the rotor with spin_coupling='full'",
         )
+    if isinstance(measures, FullMeasures):
+        yield from _rows_of_nodes(measures)
+    else:
+        yield from _rows_of_modes(measures, reduced)
+    if proposal is not None:
+        ratio = measures.fastest / proposal.speeds[1] if proposal.speeds[1] else np.inf
+        yield (
+            "speed",
+            "highest speed over that of the proposal",
+            ratio if measures.fastest else 0.0,
+            f"{measures.fastest:.6g} rad/s were reached; propose again with that",
+        )
+
+
+def _rows_of_nodes(measures: FullMeasures) -> Iterator[Row]:
+    stress = measures.yielding()
+    if stress is not None:
+        yield "yield", "stress over yield stress", stress, "linear elasticity holds below it only"
+
+
+def _rows_of_modes(measures: Measures, reduced: ReducedRotor | None) -> Iterator[Row]:
+    for name, measure, meaning, advice in _OF_MODES:
+        yield name, meaning, float(measure(measures)), advice
     missing = residual_deflection(measures.body, measures.record, measures.size)
     if missing is not None:
         yield (
@@ -142,19 +171,12 @@ def rows(
         peak = max(float(von_mises(stress).max()) for stress in ends)
         advice = "the elastic prestress holds below the yield stress only"
         yield "yield", "static stress over yield stress", peak / static.yield_stress, advice
-    if proposal is not None:
-        ratio = measures.fastest / proposal.speeds[1] if proposal.speeds[1] else np.inf
-        yield (
-            "speed",
-            "highest speed over that of the proposal",
-            ratio if measures.fastest else 0.0,
-            f"{measures.fastest:.6g} rad/s were reached; propose again with that",
-        )
 
 
 def rows_at_nodes(
     measures: Measures, reduced: ReducedRotor, solid: SolidRotor, nodes: np.ndarray
 ) -> Iterator[Row]:
+    """Yield the errors of a reduced run at nodes."""
     found = left_out_at_nodes(measures.body, measures.record, measures.size, reduced, solid, nodes)
     beside = f"; {_UNKNOWN}"
     yield _row_at_nodes(

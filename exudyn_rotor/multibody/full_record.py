@@ -1,7 +1,7 @@
-"""Displacements of a full body at chosen instants of a run, for its stress there.
+"""Displacements of a full body at chosen instants of a run, for its stress and checks of the run.
 
-All displacements at all steps would fill the memory; a sensor keeps those of the instants. Exudyn
-calls it whenever sensors are stored, and at all other times it reads nothing.
+All displacements at all steps would fill the memory; a sensor keeps those of the instants, and
+their rates. Exudyn calls it whenever sensors are stored, and at all other times it reads nothing.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from exudyn.itemInterface import SensorUserFunction
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.multibody.record import Record, read_record, spin_speeds
 from exudyn_rotor.multibody.rotor_items import RotorItems
 
 _KINDS = exudyn.OutputVariableType
@@ -49,12 +50,12 @@ class _Stored:
         self.instants = instants
         self.latest = np.inf
         self.time: list[float] = []
-        self.displacement: list[np.ndarray] = []
+        self.states: list[tuple[np.ndarray, np.ndarray]] = []
 
     def is_due(self, t: float) -> bool:
         """Return whether `t` is the next instant; a run that begins anew forgets the last one."""
         if t < self.latest:
-            self.time, self.displacement = [], []
+            self.time, self.states = [], []
         self.latest = t
         done = len(self.time)
         return done < len(self.instants) and t >= self.instants[done] * (1.0 - _ROUNDING)
@@ -75,22 +76,24 @@ def start_recording(body: RotorItems, instants: ArrayLike) -> None:
     if body.mark in records:
         raise ValueError(f"start_recording: rotor {body.name!r} has its instants already")
     records[body.mark] = stored = _Stored(wanted)
-    node = list(body.nodes.values())[-1]
     body.mbs.AddSensor(
         SensorUserFunction(
-            sensorUserFunction=_storing(stored, node, 3 * body.selection.source.node_count),
+            sensorUserFunction=_storing(stored, tuple(body.nodes.values()), body.layout.signs),
             storeInternal=True,
             writeToFile=False,
         )
     )
 
 
-def _storing(stored: _Stored, node: exudyn.NodeIndex, size: int) -> Callable:
+def _storing(stored: _Stored, nodes: tuple[exudyn.NodeIndex, ...], signs: np.ndarray) -> Callable:
     def store(mbs, t, sensors, factors, configuration):
         if configuration == exudyn.ConfigurationType.Current and stored.is_due(t):
-            values = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)
+            values = (
+                signs * np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in nodes])
+                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
+            )
             stored.time.append(t)
-            stored.displacement.append(np.array(values[-size:]).reshape(-1, 3))
+            stored.states.append(tuple(values))
         return [float(len(stored.time))]
 
     return store
@@ -112,9 +115,25 @@ def recorded(body: RotorItems) -> FullRecord:
             f"for {stored.instants[done]:.6g} s: the run ended before, or sensors were stored too "
             "seldom; let solution.sensors.writePeriod be the step"
         )
-    displacement, recover = np.array(stored.displacement), body.selection.source.stress_recovery
-    stress = None
+    fields = body.layout.unknowns[body.motion.modes]
+    displacement = np.array([q[fields] for q, _ in stored.states]).reshape(done, -1, 3)
+    recover, stress = body.selection.source.stress_recovery, None
     if recover is not None:
         columns = displacement.reshape(done, -1).T
         stress = np.moveaxis(recover(columns), -1, 0)
     return FullRecord(np.array(stored.time), displacement, stress)
+
+
+def recorded_states(body: RotorItems) -> Record:
+    """Return all coordinates and rates at the instants that were stored, without accelerations.
+
+    The current state where nothing was stored.
+    """
+    body.check_assembled()
+    stored = body.mbs.sys.get(_RECORDS, {}).get(body.mark)
+    if stored is None or not stored.time:
+        return read_record(body)
+    time = np.array(stored.time)
+    q, q_t = (np.array(rows) for rows in zip(*stored.states, strict=True))
+    zero = np.zeros_like(q)
+    return Record(time, q, q_t, zero, zero, spin_speeds(body, time, q_t), len(time) > 1)

@@ -108,7 +108,7 @@ def read_record(body: RotorItems) -> Record:
             force = read(body, name, constraint, _KINDS.Force)
             held[:, body.locks.names.index(name)] = force[:, 0]
     held *= body.layout.signs
-    return Record(time, *parts, held, _speed(body, time, parts[1]), complete)
+    return Record(time, *parts, held, spin_speeds(body, time, parts[1]), complete)
 
 
 def last_solver(body: RotorItems) -> Solver | None:
@@ -143,7 +143,8 @@ def _current(body: RotorItems, name: str, item: int, kind) -> np.ndarray:
     return np.atleast_2d(read(item, kind))
 
 
-def _speed(body: RotorItems, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+def spin_speeds(body: RotorItems, time: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    """Return the spin speeds (s,) [rad/s] at times, with the rates (s, n) of the coordinates."""
     if not body.formulation.has_spin:
         return np.array([float(body.formulation.spin.rate(t)) for t in time])
     return q_t[:, body.locks.spin if "rigid" in body.nodes else body.formulation.translation_count]

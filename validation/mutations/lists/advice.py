@@ -186,4 +186,30 @@ ADVICE = [
         "test_errors_at_nodes.py::test_held_rotor_errs_by_its_weight_too",
         ("weight reversed", "forces += inv.S.T", "forces -= inv.S.T"),
     ),
+    *mutations(
+        "advice/full_measures.py",
+        "test_full_run_check.py::test_rows_are_those_of_all_modes",
+        ("mean motion left in", "fields - self._rigid @", "fields - 0.0 * self._rigid @"),
+        ("relief of the prestress left out", "+ self._by_factors(relief, c)", ""),
+        (
+            "tilts are in a level without",
+            "work += self._by_factors(tilt",
+            "work += 0.0 * self._by_factors(tilt",
+        ),
+        ("kinetic energy of the spin", "+ 0.5 * omega**2 * self", "- 0.5 * omega**2 * self"),
+        (
+            "frequency without the frame",
+            "return float(lateral + self._squares",
+            "return float(0.0 * lateral + self._squares",
+        ),
+    ),
+    *mutations(
+        "advice/full_measures.py",
+        "test_full_run_check.py::test_stiffening_of_a_mesh_is_estimated_as_for_modes",
+        (
+            "estimate left out",
+            "inv.M if network is None else network",
+            "inv.M",
+        ),
+    ),
 ]
