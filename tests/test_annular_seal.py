@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from test_supports_in_scenes import HELD, SPEED, distance, rings, system_without_spin
 
-from exudyn_rotor import AnnularSeal, add_rotor, add_supports, linear_model
+from exudyn_rotor import AnnularSeal, Support, add_rotor, add_supports, linear_model
 
 WATER = {"pressure_drop": 1.2e6, "density": 1000.0, "viscosity": 1e-3}
 SIZE = {"radius": 0.1, "length": 0.05, "clearance": 3e-4}
@@ -69,6 +69,13 @@ def test_scene_and_list_have_the_same_exponents():
     found = linear_model(mbs, body=body, about="given").at(SPEED)
     expected = system_without_spin(reduced, [seal().linearised(), HELD], SPEED)
     assert distance(found, expected) < 1e-8
+
+
+def test_a_seal_that_repels_at_high_speed_does_not_hold_the_spin():
+    one = seal()
+    supports = [Support(name, 1e6, 100.0) for name in ("left", "right")]
+    assert one.coefficients(1e4)[0][0, 0] < -2e6
+    assert not linear_model(rings(), supports=[*supports, one]).spin.coupled
 
 
 @pytest.mark.parametrize(

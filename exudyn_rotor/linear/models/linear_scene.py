@@ -246,7 +246,8 @@ def _resolved(
         samples *= 2
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
-        "resolve the coefficients; is there a stop, contact or friction?"
+        "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
+        "moves from node to node? linear_model(rotor, supports=…) takes bearings in equilibrium"
     )
 
 

@@ -157,7 +157,8 @@ def _held_off_center(
     """Return True if springs that stand still hold the spin by their distance from each other."""
     moved = np.array(turned)
     for index in range(len(_PROBED)):
-        k = np.array([0.5 * np.trace(each[index][:2, :2]) for each in stiffnesses])
+        # what repels, as a seal at high speed, holds nothing
+        k = np.array([max(0.5 * np.trace(each[index][:2, :2]), 0.0) for each in stiffnesses])
         if np.any(k > 0.0):
             off_center = moved - k @ moved / k.sum()
             if k @ (off_center**2).sum(axis=1) > _OFF_CENTER * k.sum() / mass:
