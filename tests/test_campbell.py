@@ -133,8 +133,8 @@ def test_progress_bar(rotor, capsys):
 @pytest.mark.filterwarnings("ignore:the centre of mass is")
 def test_what_does_not_depend_on_the_speed_is_computed_once(monkeypatch):
     calls = []
-    fits = whirl.wave_fits
-    monkeypatch.setattr(whirl, "wave_fits", lambda *given: calls.append(1) or fits(*given))
+    waves = whirl.wave_amplitudes
+    monkeypatch.setattr(whirl, "wave_amplitudes", lambda *given: calls.append(1) or waves(*given))
     rotor = random_rotor(22).reduce(4)
     campbell(rotor, np.linspace(0.0, 30.0, 7), stiffening="none", accuracy=None)
     assert len(calls) == 1

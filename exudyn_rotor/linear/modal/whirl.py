@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
-from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes, wave_fits
+from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes
 from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
@@ -312,24 +312,23 @@ def _gram(amplitudes: np.ndarray, vectors: np.ndarray, weights: np.ndarray) -> n
 
 def _operators(points: np.ndarray, motion: np.ndarray, standing: np.ndarray) -> tuple:
     """Return the fields of :class:`WhirlContent` up to `whole`."""
-    fits = wave_fits(points, HIGHEST + 1)
-    orders, amplitudes = wave_amplitudes(fits, motion)
+    orders, amplitudes, axial = wave_amplitudes(points, motion)
     amplitudes[HIGHEST] = np.vstack([amplitudes[HIGHEST], standing])
     waves = _alike(amplitudes)
-    u1, u2, ue = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
+    u1, u2, _ = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
     radial = np.cos(angle) * u1 + np.sin(angle) * u2
     tangential = np.cos(angle) * u2 - np.sin(angle) * u1
-    axial = fits[0] @ ue
     whole = np.vstack([motion, standing])
     return (orders, waves, axial, *(_small(X) for X in (tangential, radial, whole)))
 
 
 def _small(matrix: np.ndarray) -> np.ndarray:
-    """Return a triangle with the same Gram matrix, where that is smaller."""
+    """Return a square matrix with the same Gram matrix, where that is smaller."""
     if matrix.shape[0] <= matrix.shape[1]:
         return matrix
-    return np.linalg.qr(matrix, mode="r")
+    squares, turn = np.linalg.eigh(matrix.conj().T @ matrix)
+    return np.sqrt(np.maximum(squares, 0.0))[:, None] * turn.conj().T
 
 
 def _alike(matrices: Sequence[np.ndarray]) -> np.ndarray:

@@ -23,7 +23,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes, wave_fits
+from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.rotating_axes import turning_harmonics
@@ -137,8 +137,7 @@ def _amplitudes(rotor: LinearRotor, V: np.ndarray) -> tuple[np.ndarray, list[np.
     along the axis, which the points do not resolve.
     """
     points = rotor.point_motions(_POINTS)
-    fits = wave_fits(points.points, HIGHEST + 1)
-    orders, amplitudes = wave_amplitudes(fits, points.motion @ V)
+    orders, amplitudes, _ = wave_amplitudes(points.points, points.motion @ V)
     places = rotor.rotor.interfaces
     weight = np.sqrt(len(points.points) / max(len(places), 1))
     for name, place in places.items():

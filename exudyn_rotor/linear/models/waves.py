@@ -6,8 +6,6 @@ The wave n of a motion turns in the rotor frame as ``exp(i(νt − nα))``, see
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 HIGHEST = 4  # largest |n| that is looked at
@@ -15,40 +13,53 @@ _AXIAL_TERMS = 6
 _RADIAL_TERMS = 2
 # share of a field that others must leave over to count as new
 _NEW_SHARE = 1e-2
+# share of the longest field, squared, below which one depends on others
+_DEPENDENT = 1e-12
 
 
 def wave_amplitudes(
-    fits: Mapping[int, np.ndarray], motion: np.ndarray
-) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the waves n from −4 to 4, and the amplitudes (p, c) of each per coordinate.
+    points: np.ndarray, motion: np.ndarray
+) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+    """Return the waves n from −4 to 4, the amplitudes of each, and the axial ones of n = 0.
 
-    Parameters
-    ----------
-    fits : mapping of int to ndarray
-        Of :func:`wave_fits`, up to |l| = 5.
-    motion : ndarray, shape (3s, c)
-        Displacement of the points along (n1, n2, e) per coordinate.
-    """
-    u1, u2, ue = motion.reshape(motion.shape[0] // 3, 3, -1).transpose(1, 0, 2)
-    a, b = np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)
-    orders = np.arange(-HIGHEST, HIGHEST + 1)
-    # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
-    return orders, [np.vstack([fits[1 - n] @ a, fits[-1 - n] @ b, fits[-n] @ ue]) for n in orders]
-
-
-def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
-    """Return the operators (p, s) that fit waves ``exp(ilα)`` to values at points, per l.
-
-    Least squares with the smooth fields ``r^|l| (1, r²) T_q(z) exp(ilα)``, all l together; the
-    squared norm of a wave's amplitudes is its energy, summed over the points. Where the points are
-    too few to tell waves apart, those of low |l| are taken.
+    Amplitudes (p, c) per coordinate are those of smooth fields, fitted by least squares; their
+    squared norm is the energy of a wave, summed over the points.
 
     Parameters
     ----------
     points : ndarray, shape (s, 3)
         Coordinates along (n1, n2, e) from a point of the axis [m].
-    highest : int
-        Largest |l|.
+    motion : ndarray, shape (3s, c)
+        Displacement of the points along (n1, n2, e) per coordinate.
+    """
+    spaces = _wave_fields(points, HIGHEST + 1)
+    basis = np.hstack(spaces)
+    ends = np.cumsum([space.shape[1] for space in spaces])
+    fitted = np.linalg.pinv(basis.T @ basis, rcond=_DEPENDENT, hermitian=True) @ (
+        basis.T @ motion.reshape(len(points), -1)
+    )
+    steady, *others = np.split(fitted.reshape(len(fitted), 3, -1).transpose(1, 0, 2), ends[:-1], 1)
+    waves = {0: steady.astype(complex)}
+    # in cosines and sines, which is real; exp(±ilα) is a unitary combination of them
+    for count, fit in enumerate(others, start=1):
+        cosine, sine = np.split(fit, 2, axis=1)
+        forward = np.sqrt(0.5) * (cosine - 1j * sine)
+        waves |= {count: forward, -count: forward.conj()}
+    orders = np.arange(-HIGHEST, HIGHEST + 1)
+    amplitudes = []
+    for n in orders:
+        # in Cartesian components the wave n has the angular dependence n − 1, n + 1 and n
+        (u1, u2, _), (v1, v2, _) = waves[1 - n], waves[-1 - n]
+        a, b = np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (v1 - 1j * v2)
+        amplitudes.append(np.vstack([a, b, waves[-n][2]]))
+    return orders, amplitudes, steady[2]
+
+
+def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
+    """Return cosines, then sines of the fields of the waves ``exp(ilα)`` at points, (s, p) per l.
+
+    Those of ``r^|l| (1, r²) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet: where
+    the points are too few to tell waves apart, they are of low |l|.
     """
     x, y, z = points.T
     radius = np.hypot(x, y)
@@ -59,31 +70,36 @@ def wave_fits(points: np.ndarray, highest: int) -> dict[int, np.ndarray]:
     along = np.polynomial.chebyshev.chebvander(
         2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z), _AXIAL_TERMS - 1
     )
-    direction = scaled * np.exp(1j * np.arctan2(y, x))
-    fields = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
-    spaces, known = [], np.zeros((len(points), 0))
-    for count in range(highest + 1):
-        forward = _new_fields(direction[:, None] ** count * fields, known)
+    steady = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
+    turning = np.vander(scaled * np.exp(1j * np.arctan2(y, x)), highest + 1, increasing=True)
+    fields = turning[:, :, None] * steady[:, None, :]
+    parts = fields.reshape(len(points), -1).view(float)  # real beside imaginary ones
+    gram = parts.T @ parts
+    spaces, known = [], np.zeros((len(gram), 0))
+    for count, here in enumerate(np.split(np.arange(len(gram)), highest + 1)):
+        products = np.ascontiguousarray(gram[:, here]).view(complex)
+        within = products[here[::2]] - 1j * products[here[1::2]]
+        forward = _new_fields(within, known.T @ products)
         # both senses at once, so that neither is preferred: one has the conjugate fields
-        both = np.hstack([forward.real, forward.imag]) * np.sqrt(2.0) if count else forward.real
-        spaces.append(both)
-        if count < highest:
-            known = np.linalg.qr(np.hstack([known, both]))[0]
-    ends = np.cumsum([space.shape[1] for space in spaces])
-    # in cosines and sines, which is real; exp(±ilα) is a unitary combination of them
-    fits = np.split(np.linalg.pinv(np.hstack(spaces), rcond=1e-6), ends[:-1])
-    result = {0: fits[0].astype(complex)}
-    for count, fit in enumerate(fits[1:], start=1):
-        cosine, sine = np.split(fit, 2)
-        forward = np.sqrt(0.5) * (cosine - 1j * sine)
-        result |= {count: forward, -count: forward.conj()}
-    return result
+        both = np.sqrt(2.0) * np.vstack([forward, 1j * forward]) if count else forward
+        columns = np.zeros((len(gram), len(both)))
+        columns[here] = both.view(float).T
+        spaces.append(parts[:, here] @ columns[here])
+        columns = columns - known @ (known.T @ (gram @ columns))
+        lengths, turn = np.linalg.eigh(columns.T @ gram @ columns)
+        new = lengths > _DEPENDENT
+        known = np.hstack([known, columns @ turn[:, new] / np.sqrt(lengths[new])])
+    return spaces
 
 
-def _new_fields(fields: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of those `fields` that the columns `known` do not hold yet."""
-    scale = np.linalg.norm(fields, 2)
-    rest = fields - known @ (known.conj().T @ fields)
-    _, lengths, turn = np.linalg.svd(rest, full_matrices=False)
-    directions = turn[lengths > max(_NEW_SHARE * scale, 1e-300)].conj().T
-    return np.linalg.qr(fields @ directions)[0]
+def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:
+    """Return ``Tᴴ`` of orthonormal fields ``F T`` that others do not hold yet.
+
+    From the Gram matrix of the fields F and their products with an orthonormal basis of the others.
+    """
+    lengths, turn = np.linalg.eigh(within - shared.conj().T @ shared)
+    least = max(_NEW_SHARE**2 * np.linalg.norm(within, 2), 1e-300)
+    directions = turn[:, lengths > least].conj().T
+    return np.linalg.solve(
+        np.linalg.cholesky(directions @ within @ directions.conj().T), directions
+    )
