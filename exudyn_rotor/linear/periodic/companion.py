@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+from exudyn_rotor.threads import eig
 
 # so large a left vector is that of a defective eigenvalue
 _LARGE = 1e100
@@ -103,12 +104,18 @@ class Companion:
     @cached_property
     def _solved(self) -> tuple[np.ndarray, np.ndarray]:
         """Eigenvalues, and vectors z as columns of unit length."""
-        return np.linalg.eig(self.A)
+        return eig(self.A)
 
     @cached_property
     def _left(self) -> np.ndarray:
         """Left eigenvectors as rows."""
-        return _inverse(self._solved[1])
+        values, z = self._solved
+        sense = np.sign(values.imag)[..., None]
+        # real and imaginary parts of conjugate pairs, which stand side by side, +i first
+        rows = _inverse(np.where(_transposed(sense) < 0.0, -z.imag, z.real))
+        real, imaginary = np.roll(rows, 1, axis=-2), np.roll(rows, -1, axis=-2)
+        pairs = 0.5 * np.where(sense > 0.0, rows - 1j * imaginary, real + 1j * rows)
+        return np.where(sense == 0.0, rows, pairs)
 
     @cached_property
     def _amounts(self) -> np.ndarray:

@@ -35,9 +35,9 @@ def resolved(values: np.ndarray, errors: np.ndarray) -> np.ndarray:
     return np.where(np.abs(values) <= errors, 0.0, values)
 
 
-def resolution_of(values: np.ndarray) -> float:
-    """Return the size below which differences of eigenvalues are round-off [1/s]."""
-    return float(_SPLIT * np.abs(values).max(initial=0.0))
+def resolution_of(values: np.ndarray) -> np.ndarray:
+    """Return the size below which differences of eigenvalues (…, k) are round-off [1/s]."""
+    return _SPLIT * np.abs(values).max(axis=-1, initial=0.0)
 
 
 def quadratic_modes(
@@ -68,37 +68,46 @@ def quadratic_modes(
         If the mass matrix is not positive definite, or the eigenvalues are not finite.
     """
     companion, size = Companion.of(M, D, K, rounding), len(M)
-    found, known = [], None
-    every_value, every_state = companion.modes()
-    clear = _errors_of_vectors(every_value, every_state[:, :size], M, D, K) <= _CLEAR
-    solutions = zip(every_value, every_state, *companion.errors, clear, strict=True)
-    for index, (values, states, errors, bounds, good) in enumerate(solutions):
-        resolution = resolution_of(values)
-        values = merged(resolved(values, errors), states, resolution)
-        chosen = _one_of_each_pair(values, size)
-        vectors = states[:size, chosen].astype(complex)
-        vectors /= np.linalg.norm(vectors, axis=0)
-        rest = ~good[chosen]
+    found, states = companion.modes()
+    errors, bounds = companion.errors
+    resolutions = resolution_of(found)
+    parts = zip(resolved(found, errors), states, resolutions, strict=True)
+    values = np.array([merged(*each) for each in parts])
+    chosen = _one_of_each_pair(values, size)
+    values, bounds = (np.take_along_axis(X, chosen, axis=1) for X in (values, bounds))
+    vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
+    vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
+    doubtful = _errors_of_vectors(found, chosen, vectors, M, D, K) > _CLEAR
+    doubtful[values == 0.0] = False
+    known = None
+    for system in zip(values, vectors, doubtful, D, K, strict=True):
+        of_system, shapes, rest, damping, stiffness = system
         if np.any(rest):
-            given = values[chosen[rest]], vectors[:, rest]
-            vectors[:, rest] = inverse_iterated(*given, M, D[index], K[index])
-        free = values[chosen] == 0.0
-        known = vectors[:, free] = free_motions(M, K[index], vectors[:, free], known)
-        found.append((values[chosen], vectors, resolution, bounds[chosen]))
-    return found
+            given = of_system[rest], shapes[:, rest]
+            shapes[:, rest] = inverse_iterated(*given, M, damping, stiffness)
+        free = of_system == 0.0
+        known = shapes[:, free] = free_motions(M, stiffness, shapes[:, free], known)
+    return list(zip(values, vectors, resolutions, bounds, strict=True))
 
 
 def _errors_of_vectors(
-    values: np.ndarray, vectors: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
+    found: np.ndarray,
+    chosen: np.ndarray,
+    vectors: np.ndarray,
+    M: np.ndarray,
+    D: np.ndarray,
+    K: np.ndarray,
 ) -> np.ndarray:
-    """Return estimated relative errors of vectors (s, k, j), shape (s, j).
+    """Return estimated relative errors of vectors (s, k, j), which are the `chosen` (s, j).
 
-    The residual ``(λ²M + λD + K) x`` over that of a change of λ to the nearest other one, or zero.
+    The residual ``(λ²M + λD + K) x`` over that of a change of λ to the nearest other one that was
+    `found` (s, 2k), or zero.
     """
+    values = np.take_along_axis(found, chosen, axis=1)
     rates, inertia = values[:, None, :], M @ vectors
-    residual = rates**2 * inertia + rates * (D @ vectors) + K @ vectors
-    apart = np.abs(values[:, :, None] - values[:, None, :])
-    apart[:, np.arange(values.shape[1]), np.arange(values.shape[1])] = np.inf
+    residual = rates * (rates * inertia + D @ vectors) + K @ vectors
+    apart = np.abs(values[:, :, None] - found[:, None, :])
+    np.put_along_axis(apart, chosen[:, :, None], np.inf, axis=2)
     sizes = np.abs(values)
     moved = 2.0 * sizes * np.minimum(apart.min(axis=2), sizes) * np.linalg.norm(inertia, axis=1)
     return np.linalg.norm(residual, axis=1) / np.maximum(moved, 1e-300)
@@ -172,10 +181,10 @@ def merged(values: np.ndarray, states: np.ndarray, resolution: float) -> np.ndar
 def repeated(values: np.ndarray, resolution: float) -> list[np.ndarray]:
     """Return the indices of values that `resolution` does not tell apart, group by group."""
     order = np.argsort(values.imag, kind="stable")
-    near = np.diff(values.imag[order]) <= resolution
-    if not np.any(near):
-        return []
-    edges = np.flatnonzero(np.diff(near, prepend=False, append=False))
+    ascending = values.imag[order]
+    near = np.zeros(len(order) + 1, dtype=bool)
+    near[1:-1] = ascending[1:] - ascending[:-1] <= resolution
+    edges = np.flatnonzero(near[1:] != near[:-1])
     result = []
     for first, last in edges.reshape(-1, 2):
         left = order[first : last + 1]
@@ -188,20 +197,22 @@ def repeated(values: np.ndarray, resolution: float) -> list[np.ndarray]:
 
 
 def _one_of_each_pair(values: np.ndarray, count: int) -> np.ndarray:
-    """Return the indices of `count` values that stand for all, ascending in |Im λ|.
+    """Return the indices (s, count) of values (s, 2k) that stand for all, ascending in |Im λ|.
 
     Raises
     ------
     ValueError
         If the values are not conjugate pairs and an even number of real ones.
     """
-    upper = np.flatnonzero(values.imag > 0.0)
-    real = np.flatnonzero(values.imag == 0.0)
-    real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
-    chosen = np.concatenate([real, upper])
-    if len(chosen) != count or not np.all(np.isfinite(values)):
+    real = values.imag == 0.0
+    places = np.argsort(np.lexsort((-values.real, ~real)), axis=1)  # real ones first, descending
+    chosen = (values.imag > 0.0) | (places < real.sum(axis=1, keepdims=True) // 2)
+    counts = chosen.sum(axis=1)
+    counts = np.where(np.isfinite(values).all(axis=1), counts, 0)
+    if np.any(counts != count):
         raise ValueError(
-            f"{len(chosen)} pairs of eigenvalues were found where there are {count}; "
+            f"{counts[counts != count][0]} pairs of eigenvalues were found where there are {count}; "
             "the matrices may be badly scaled: check the units"
         )
-    return chosen[np.lexsort((values[chosen].real, values[chosen].imag))]
+    order = np.lexsort((values.real, values.imag))
+    return order[np.take_along_axis(chosen, order, axis=1)].reshape(len(values), count)
