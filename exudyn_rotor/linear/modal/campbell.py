@@ -224,24 +224,27 @@ def _classified(
 
     Overdamped ones, which have the inertial frequency 0, stand behind the others.
     """
-    solved = []
-    for entry, (vectors, *named) in zip(modes, content.named_at(modes, speeds), strict=True):
-        lowest = replace(entry, vectors=vectors).columns(np.arange(count))
-        inertial, codes, diameters = (array[:count] for array in named)
-        growth, resolution = lowest.values.real, lowest.resolution
-        moves = oscillates(growth, inertial, resolution)
-        inertial = np.where(moves, inertial, 0.0)
-        key = _ranks(inertial) if seen else np.arange(count)
-        order = np.lexsort((key, ~moves & (growth < -resolution)))
-        solved.append(_Solved(lowest, inertial, codes, diameters).columns(order))
-    return solved
+    vectors, *named = zip(*content.named_at(modes, speeds), strict=True)
+    inertial, codes, diameters = (np.array([row[:count] for row in rows]) for rows in named)
+    growth = np.array([entry.values[:count].real for entry in modes])
+    resolution = np.array([[entry.resolution] for entry in modes])
+    moves = oscillates(growth, inertial, resolution)
+    inertial = np.where(moves, inertial, 0.0)
+    key = _ranks(inertial) if seen else np.broadcast_to(np.arange(count), inertial.shape)
+    order = np.lexsort((key, ~moves & (growth < -resolution)))
+    solved = zip(modes, vectors, inertial, codes, diameters, order, strict=True)
+    return [
+        _Solved(replace(entry, vectors=shapes), *found).columns(chosen)
+        for entry, shapes, *found, chosen in solved
+    ]
 
 
 def _ranks(frequencies: np.ndarray) -> np.ndarray:
-    """Return the rank of each frequency, one and the same where only rounding tells them apart."""
-    order = np.argsort(frequencies, kind="stable")
-    ascending, ranks = frequencies[order], np.zeros(len(order), dtype=np.int64)
-    ranks[order[1:]] = np.cumsum(np.diff(ascending) > _SAME * ascending[1:])
+    """Return the rank of each frequency in its row, one where only rounding tells some apart."""
+    order = np.argsort(frequencies, axis=1, kind="stable")
+    ascending, ranks = np.take_along_axis(frequencies, order, axis=1), np.zeros_like(order)
+    larger = np.diff(ascending) > _SAME * ascending[:, 1:]
+    np.put_along_axis(ranks, order[:, 1:], np.cumsum(larger, axis=1), axis=1)
     return ranks
 
 
@@ -269,12 +272,10 @@ def _splits(
         alike = all(len(entry.modes.orders) == 1 for entry in solved)
     else:  # supports that stand still differ from turning ones at a speed only
         alike = space.at(_SLOW).is_constant
+    inertial, codes, diameters = (np.array(rows) for rows in list(zip(*solved, strict=True))[1:])
     if not alike:
-        return np.zeros((len(solved), len(solved[0].inertial)))
-    return np.array(
-        [pair_splits(content, entry.modes.vectors, entry.modes.orders, *entry[1:])
-         for entry in solved]
-    )  # fmt: skip
+        return np.zeros(inertial.shape)
+    return pair_splits(content, [e.modes.central for e in solved], inertial, codes, diameters)
 
 
 def _lowest(

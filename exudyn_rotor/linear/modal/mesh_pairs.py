@@ -7,21 +7,22 @@ whirl, as those of a round one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from exudyn_rotor.linear.modal.resonance import CIRCULAR, PAIR
+from exudyn_rotor.linear.modal.resonance import PAIR
 from exudyn_rotor.linear.modal.whirl import MIXED, WhirlContent
 
 
 def pair_splits(
     content: WhirlContent,
-    vectors: np.ndarray,
-    orders: np.ndarray,
+    vectors: Sequence[np.ndarray],
     frequencies: np.ndarray,
     codes: np.ndarray,
     diameters: np.ndarray,
 ) -> np.ndarray:
-    """Return the relative distance to the other mode of each pair, shape (k,).
+    """Return the relative distance to the other mode of each pair at each speed, shape (s, k).
 
     Positive at the lower mode, negative at the upper one, 0 for single modes. Those of a pair are
     less than 1 % apart and planar, and combined they turn one way and the other.
@@ -29,33 +30,25 @@ def pair_splits(
     Parameters
     ----------
     content : WhirlContent
-    vectors : ndarray, shape (h, c, k)
-        Harmonics of the modes.
-    orders : ndarray of int, shape (h,)
-    frequencies, codes, diameters : ndarray, shape (k,)
+    vectors : sequence of ndarray, each (c, k)
+        Modes of equations that do not change in time, one array for each speed.
+    frequencies, codes, diameters : ndarray, shape (s, k)
         In the inertial frame [rad/s], whirl codes and nodal diameters of the modes.
     """
-    splits = np.zeros(len(frequencies))
-    planar = np.flatnonzero((codes == MIXED) & (diameters > 0) & (frequencies > 0.0))
-    ascending = planar[np.argsort(frequencies[planar], kind="stable")]
-    for place, lower in enumerate(ascending):
-        if splits[lower]:
-            continue
-        for upper in ascending[place + 1 :]:
-            split = frequencies[upper] / frequencies[lower] - 1.0
-            if split > PAIR:
-                break
-            alike = diameters[lower] == diameters[upper] and not splits[upper]
-            pair = vectors[:, :, [lower, upper]]
-            if split > 0.0 and alike and _turn_both_ways(content, pair, orders):
-                splits[lower], splits[upper] = split, -split / (1.0 + split)
-                break
+    splits, lower = np.zeros(frequencies.shape), frequencies[:, :, None]
+    apart = frequencies[:, None, :] - lower
+    planar = np.where((codes == MIXED) & (frequencies > 0.0), diameters, 0)
+    alike = (planar[:, :, None] == planar[:, None, :]) & (planar > 0)[:, :, None]
+    places = np.nonzero((apart > 0.0) & (apart <= PAIR * lower) & alike)
+    places = np.transpose(places)[np.lexsort((apart[places], frequencies[places[:2]], places[0]))]
+    if not places.size:
+        return splits
+    sides = (
+        np.stack([vectors[place[0]][:, place[side]] for place in places], axis=1)[None]
+        for side in (1, 2)
+    )
+    for row, low, high in places[content.turn_both_ways(*sides, np.array([0]))]:
+        if splits[row, low] == splits[row, high] == 0.0:
+            split = frequencies[row, high] / frequencies[row, low] - 1.0
+            splits[row, [low, high]] = split, -split / (1.0 + split)
     return splits
-
-
-def _turn_both_ways(content: WhirlContent, pair: np.ndarray, orders: np.ndarray) -> bool:
-    """Return whether combinations of two motions turn one way each."""
-    energy = content.energies(content.polarised(pair, orders))
-    mean = np.einsum("o,hok->k", content.orders, energy)
-    size = np.einsum("o,hok->k", np.abs(content.orders), energy)
-    return bool(mean.min() < -CIRCULAR * size.min() and mean.max() > CIRCULAR * size.min() > 0.0)

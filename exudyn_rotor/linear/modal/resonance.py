@@ -39,8 +39,8 @@ _SAME = 1e-7
 _NO_INERTIA = 1e-6
 # deviation from K − Ω²B, relative to K, that differences in a scene may leave
 _QUADRATIC = 1e-6
-# two critical speeds this close are looked at as a pair; share of a mean wave number that turns
-PAIR, CIRCULAR = 1e-2, 0.8
+# two critical speeds this close are looked at as a pair
+PAIR = 1e-2
 _BRACKETS = 200
 _MOST_ROUNDS = 20
 Entry = TypeVar("Entry")
@@ -369,14 +369,8 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
 def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
     if 0.0 not in entry.multiples or not np.array_equal(entry.multiples, other.multiples):
         return False
-    vectors = np.stack([entry.vectors, other.vectors], axis=2)
-    combined = content.polarised(vectors, entry.multiples)
-    energy = content.energies(combined)
-    seen = np.add.outer(entry.multiples, content.orders)
-    whole = np.maximum(content.whole_energy(combined), 1e-300)
-    mean = np.tensordot(seen, energy, 2) / whole
-    size = np.tensordot(np.abs(seen), energy, 2) / whole
-    return bool(mean.min() < -CIRCULAR * size.min() and mean.max() > CIRCULAR * size.min() > 0.0)
+    vectors = entry.vectors[:, :, None], other.vectors[:, :, None]
+    return bool(content.turn_both_ways(*vectors, entry.multiples)[0])
 
 
 def _same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:

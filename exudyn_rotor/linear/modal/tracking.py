@@ -67,38 +67,32 @@ def track(
     last = _Motions.of(modes[0], weigh)
     for step in range(1, len(modes)):
         change = abs(speeds[step] - speeds[step - 1])
-        cost = np.full((count, count), np.inf)
-        choice = np.zeros((count, count), dtype=np.int64)
-        same = np.zeros((count, count), dtype=bool)
-        copies = list(_copies(modes[step], speeds[step], weigh))
-        together = _of_one_value(modes[step])
-        at_rest = 0.0 in (speeds[step - 1], speeds[step])
-        # at rest nothing turns, and all harmonics are one motion
-        before = last.together() if at_rest else last
-        for number, (frequency, motions) in enumerate(copies):
-            likeness = before.likeness(motions.together() if at_rest else motions)
-            jump = np.abs(frequency[None, :] - signed[:, None])
-            allowed = _STEEPEST * change + 1e-3 * np.abs(signed[:, None]) + modes[step].resolution
-            entry = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
-            better = entry < cost
-            cost[better], choice[better] = entry[better], number
-            alike = (likeness if together is None else likeness @ together) >= _LEAST_LIKENESS
-            alike &= jump <= _MOST_CHANGES * allowed
-            alike |= _both_at_rest(signed, frequency)
-            same[better] = alike[better]
-        rows, matched = linear_sum_assignment(cost)
+        frequencies, copies = zip(*_copies(modes[step], speeds[step], weigh), strict=True)
+        frequencies, together = np.array(frequencies), _of_one_value(modes[step])
+        before, after = last, copies
+        if 0.0 in (speeds[step - 1], speeds[step]):
+            # at rest nothing turns, and all harmonics are one motion
+            before, after = last.together(), [copy.together() for copy in copies]
+        likeness = np.array([before.likeness(copy) for copy in after])
+        jump = np.abs(frequencies[:, None, :] - signed[:, None])
+        allowed = _STEEPEST * change + 1e-3 * np.abs(signed[:, None]) + modes[step].resolution
+        cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
+        choice = np.argmin(cost, axis=0)
+        rows, matched = linear_sum_assignment(np.min(cost, axis=0))
         columns[step, rows] = matched
-        continued[step, rows] = same[rows, matched]
         used = choice[rows, matched]
-        signed = np.array([copy[0] for copy in copies])[used, matched]
-        last = _Motions.chosen([copy[1] for copy in copies], used, matched)
+        same = (likeness if together is None else likeness @ together) >= _LEAST_LIKENESS
+        same &= jump <= _MOST_CHANGES * allowed
+        same |= _at_rest(signed)[:, None] & _at_rest(frequencies)[:, None, :]
+        continued[step, rows] = same[used, rows, matched]
+        signed = frequencies[used, matched]
+        last = _Motions.chosen(copies, used, matched)
     return Tracks(columns, continued)
 
 
-def _both_at_rest(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Return True for pairs of free motions, whose shapes are arbitrary, shape (k, k)."""
-    rest = [np.abs(values) <= _NO_FREQUENCY * np.abs(values).max() for values in (before, after)]
-    return rest[0][:, None] & rest[1]
+def _at_rest(frequencies: np.ndarray) -> np.ndarray:
+    """Return True for free motions, whose shapes are arbitrary."""
+    return np.abs(frequencies) <= _NO_FREQUENCY * np.abs(frequencies).max(axis=-1, keepdims=True)
 
 
 def _of_one_value(modes: FloquetModes) -> np.ndarray | None:
@@ -135,14 +129,12 @@ class _Motions:
     @classmethod
     def chosen(cls, copies: Sequence[_Motions], used: np.ndarray, columns: np.ndarray) -> _Motions:
         """Return motions of which number i is column ``columns[i]`` of copy ``used[i]``."""
-        parts = []
-        for name in ("vectors", "weighed"):
-            part: dict[int, np.ndarray] = {}
-            for number in np.unique(used):
-                places = np.flatnonzero(used == number)
-                for m, X in getattr(copies[number], name).items():
-                    part.setdefault(m, np.zeros_like(X))[:, places] = X[:, columns[places]]
-            parts.append(part)
+        parts: tuple[dict[int, np.ndarray], ...] = {}, {}
+        for number, copy in enumerate(copies):
+            if np.any(used == number):
+                for part, given in zip(parts, (copy.vectors, copy.weighed), strict=True):
+                    for m, X in given.items():
+                        part[m] = part.get(m, 0.0) + X[:, columns] * (used == number)
         return cls(*parts, copies[0].norms[columns])
 
     def moved(self, shift: int) -> _Motions:

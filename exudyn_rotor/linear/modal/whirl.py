@@ -41,6 +41,8 @@ DIAMETER_SHARE = 0.7
 _STATIC = 1e-7
 # share of |λ| below which a frequency is that of critical damping
 _NO_OSCILLATION = 1e-6
+# share of the mean wave number that turns one way in one motion of a pair
+_CIRCULAR = 0.8
 _SAMPLES = 800
 _MANY = 100_000  # entries of vectors
 
@@ -145,6 +147,30 @@ class WhirlContent:
         combined = span @ np.linalg.solve(lower.conj().T, directions)
         return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
 
+    def turn_both_ways(
+        self, first: np.ndarray, second: np.ndarray, orders: np.ndarray
+    ) -> np.ndarray:
+        """Return whether combinations of two motions turn one way each, shape (j,).
+
+        Of each pair, one of `first` and one of `second` (h, c, j); `orders` (h,) as in
+        :meth:`polarised`. The mean wave number of a combination, over its mean size, is a quotient
+        of two Hermitian forms; it takes all values between their two eigenvalues, which have to
+        lie on both sides of ``±0.8``.
+        """
+        one, other = (self.waves @ self._chosen(vectors)[:, None] for vectors in (first, second))
+        products = [
+            np.sum(a.conj() * b, axis=2) for a, b in ((one, one), (other, other), (one, other))
+        ]
+        seen = np.add.outer(orders, self.orders)
+        mean, size = (
+            np.array([np.tensordot(weights, product, 2) for product in products])
+            for weights in (seen, np.abs(seen))
+        )
+        beyond = [mean + sign * _CIRCULAR * size for sign in (1.0, -1.0)]
+        determinants = [(a * b).real - np.abs(c) ** 2 for a, b, c in beyond]
+        # zero where both are the same motion
+        return np.max(determinants, axis=0) < -1e-12 * (size[0] + size[1]).real ** 2
+
     def named(self, modes: FloquetModes, speed: float) -> Named:
         """Return vectors, repeated modes as waves of one sense, and what :meth:`classify` does.
 
@@ -235,7 +261,8 @@ class WhirlContent:
         code[weaker > MIXED_SHARE * stronger] = MIXED
         wave = np.broadcast_to(n, energy.shape).reshape(flat.shape)[best, columns]
         code[(turns.reshape(flat.shape)[best, columns] == 0) & (wave != 0)] = STATIC
-        code = np.where(wave == 0, self._without_waves(vectors), code)
+        still = wave == 0
+        code[still] = self._without_waves(vectors[:, :, still])
         code[stands] = FOUNDATION
         unseen = total <= 1e-12 * np.max(total, initial=0.0)
         code[unseen] = UNKNOWN

@@ -75,7 +75,7 @@ def quadratic_modes(
     values = np.array([merged(*each) for each in parts])
     chosen = _one_of_each_pair(values, size)
     values, bounds = (np.take_along_axis(X, chosen, axis=1) for X in (values, bounds))
-    vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
+    vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2).astype(complex)
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
     doubtful = _errors_of_vectors(found, chosen, vectors, M, D, K) > _CLEAR
     doubtful[values == 0.0] = False

@@ -251,12 +251,12 @@ LINEAR = [
     *mutations(
         "linear/modal/mesh_pairs.py",
         "test_mesh_pairs.py",
-        ("the upper mode of a pair stands for both", "= split, -split", "= -split, split"),
-        (
-            "motions of one sense taken for a pair",
-            "mean.max() > CIRCULAR * size.min() > 0.0",
-            "mean.max() < CIRCULAR * size.min()",
-        ),
+        ("the upper mode of a pair stands for both", "= split, -split /", "= -split, split /"),
+    ),
+    *mutations(
+        "linear/modal/whirl.py",
+        "test_mesh_pairs.py",
+        ("motions of one sense taken for a pair", "np.max(determinants, axis=0) <", "0.0 *"),
     ),
     *mutations(
         "linear/stability/growth.py",
