@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from exudyn_rotor import SolidRotor, Support, campbell
+from exudyn_rotor import SolidRotor, Support, campbell, linear_model
+from exudyn_rotor.linear.modal.whirl import WhirlContent
 
 
 def bent(splits: tuple[float, float]) -> SolidRotor:
@@ -48,3 +49,16 @@ def test_pairs_part_where_the_rotor_turns():
     np.testing.assert_allclose(result.splits[1], result.splits[0], atol=1e-3)
     tracked = result.tracked()
     np.testing.assert_array_equal(np.sort(tracked.splits, axis=1), np.sort(result.splits, axis=1))
+
+
+@pytest.mark.parametrize(("short", "both"), [(-1.0j, False), (-0.2j, False), (1.0j, True)])
+def test_what_turns_both_ways(short, both):
+    """A forward circle of one point beside an ellipse of the other with axes 1 and ``±short``.
+
+    Of an ellipse (1, −ir) the mean wave number is ``2r/(1 + r²)``; backward alone it is below −0.8.
+    """
+    content = WhirlContent.of(linear_model(bent((0.0, 0.0))))
+    circle, ellipse = np.zeros((2, 1, 6, 1), dtype=complex)
+    circle[0, :2, 0], ellipse[0, 3:5, 0] = (1.0, -1.0j), (1.0, short)
+    assert content.turn_both_ways(circle, ellipse, np.array([0])) == both
+    assert not content.turn_both_ways(ellipse, ellipse, np.array([0]))

@@ -207,12 +207,12 @@ def _one_of_each_pair(values: np.ndarray, count: int) -> np.ndarray:
     real = values.imag == 0.0
     places = np.argsort(np.lexsort((-values.real, ~real)), axis=1)  # real ones first, descending
     chosen = (values.imag > 0.0) | (places < real.sum(axis=1, keepdims=True) // 2)
-    counts = chosen.sum(axis=1)
-    counts = np.where(np.isfinite(values).all(axis=1), counts, 0)
-    if np.any(counts != count):
+    counts = np.where(np.isfinite(values).all(axis=1), chosen.sum(axis=1), 0)
+    wrong = counts[counts != count]
+    if wrong.size:
         raise ValueError(
-            f"{counts[counts != count][0]} pairs of eigenvalues were found where there are {count}; "
-            "the matrices may be badly scaled: check the units"
+            f"{wrong[0]} pairs of eigenvalues were found where there are {count}; the matrices may "
+            "be badly scaled: check the units"
         )
     order = np.lexsort((values.real, values.imag))
     return order[np.take_along_axis(chosen, order, axis=1)].reshape(len(values), count)
