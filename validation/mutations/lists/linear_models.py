@@ -255,8 +255,8 @@ LINEAR_MODELS = [
         "test_campbell_frames.py",
         (
             "waves of the other sense",
-            "np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (u1 - 1j * u2)",
-            "np.sqrt(0.5) * (u1 - 1j * u2), np.sqrt(0.5) * (u1 + 1j * u2)",
+            "np.sqrt(0.5) * (u1 + 1j * u2), np.sqrt(0.5) * (v1 - 1j * v2)",
+            "np.sqrt(0.5) * (u1 - 1j * u2), np.sqrt(0.5) * (v1 + 1j * v2)",
         ),
     ),
     *mutations(
