@@ -175,20 +175,6 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/modal/resonance.py",
-        "test_campbell_kinds.py",
-        (
-            "phases of a pair told apart against the harmonics",
-            "seen = np.add.outer(entry.multiples, content.orders)",
-            "seen = np.subtract.outer(entry.multiples, content.orders)",
-        ),
-        (
-            "any two close critical speeds are a pair",
-            "return bool(mean.min() < -CIRCULAR * size.min() and",
-            "return bool(mean.min() < CIRCULAR + size.min() and",
-        ),
-    ),
-    *mutations(
         "linear/modal/campbell.py",
         "test_campbell_kinds.py",
         (
@@ -255,7 +241,13 @@ LINEAR = [
     ),
     *mutations(
         "linear/modal/whirl.py",
-        "test_mesh_pairs.py",
+        "test_mesh_pairs.py test_campbell_kinds.py",
+        (
+            "phases of a pair told apart against the harmonics",
+            "        seen = np.add.outer(orders, self.orders)\n        mean, size",
+            "        seen = np.subtract.outer(orders, self.orders)\n        mean, size",
+        ),
+        ("any two close motions are a pair", "sign * _CIRCULAR * size", "sign * 0.0 * size"),
         ("motions of one sense taken for a pair", "np.max(determinants", "np.min(determinants"),
     ),
     *mutations(
