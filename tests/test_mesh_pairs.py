@@ -51,7 +51,9 @@ def test_pairs_part_where_the_rotor_turns():
     np.testing.assert_array_equal(np.sort(tracked.splits, axis=1), np.sort(result.splits, axis=1))
 
 
-@pytest.mark.parametrize(("short", "both"), [(-1.0j, False), (-0.2j, False), (0.2j, False), (1.0j, True)])
+@pytest.mark.parametrize(
+    ("short", "both"), [(-1.0j, False), (-0.2j, False), (0.2j, False), (1.0j, True)]
+)
 def test_what_turns_both_ways(short, both):
     """A forward circle of one point beside an ellipse of the other with axes 1 and ``±short``.
 
