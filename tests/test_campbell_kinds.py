@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
+from models import disc_rotor
 from test_campbell_frames import SHAFT, point_mass, rings
 
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speed_map, critical_speeds
@@ -10,6 +11,7 @@ from exudyn_rotor.linear.modal.whirl import FORWARD
 from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 
 def test_overdamped_motions_stand_behind_the_others():
@@ -44,6 +46,17 @@ def test_free_motions_keep_their_names(stiffness):
     for row, words in enumerate(result.whirl):
         free = words[result.frequencies_inertial[row] == 0.0]
         assert sorted(free) == ["axial", "torsional"]
+
+
+def test_motions_of_a_free_rotor_have_no_damping():
+    rotor = disc_rotor()
+    reduced = rotor.reduce(craig_bampton_modes(rotor, 2, coupling="RBE3"))
+    result = campbell(reduced, [0.0, 100.0, 600.0], accuracy=None)
+    free = result.frequencies_inertial == 0.0
+    assert np.count_nonzero(free, axis=1).tolist() == [6, 5, 5]
+    assert not np.any(result.growth[free])
+    assert not np.any(result.damping_ratio[free])
+    assert not np.any(result.log_decrement[free])
 
 
 def test_free_motions_of_periodic_equations_are_those_without_force():

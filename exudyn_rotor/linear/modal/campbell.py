@@ -310,7 +310,9 @@ def _collected(
     # adding zero turns −0 into 0
     eigenvalues = np.array([entry.values for entry in modes]) + 0.0
     inertial = np.array(inertial)
-    growth = eigenvalues.real
+    resolution = np.array([[entry.resolution] for entry in modes])
+    neutral = (inertial == 0.0) & (np.abs(eigenvalues.real) <= resolution)
+    growth = np.where(neutral, 0.0, eigenvalues.real)
     ratio, decrement = damping_of(growth, inertial)
     return Campbell(
         speeds=speeds,
