@@ -10,6 +10,11 @@ is the shaft inside them. The spools are hollow about solid, with a bearing betw
 the matrices of each, and here their gyroscopic matrices are multiplied by speeds of their own. The
 same spools side by side are geared by ROSS's ``MultiRotor`` with spur gears: with a helix its
 direction of the mesh has ``sin α sin β`` along the axis, and is not of unit length.
+
+A published dual spool is beside them: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees,
+Dynamics of Rotating Machines, Cambridge 2010, Example 6.6.1. Its data are those of
+``examples/chapter06/example_06_06_01.py`` in github.com/alegrettiLeonardo/RotorStudio (34caca6),
+which repeats the book's script; results are ROSS's, one element from station to station as there.
 """
 
 from __future__ import annotations
@@ -53,6 +58,27 @@ GEARS = {
         "inner": [(0.0, 2e7, 200.0, 2e7), (0.8, 1e7, 200.0, 0.0)],
         "outer": [(0.24, 2e7, 200.0, 2e7), (0.6, 3e7, 200.0, 0.0)],
     },
+}  # fmt: skip
+
+PUBLISHED = {
+    "material": {"youngsModulus": 2.07e11, "poissonsRatio": 0.3, "density": 8300.0},
+    "ratios": {"inner": 1.0, "outer": 1.5},
+    # discs: station, mass, transverse and polar moment; bearings: station, k and c along x and y
+    "rotors": {
+        "inner": {
+            "stations": [0.0, 0.076, 0.159, 0.254, 0.324, 0.406, 0.457, 0.508],
+            "bore": 0.0, "diameter": 0.03,
+            "discs": [[1, 10.5, 0.043, 0.086], [6, 7.0, 0.034, 0.068]],
+            "bearings": [[0, 26e6, 52e6, 20.0, 20.0], [7, 18e6, 36e6, 20.0, 20.0]],
+        },
+        "outer": {
+            "stations": [0.152, 0.203, 0.279, 0.356, 0.406], "bore": 0.05, "diameter": 0.06,
+            "discs": [[1, 7.0, 0.021, 0.042], [3, 3.5, 0.013, 0.026]],
+            "bearings": [[0, 18e6, 36e6, 20.0, 20.0]],
+        },
+    },
+    "between": {"inner": 5, "outer": 4, "stiffness": 9e6, "damping": 20.0},
+    "rpm": [0.0, 3000.0, 9000.0, 15000.0],  # of the inner one
 }  # fmt: skip
 
 
@@ -194,6 +220,36 @@ def geared_results() -> dict:
     return {**GEARS, **found, "coupling": coupling.tolist(), "shapes": shapes.T.tolist()}
 
 
+def published(speed: float) -> dict[str, list[float]]:
+    """Return the lowest exponents of the published dual spool at a speed of the inner one."""
+    data, blocks, first = PUBLISHED["material"], [], {}
+    young, poisson = data["youngsModulus"], data["poissonsRatio"]
+    material = ross.Material(
+        name="published", rho=data["density"], E=young, G_s=young / (2.0 * (1.0 + poisson))
+    )
+    for name, one in PUBLISHED["rotors"].items():
+        size = {"idl": one["bore"], "odl": one["diameter"], "material": material}
+        elements = [ross.ShaftElement(L=length, **size) for length in np.diff(one["stations"])]
+        discs = [ross.DiskElement(n=n, m=m, Id=Id, Ip=Ip) for n, m, Id, Ip in one["discs"]]
+        bearings = [
+            ross.BearingElement(n=n, kxx=kx, kyy=ky, cxx=cx, cyy=cy)
+            for n, kx, ky, cx, cy in one["bearings"]
+        ]
+        made = ross.Rotor(elements, discs, bearings)
+        first[name] = sum(len(block[0]) for block in blocks)
+        lateral = [made.number_dof * n + i for n in range(len(made.nodes)) for i in (0, 1, 3, 4)]
+        cut, rate = np.ix_(lateral, lateral), PUBLISHED["ratios"][name] * speed
+        damping = made.C(speed) + rate * made.G()
+        blocks.append((made.M(speed)[cut], damping[cut], made.K(speed)[cut]))
+    M, D, K = (la.block_diag(*each) for each in zip(*blocks, strict=True))
+    between, pair = PUBLISHED["between"], np.array([[1.0, -1.0], [-1.0, 1.0]])
+    for i in range(2):
+        ends = [first[name] + 4 * between[name] + i for name in first]
+        K[np.ix_(ends, ends)] += between["stiffness"] * pair
+        D[np.ix_(ends, ends)] += between["damping"] * pair
+    return exponents(M, D, K)
+
+
 def main() -> None:
     """Write the reference file."""
     data = {
@@ -209,6 +265,10 @@ def main() -> None:
         },
         "critical": {"inner": critical(1.5, 1.0), "outer": critical(1.5, 1.5)},
         "geared": geared_results(),
+        "published": {
+            **PUBLISHED,
+            "exponents": [published(np.pi / 30.0 * rpm) for rpm in PUBLISHED["rpm"]],
+        },
     }
     target = Path(__file__).with_suffix(".json")
     target.write_text(json.dumps(data, indent=1) + "\n")
