@@ -22,6 +22,7 @@ import scipy.linalg
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.journal_start import journal_start
+from exudyn_rotor.linear.models.own_spin import OwnSpin
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.probe import Probe, linearised, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
@@ -198,7 +199,8 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         Raises
         ------
         UnconvergedError
-            As :meth:`at`, and where loads do not repeat with every revolution.
+            As :meth:`at`, where loads do not repeat with every revolution, and where nothing holds
+            the own spin of a rotor with an elastic drive against a torque.
         """
         with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
             _check_period(self, probe)
@@ -279,8 +281,9 @@ def _about_steady_motion(
     angles = 2.0 * np.pi * np.arange(samples) / samples
     orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
     waves = np.exp(1j * np.outer(angles, orders))
-    Y = journal_start(scene, speed, orders)
-    for _ in range(_MOST_ITERATIONS):
+    Y, middle = journal_start(scene, speed, orders), np.flatnonzero(orders == 0)[0]
+    spin = OwnSpin.of(scene, [scene.interface_motion(name) for name in scene.interfaces])
+    for iteration in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
         terms = [_terms(*entry) for entry in _scaled(points)]
@@ -290,11 +293,18 @@ def _about_steady_motion(
         if scene.about == "given":
             return system, orders, Y
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples
-        change, left = _solved(hill_matrices(system, orders)[2], -residual.ravel())
-        change = change.reshape(Y.shape)
+        K = hill_matrices(system, orders)[2]
+        change, left = (X.reshape(Y.shape) for X in _solved(K, -residual.ravel()))
+        if spin is not None:
+            forces = np.mean([point[4] for point in points], axis=0)
+            least = spin.least_stiffness(system.K[0], forces, probe.rounding)
+            least = np.inf if iteration == 0 else least  # there are no forces before
+            twist = _solved(K, spin.torque(orders))[0].reshape(Y.shape)
+            torque = spin.drive_torque(twist[middle], (Y + change)[middle], least)
+            change = change - torque * twist
         Y = Y + change
         metres = np.sqrt(np.diag(system.M[0]) / scene.mass)
-        if np.abs(left.reshape(Y.shape) / metres).max() > _UNHELD * scene.mass:
+        if np.abs(left / metres).max() > _UNHELD * scene.mass:
             break
         moved = np.abs(change * metres)
         sizes = np.abs(Y * metres).max(axis=1)
@@ -303,6 +313,8 @@ def _about_steady_motion(
         # what the equations need is the motion to a share of their step of differences
         counts = probe.step if tolerance == _AT_REST else max(sizes.max(), _SMALLEST)
         if moved.max() < tolerance * counts:
+            if spin is not None and tolerance != _AT_REST:
+                spin.check_held(torque, _UNHELD * np.sqrt(scene.mass), speed)
             limit = tolerance * max(sizes.max(), counts)
             return (system, orders, Y) if sizes[[0, 1, -2, -1]].max() <= limit else None
     raise UnconvergedError(
@@ -347,20 +359,13 @@ def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> Terms | No
     return terms
 
 
-def _marker_nodes(body: RotorBody, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return an interface's three virtual nodes (3, 3) and their motion (3, 3, m), in its axes."""
+def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
+    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
     nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
     marker_body = body.mbs.GetObject(body.objects["marker_body"])
     columns = np.asarray(marker_body["modeBasis"])
-    return (
-        np.reshape(marker_body["referencePositions"], (-1, 3))[nodes],
-        columns.reshape(len(columns) // 3, 3, -1)[nodes],
-    )
-
-
-def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
-    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
-    points, columns = _marker_nodes(body, name)
+    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
+    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
     mean = columns.mean(axis=0)
     turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
     rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]

@@ -131,8 +131,8 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
 
 def linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return M, D, K and the residual of y at one angle."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, D, K, the residual of y, and the forces of all but the rotor, at one angle."""
     speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
     T1, T2 = speed * T1, speed**2 * T2
     x, v = T @ y, T @ y_t + T1 @ y
@@ -162,6 +162,7 @@ def linearised(
         T.T @ (2.0 * M @ T1 + rotor_D @ T + rest_D),
         T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T + rest_K + carried),
         T.T @ residual,
+        T.T @ force,
     )
 
 

@@ -33,6 +33,29 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "linear/models/own_spin.py",
+        "test_steady_state.py",
+        (
+            "bearings off the axis hold the own spin",
+            "_MARGIN * lacking + rounding",
+            "0.0 * lacking + rounding",
+        ),
+        (
+            "springs do not hold the own spin",
+            "_MARGIN * lacking + rounding * held",
+            "_MARGIN * lacking + 1e9 * rounding * held",
+        ),
+    ),
+    *mutations(
+        "linear/models/linear_scene.py",
+        "test_steady_state.py",
+        (
+            "own spin is not kept",
+            "change = change - torque * twist",
+            "change = change + 0.0 * twist",
+        ),
+    ),
+    *mutations(
         "linear/models/finer_scene.py",
         "test_basis_in_scenes.py::test_a_scene_errs_as_a_rotor_on_the_same_supports",
         (
