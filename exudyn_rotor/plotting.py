@@ -22,6 +22,8 @@ from exudyn_rotor import checks
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", ":", "-.", (0, (1, 1)))
 
+_WIDEST = 1.1  # a legend, in widths of its axes
+
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 4.5), **options):
     """Return a new figure of pyplot, and its axes; `options` go to ``pyplot.subplots``."""
@@ -232,6 +234,11 @@ def _fit(ax: Axes3D, points: np.ndarray, margin: float) -> tuple[float, float, f
 
 
 def legend_above(ax: Axes, columns: int = 2, handles: list | None = None) -> None:
-    """Put the legend above the axes, where it hides nothing."""
+    """Put the legend above the axes, where it hides nothing, in fewer columns where it is wide."""
     shown = {} if handles is None else {"handles": handles}
-    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, **shown)
+    for ncols in range(columns, 0, -1):
+        legend = ax.legend(
+            loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=ncols, frameon=False, **shown
+        )
+        if legend.get_window_extent().width <= _WIDEST * ax.bbox.width:
+            break

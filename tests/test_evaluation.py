@@ -15,6 +15,7 @@ from exudyn_rotor import (
     anticipated_cross_coupling,
     bearing_masses,
     campbell,
+    plotting,
     separation_margins,
     stability,
     stability_level_one,
@@ -132,6 +133,30 @@ def test_the_picture_shows_range_margin_and_factor():
     assert [text.get_text() for text in ax.texts] == ["AF 9.9"]
     assert ax.patches[0].get_x() == pytest.approx(120.0)
     assert ax.patches[1].get_width() == pytest.approx(0.15 * 120.0, rel=0.01)
+    pyplot.close(ax.figure)
+
+
+def test_peaks_of_one_resonance_have_one_label_in_the_picture():
+    places, peaks = ("a", "b", "c", "d"), [100.0, 101.0, 100.5, 300.0]
+    margins = SeparationMargins(
+        places, peaks, [1e-5, 4e-5, 1e-6, 1e-6], [[99.0, 102.0]] * 4, [9.0, 10.0, np.nan, 4.0],
+        [0.1] * 4, [0.1] * 4, [200.0, 250.0], places, [0.0, 400.0], np.full((4, 2), 1e-7),
+    )  # fmt: skip
+    ax = margins.plot(units="SI")
+    assert [(text.get_text(), text.xy) for text in ax.texts] == [
+        ("AF 9.0–10.0", (101.0, 40.0)),
+        ("AF 4.0", (300.0, 1.0)),
+    ]
+    pyplot.close(ax.figure)
+
+
+def test_legends_of_long_names_stay_within_the_picture():
+    ax = plotting.axes_or_new(None)
+    for n in range(6):
+        ax.plot([0.0, 1.0], label=f"a bearing with a long name, number {n}")
+    plotting.legend_above(ax, 4)
+    ax.figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().x1 <= ax.figure.bbox.x1
     pyplot.close(ax.figure)
 
 

@@ -22,6 +22,7 @@ from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
 
 _CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
+_ONE_LABEL = 0.01  # of the range of speeds: peaks so near each other have one label
 _RIPPLE = 1e-3  # share of its size by which a peak stands above the valleys beside it
 
 
@@ -134,12 +135,9 @@ class SeparationMargins(Result):
         for i, (place, curve) in enumerate(zip(self.observed, self.curves, strict=True)):
             style = {"color": plotting.COLORS[i % 5], "ls": plotting.LINES[i % 5], "lw": 1.4}
             ax.semilogy(shown.speeds(self.speeds), 1e6 * curve, label=place, **style)
-        for peak, size, sides, factor in zip(
-            self.peaks, self.sizes, self.half_power, self.amplification, strict=True
-        ):
+        for size, sides in zip(self.sizes, self.half_power, strict=True):
             ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
-            ax.annotate(f"AF {factor:.1f}", (shown.speeds(peak), 1e6 * size),
-                        textcoords="offset points", xytext=(4, 3), fontsize=8)  # fmt: skip
+        self._annotate(ax, shown)
         low, high = self.operating_range
         sides = [self.required[self.peaks < low], self.required[self.peaks > high]]
         largest = np.array([side.max(initial=0.0) for side in sides])
@@ -149,6 +147,18 @@ class SeparationMargins(Result):
         ax.grid(alpha=0.3, which="both")
         plotting.legend_above(ax, 4)
         return ax
+
+    def _annotate(self, ax: Axes, shown: Units) -> None:
+        """Write amplification factors; peaks at nearly one speed have one label, at the largest."""
+        known = np.flatnonzero(~np.isnan(self.amplification))
+        known = known[np.argsort(self.peaks[known], kind="stable")]
+        apart = np.diff(self.peaks[known]) > _ONE_LABEL * np.ptp(self.speeds)
+        for group in np.split(known, np.flatnonzero(apart) + 1) if known.size else ():
+            factors = sorted({f"{factor:.1f}" for factor in self.amplification[group]}, key=float)
+            top = group[np.argmax(self.sizes[group])]
+            ax.annotate("AF " + "–".join([factors[0], *factors[1:][-1:]]),
+                        (shown.speeds(self.peaks[top]), 1e6 * self.sizes[top]),
+                        textcoords="offset points", xytext=(4, 3), fontsize=8)  # fmt: skip
 
 
 def separation_margins(
