@@ -93,8 +93,8 @@ def test_a_copy_is_not_another_motion():
     shapes = rng.normal(size=(7, 4, 2)) + 1j * rng.normal(size=(7, 4, 2))
     shapes[[0, 1, 5, 6]] = 0.0
     values = np.array([-0.1 + 2.0j, -0.1 + 2.0j + 1j * system.base])
-    unused = np.ones(2)
-    found = hill.HillMotions(values, shapes, orders, unused, 0.0, unused, unused, {})
+    unused, unpaired = np.ones(2), np.zeros(2, dtype=bool)
+    found = hill.HillMotions(values, shapes, orders, unused, 0.0, unused, unused, {}, unpaired)
     both = np.arange(2)
     assert hill._differ(found, both, system.base)
     for steps in (1, -1):  # exp((λ + ipΩ)t) X_m exp(imΩt) has the harmonics Y_m = X_{m + p}

@@ -133,11 +133,24 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
             columns = one_of_each_family(solution, system.speed)
         if columns is None:
             return None
+        columns, paired = _without_conjugates(solution.values, np.sort(columns))
         values = solution.values[columns]
         sizes = _sizes(values, abs(system.speed))
-        return Chosen(columns, values, solution.shapes[:, :, columns], sizes)
+        return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
 
-    return solve_hill(system, choose, tolerance)
+    return solve_hill(system, choose, tolerance).with_conjugates()
+
+
+def _without_conjugates(values: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return columns without conjugates of others among them, and whether those had one.
+
+    Conjugates follow each other.
+    """
+    follows = np.diff(columns, append=-1) == 1
+    paired = follows & (values[columns].imag > 0.0)
+    paired[:-1] &= values[columns[1:]] == values[columns[:-1]].conj()
+    kept = ~np.roll(paired, 1)
+    return columns[kept], paired[kept]
 
 
 def _sizes(values: np.ndarray, speed: float) -> np.ndarray:

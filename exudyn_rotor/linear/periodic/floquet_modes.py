@@ -117,11 +117,12 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     real = columns[alone]
     real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
     columns = np.concatenate([columns[~alone], real])
-    columns = columns[np.lexsort((values[columns].real, values[columns].imag))]
+    order = np.lexsort((values[columns].real, values[columns].imag))
+    columns, paired = columns[order], order < np.count_nonzero(~alone)
     sizes = np.maximum(np.abs(values[columns]), solution.step * abs(speed))
     # what is zero to rounding has no error of truncation that could be told
     sizes = np.where(values[columns] == 0.0, np.inf, sizes)
-    return Chosen(columns, values[columns], shapes[:, :, columns], sizes)
+    return Chosen(columns, values[columns], shapes[:, :, columns], sizes, paired)
 
 
 def _apart(

@@ -84,12 +84,15 @@ class Chosen:
         λ and harmonics, which may be better than those of the solution where copies coincide.
     sizes : ndarray, shape (j,)
         What the error of each λ is relative to [1/s]; infinite where none counts.
+    paired : ndarray of bool, shape (j,)
+        Which stand for their conjugates, too, of other families.
     """
 
     columns: np.ndarray
     values: np.ndarray
     shapes: np.ndarray
     sizes: np.ndarray
+    paired: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +114,8 @@ class HillMotions:
         By how much the first harmonics left out would change λ.
     outer : mapping of int to ndarray, shape (c, j)
         What these harmonics would be.
+    paired : ndarray of bool, shape (j,)
+        Which stand for their conjugates, too, of other families.
     """
 
     values: np.ndarray
@@ -121,6 +126,7 @@ class HillMotions:
     rounding: np.ndarray
     shifts: np.ndarray
     outer: dict[int, np.ndarray]
+    paired: np.ndarray
 
     @property
     def bounds(self) -> np.ndarray:
@@ -136,6 +142,21 @@ class HillMotions:
     def error(self) -> float:
         """The largest of them."""
         return float(np.max(self.errors, initial=0.0))
+
+    def with_conjugates(self) -> HillMotions:
+        """Return the motions, and then the conjugates for which they stand."""
+
+        def both(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
+            return np.concatenate([X, Y[..., self.paired].conj()], axis=-1)
+
+        each = {name: getattr(self, name) for name in ("values", "sizes", "rounding", "shifts")}
+        return replace(
+            self,
+            shapes=both(self.shapes, self.shapes[::-1]),
+            outer={n: both(X, self.outer[-n]) for n, X in self.outer.items()},
+            paired=np.zeros(len(self.paired) + self.paired.sum(), dtype=bool),
+            **{name: both(X, X) for name, X in each.items()},
+        )
 
 
 Choice = Callable[[HillSolution], Chosen | None]
@@ -208,6 +229,7 @@ def _started(
         solution.bounds[columns],
         companion.shifts(load, columns),
         {n: scale * answer for n, answer in outer.items()},
+        chosen.paired,
     )
 
 
@@ -272,8 +294,9 @@ def _in_larger(
 
 
 def _differ(motions: HillMotions, columns: np.ndarray, base: float) -> bool:
-    """Return True if no motion in `columns` is a copy of another, shifted or not."""
-    values, shapes = motions.values, motions.shapes
+    """Return True if no motion in `columns` is a copy of another or a conjugate, shifted or not."""
+    every = motions.with_conjugates()
+    values, shapes = every.values, every.shapes
     apart = values[columns, None] - values
     steps = np.rint(apart.imag / base)
     near = np.abs(apart - 1j * steps * base) <= _SAME * (np.abs(values) + abs(base))

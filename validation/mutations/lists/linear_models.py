@@ -209,6 +209,15 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "linear/periodic/hill.py",
+        "test_stability.py::test_hill_and_floquet_agree",
+        (
+            "two families that become their own conjugates are one",
+            "every = motions.with_conjugates()",
+            "every = motions",
+        ),
+    ),
+    *mutations(
         "linear/periodic/inverse_iteration.py",
         "test_hill.py test_basis_error.py",
         ("eigenvalue moved the other way", "-2.0 * c /", "2.0 * c /"),
