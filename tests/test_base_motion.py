@@ -23,6 +23,7 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
 )
+from exudyn_rotor.multibody.spatial_body import add_spatial_rotor
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 ENDS = ("left", "right")
@@ -159,6 +160,79 @@ def test_loads_are_a_base_that_moves():
     assert np.abs(by_loads - by_motion).max() < 1e-4 * np.abs(by_loads).max()
 
 
+def whole():
+    """Return the rotor of :func:`rigid`, with a heavy spot, unreduced and in a complete basis."""
+    rotor = ring_rotor(0.1, 0.15, 5.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    return rotor, rotor.reduce(24)
+
+
+def shaken(rotor, record=SHAKEN, **options):
+    """Return the displacements of the journals and the spin after 6 ms, and what was added."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **options)
+    (added,) = add_base_motion(mbs, record, body, rotation=options.get("rotation"))
+    add_supports(body, SUPPORTS)
+    mbs.Assemble()
+    settings = recommended_settings(end_time=6e-3, step=2e-4, accuracy=1e-8, body=body)
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    kind, at = exu.OutputVariableType.Displacement, body.formulation.translation_count
+    places = [mbs.GetMarkerOutput(body.marker(name), kind) for name in ENDS]
+    return np.array(places), body.coordinates()[0][at] * body.formulation.has_spin, added
+
+
+@pytest.mark.parametrize(
+    ("options", "loads"),
+    [
+        ({"spin": 200.0, "translation": "none"}, exu.LoadIndex),
+        ({"spin": 200.0, "translation": "free", "rotation": SKEW}, exu.LoadIndex),
+        ({"initial_speed": 90.0, "translation": "in-plane"}, exu.LoadIndex),
+        ({"initial_speed": 90.0, "translation": "none"}, exu.ObjectIndex),
+    ],
+    ids=["no translation", "free, skew", "free spin", "free spin, no translation"],
+)
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+def test_a_full_body_is_shaken_as_a_reduced_one(options, loads):
+    """In a complete basis; three times under a load that Exudyn puts on its mass."""
+    (full, angle, forces), (reduced, other, load) = (shaken(one, **options) for one in whole())
+    assert isinstance(forces, exu.ObjectIndex)
+    assert isinstance(load, loads)
+    np.testing.assert_allclose(full, reduced, rtol=0.0, atol=1e-5 * np.abs(reduced).max())
+    assert angle == pytest.approx(other, abs=1e-9)
+
+
+def test_a_constant_acceleration_is_gravity():
+    """Which turns an eccentric rotor whose spin is free, here by 5e-7 rad."""
+    still, falls = (BaseRecord([0.0, 1.0], [[0.0, a, 0.0]] * 2) for a in (0.0, 9.81))
+    options = {"initial_speed": 20.0, "translation": "none", "initial_angle": 0.4}
+    for rotor in whole():
+        found = shaken(rotor, falls, **options)
+        expected = shaken(rotor, still, gravity=[0.0, -9.81, 0.0], **options)
+        np.testing.assert_allclose(found[0], expected[0], rtol=0.0, atol=1e-12)
+        turned = expected[1] - 0.4 - 20.0 * 6e-3
+        assert abs(turned) > 1e-7
+        assert found[1] == pytest.approx(expected[1], abs=1e-4 * abs(turned))
+
+
+def test_ground_shaken_below_a_free_rotor():
+    """A rotor without markers stays where it is in space, as an eccentric one that does not spin.
+
+    To the second order of the steps.
+    """
+    for rotor in whole():
+        mbs = exu.SystemContainer().AddSystem()
+        body = add_rotor(mbs, rotor, spin=0.0, translation="free", marker_body=False)
+        add_base_motion(mbs, SHAKEN, body)
+        mbs.Assemble()
+        settings = recommended_settings(end_time=0.02, step=1e-4, body=body)
+        settings.solution.file.write = False
+        mbs.SolveDynamic(settings)
+        _, moved = SHAKEN.integrals(np.array([0.02]))
+        found = body.coordinates()[0][:3]
+        np.testing.assert_allclose(found, -moved[0], rtol=0.0, atol=1e-4 * np.abs(moved).max())
+
+
 # ------------------------------------------------------------------ records
 
 
@@ -206,13 +280,13 @@ def test_bad_records_and_calls_are_refused():
         BaseRecord([0.0, 1.0, 2.0], still.T[:2])
     mbs = exu.SystemContainer().AddSystem()
     body, base = add_rotor(mbs, rigid()), add_foundation(mbs, BLOCK)
-    spinning = add_rotor(mbs, rigid(), name="b", translation="none")
+    spatial = add_spatial_rotor(mbs, whole()[0], name="spatial")
     blind = add_foundation(mbs, replace(BLOCK, participation=None))
     loads = mbs.systemData.NumberOfLoads()
     for bodies, match in (
         ([body, base, body], "given twice"),
-        ([spinning], "part of its equations"),
         ([blind], "needs its participation"),
+        ([spatial.body], "is an ObjectFFRF, whose loads by its mass"),
         ([exu.ObjectIndex(99)], "this system has no"),
     ):
         with pytest.raises(ValueError, match=match):

@@ -9,17 +9,26 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import exudyn
-from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass
+import numpy as np
+import scipy.sparse as sp
+from exudyn.itemInterface import (
+    LoadMassProportional,
+    MarkerBodyMass,
+    ObjectGenericODE2,
+    VObjectGenericODE2,
+)
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.multibody.foundation_body import SceneFoundation
-from exudyn_rotor.multibody.full_body import FullRotorBody, reduced_body
+from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.inputs import main_system
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.ties import container, no_jacobian
 
-Moved = RotorBody | SceneFoundation | exudyn.ObjectIndex
+Moved = RotorBody | FullRotorBody | SceneFoundation | exudyn.ObjectIndex
 
 
 def add_base_motion(
@@ -28,7 +37,7 @@ def add_base_motion(
     bodies: Sequence[Moved] | Moved,
     *,
     rotation: ArrayLike | None = None,
-) -> tuple[exudyn.LoadIndex, ...]:
+) -> tuple[exudyn.LoadIndex | exudyn.ObjectIndex, ...]:
     """Shake the ground under a scene: motions become those relative to it.
 
     Every body with mass must be named: rotors, foundations and Exudyn's own. The ground starts at
@@ -39,21 +48,22 @@ def add_base_motion(
     ----------
     mbs : exudyn.MainSystem
     record : BaseRecord
-    bodies : sequence of RotorBody, SceneFoundation or ObjectIndex
+    bodies : sequence of RotorBody, FullRotorBody, SceneFoundation or ObjectIndex
         Everything that has mass.
     rotation : array_like, shape (3, 3), optional
         That of the rotor in :func:`add_rotor`, whose mesh axes are those of the record.
 
     Returns
     -------
-    tuple of LoadIndex
+    tuple of LoadIndex or ObjectIndex
+        The load on each body; for a rotor whose equations hold its weight an object of forces
+        beside them: a full body, one without a marker body, or with a free spin and no translation.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, a body given twice, a foundation without participation, and rotors whose
-        weight is part of their equations: without a marker body, or with a free spin and no
-        translation. Nothing has been added then.
+        For bad input, a body given twice, a foundation without participation, and Exudyn's
+        ``ObjectFFRF``, which has no loads by its mass. Nothing has been added then.
 
     Examples
     --------
@@ -77,19 +87,22 @@ def add_base_motion(
     if len(set(map(int, numbers))) < len(numbers):
         raise ValueError("bodies: one is given twice, and would feel the ground twice")
     load = _load(turned)
-    added = []
-    for number in numbers:
-        marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=number))
-        item = LoadMassProportional(markerNumber=marker, loadVectorUserFunction=load)
-        added.append(mbs.AddLoad(item))
-    return tuple(added)
+    return tuple(
+        _add_forces(body, load) if _has_own_weight(body) else _add_load(mbs, number, load)
+        for body, number in zip(given, numbers, strict=True)
+    )
 
 
-def _number(mbs: exudyn.MainSystem, body: Moved | FullRotorBody) -> exudyn.ObjectIndex:
+def _number(mbs: exudyn.MainSystem, body: Moved) -> exudyn.ObjectIndex:
     """Return the object whose mass is loaded."""
     if isinstance(body, exudyn.ObjectIndex):
         if not 0 <= int(body) < mbs.systemData.NumberOfObjects():
             raise ValueError(f"bodies: this system has no {body}")
+        if mbs.GetObject(body)["objectType"] == "FFRF":
+            raise ValueError(
+                f"bodies: {body} is an ObjectFFRF, whose loads by its mass read memory that "
+                "Exudyn does not set; use an ObjectFFRFreducedOrder, or add_rotor"
+            )
         return body
     if body.mbs is not mbs:
         raise ValueError("bodies: one is in another mbs")
@@ -97,13 +110,48 @@ def _number(mbs: exudyn.MainSystem, body: Moved | FullRotorBody) -> exudyn.Objec
         if body.foundation.participation is None:
             raise ValueError("bodies: the foundation needs its participation")
         return body.objects["marker_body"]
-    form = reduced_body(body, how="reduce the rotor").formulation
-    if "marker_body" not in body.objects or (form.has_spin and form.translation_count == 0):
-        raise ValueError(
-            f"bodies: the weight of rotor {body.name!r} is part of its equations; give it a marker "
-            "body, and translation='free' or a prescribed spin"
+    return body.objects["physics" if _has_own_weight(body) else "marker_body"]
+
+
+def _has_own_weight(body: Moved) -> bool:
+    """Return whether a rotor's weight is part of its equations, or hangs on the ties of a mesh."""
+    if not isinstance(body, RotorItems):
+        return False
+    form = body.formulation
+    free_about_a_point = form.has_spin and form.translation_count == 0
+    bare = "marker_body" not in body.objects
+    return isinstance(body, FullRotorBody) or bare or free_about_a_point
+
+
+def _add_load(
+    mbs: exudyn.MainSystem, number: exudyn.ObjectIndex, load: Callable
+) -> exudyn.LoadIndex:
+    marker = mbs.AddMarker(MarkerBodyMass(bodyNumber=number))
+    return mbs.AddLoad(LoadMassProportional(markerNumber=marker, loadVectorUserFunction=load))
+
+
+def _add_forces(body: RotorItems, load: Callable) -> exudyn.ObjectIndex:
+    """Add an object of forces, without inertia or stiffness, on the nodes of a rotor."""
+    motion, layout = body.plan.node_motion, body.plan.layout
+    empty = container(sp.csr_array((layout.size, layout.size)))
+
+    def forces(mbs, t, item, q, q_t):
+        total = np.zeros(layout.size)
+        unknown = np.asarray(q)[layout.unknowns]
+        total[layout.unknowns] = motion.body_forces(t, unknown, load(mbs, t, None))
+        return total.tolist()
+
+    return body.mbs.AddObject(
+        ObjectGenericODE2(
+            nodeNumbers=body.mbs.GetObject(body.objects["physics"])["nodeNumbers"],
+            massMatrix=empty,
+            dampingMatrix=empty,
+            stiffnessMatrix=empty,
+            forceUserFunction=forces,
+            jacobianUserFunction=no_jacobian(layout.size),
+            visualization=VObjectGenericODE2(show=False),
         )
-    return body.objects["marker_body"]
+    )
 
 
 def _load(record: BaseRecord) -> Callable:

@@ -318,7 +318,7 @@ class FullMotion(Motion):
                 loads -= omega**4 * (terms.K4 @ c)
             force[self.modes] = loads
         if self.has_body_force:
-            self._add_body_force(now, force)
+            self._add_body_force(now.zeta, now.body_acceleration, force)
         if self.formulation.has_spin:
             force[self._spin] += self._spin_torque(omega, c, rate)
         return force

@@ -233,7 +233,7 @@ class Motion:
                 force[self._spin] += now.omega**3 * (now.zeta @ (terms.K4 @ now.zeta_t))
         force[self.translations] = self.weight
         if self.has_body_force:
-            self._add_body_force(now, force)
+            self._add_body_force(now.zeta, now.body_acceleration, force)
         if self.is_coupled:
             force[self.translations] -= now.A @ self._inertia_force(now)
         return force
@@ -308,6 +308,16 @@ class Motion:
             torque -= self._unbalance(now.zeta) @ now.body_acceleration
         return float(torque)
 
+    def body_forces(self, t: float, q: ArrayLike, acceleration: ArrayLike) -> np.ndarray:
+        """Return the forces (size,) of gravity (App. A) or another uniform acceleration [m/s²]."""
+        q, acceleration = self._coordinates(q, "q"), checks.vector(acceleration, "acceleration")
+        form, force = self.formulation, np.zeros(self.size)
+        theta = float(q[self._spin][0]) if form.has_spin else form.spin.value(t)
+        local = (self.orientation @ self._axis.rotation(theta)).T @ acceleration
+        force[self.translations] = self.invariants.mass * (self.free_directions.T @ acceleration)
+        self._add_body_force(q[self.modes], local, force)
+        return force
+
     def _modal_jacobian(self, now: _State) -> tuple[np.ndarray | sp.csr_array, ...]:
         """Return ``−(K − ω²Ĉ + ω⁴K4 + ω̇W)`` and ``−(D + 2ωG)``."""
         inv, terms = self.invariants, self.spin_terms
@@ -326,11 +336,11 @@ class Motion:
         """``mχ* + S*ζ``, the bracket of (65): the static unbalance of the deformed rotor."""
         return self.static_unbalance + self.S1 @ zeta
 
-    def _add_body_force(self, now: _State, force: np.ndarray) -> None:
-        """Add gravity (App. A) and the frame's prescribed acceleration (108)."""
-        force[self.modes] += self.invariants.S.T @ now.body_acceleration
+    def _add_body_force(self, zeta: np.ndarray, local: np.ndarray, force: np.ndarray) -> None:
+        """Add gravity (App. A) and the frame's prescribed acceleration (108), rotor axes."""
+        force[self.modes] += self.invariants.S.T @ local
         if self.formulation.has_spin:
-            force[self._spin] += self._unbalance(now.zeta) @ now.body_acceleration
+            force[self._spin] += self._unbalance(zeta) @ local
 
     def _inertia_force(self, now: _State) -> np.ndarray:
         """Bracket of (66) with the Euler part of a prescribed spin, rotor axes."""
