@@ -86,14 +86,19 @@ class ControlledRotor(ExtendedRotor):
             plain = RotorOnFoundation.of(plain, foundation)
         return cls(plain, tuple(controlled))
 
-    def undamped(self) -> LinearRotor | RotorOnFoundation:
-        """Return the rotor with the static stiffness of its controllers, and without damping."""
+    @property
+    def held(self) -> LinearRotor | RotorOnFoundation:
+        """The rotor with the static stiffness of its controllers."""
         own = 2 * len(self.controlled)
         supports = list(self.plain.supports)
         supports[len(supports) - own :: 2] = [
             Support(one.interface, one.static_stiffness) for one in self.controlled
         ]
-        return self.plain.with_supports(tuple(supports)).undamped()
+        return self.plain.with_supports(tuple(supports))
+
+    def undamped(self) -> LinearRotor | RotorOnFoundation:
+        """Return the rotor with the static stiffness of its controllers, and without damping."""
+        return self.held.undamped()
 
     @property
     def _more(self) -> int:
@@ -113,11 +118,6 @@ class ControlledRotor(ExtendedRotor):
     def standing_interfaces(self) -> tuple[str, ...]:
         """Names of the foundation's points."""
         return self.plain.standing_interfaces
-
-    @property
-    def is_full(self) -> bool:
-        """True where no basis leaves anything out."""
-        return self.plain.is_full
 
     @property
     def base_loads(self) -> np.ndarray | None:

@@ -36,6 +36,16 @@ class ExtendedRotor(ABC):
         """Number of further coordinates."""
 
     @property
+    def held(self) -> LinearRotor | ExtendedRotor:
+        """The rotor without the further coordinates, on what holds it in their place."""
+        return self.plain
+
+    @property
+    def is_full(self) -> bool:
+        """True where no basis of the rotor leaves anything out."""
+        return self.plain.is_full
+
+    @property
     def size(self) -> int:
         """Number of coordinates k."""
         return self.plain.size + self._more

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.finer_rotor import Basis, FinerRotor, finer_rotor
 from exudyn_rotor.linear.models.finer_scene import FinerScene
 from exudyn_rotor.linear.models.finer_train import FinerTrain
@@ -37,6 +39,13 @@ def finer_model(model: LinearModel) -> FinerModel | None:
     if isinstance(model, LinearTrain):
         train = FinerTrain.beside(model)
         return None if train is None else FinerModel(train, train.lacking, train.bases)
+    if isinstance(model, ExtendedRotor):
+        plain = finer_model(model.held)
+        if plain is None:
+            return None
+        equations = plain.equations.with_supports(model.plain.supports)
+        lacking = np.pad(plain.lacking, (0, model.size - model.plain.size))
+        return FinerModel(replace(model, plain=equations), lacking, plain.bases)
     if isinstance(model, LinearScene):
         source = model.body.selection.source
         rotor = finer_rotor(source)

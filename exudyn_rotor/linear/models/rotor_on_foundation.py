@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -41,8 +40,6 @@ class RotorOnFoundation(ExtendedRotor):
     foundation : Foundation
         In modal coordinates, along (n1, n2, e).
     """
-
-    is_full: ClassVar[bool] = False
 
     plain: LinearRotor
     foundation: Foundation

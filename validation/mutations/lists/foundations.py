@@ -41,6 +41,15 @@ FOUNDATIONS = [
         ),
     ),
     *mutations(
+        "linear/models/finer_model.py",
+        "test_basis_on_foundations.py",
+        (
+            "controllers' stiffness counted twice beside a finer basis",
+            "plain.equations.with_supports(model.plain.supports)",
+            "plain.equations",
+        ),
+    ),
+    *mutations(
         "linear/stability/sensitivity.py",
         "test_magnetic_on_foundation.py::test_sensitivity_is_that_of_the_state_space",
         ("sensors do not see the foundation", "in sensed.items()", "in [(0, sensed[0])]"),
