@@ -44,7 +44,7 @@ FOUNDATIONS = [
         "linear/models/finer_model.py",
         "test_basis_on_foundations.py",
         (
-            "controllers' stiffness counted twice beside a finer basis",
+            "controllers held by their static stiffness beside a finer basis",
             "plain.equations.with_supports(model.plain.supports)",
             "plain.equations",
         ),
