@@ -329,6 +329,11 @@ ARGUMENTS: dict[str, Callable[[World], dict[str, Any]]] = {
         "orientation": np.eye(3),
         "gravity": [0.0, 0.0, -9.81],
     },
+    "Motion.body_forces": lambda w: {
+        "t": 0.0,
+        "q": np.zeros(w.motion.size),
+        "acceleration": [0.0, -9.81, 0.0],
+    },
     "Motion.drive_torque": lambda w: {**_state(w), "zeta_tt": np.zeros(w.motion.size)},
     "Motion.energy": lambda w: _state(w),
     "Motion.forces": lambda w: _state(w),
