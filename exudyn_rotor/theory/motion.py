@@ -86,8 +86,7 @@ class Motion:
         Where the translations and the modal coordinates stand among the unknowns.
     is_coupled, has_body_force : bool
         Whether translations are coupled with other unknowns, and whether gravity or the frame's
-        acceleration acts on any but them. Terms that vanish for this rotor are left out of every
-        step.
+        acceleration acts on any but them. Terms that vanish are left out of every step.
     weight : ndarray
         Gravity on the unknown translations [N].
 
@@ -310,7 +309,8 @@ class Motion:
 
     def body_forces(self, t: float, q: ArrayLike, acceleration: ArrayLike) -> np.ndarray:
         """Return the forces (size,) of gravity (App. A) or another uniform acceleration [m/s²]."""
-        q, acceleration = self._coordinates(q, "q"), checks.vector(acceleration, "acceleration")
+        t, q = checks.number(t, "t", "s"), self._coordinates(q, "q")
+        acceleration = checks.vector(acceleration, "acceleration", "m/s²")
         form, force = self.formulation, np.zeros(self.size)
         theta = float(q[self._spin][0]) if form.has_spin else form.spin.value(t)
         local = (self.orientation @ self._axis.rotation(theta)).T @ acceleration

@@ -381,6 +381,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("ModeBasis", "frequencies"): v.ANY_VALUES,
     ("ModeBasis", "labels"): v.WORDS,
     ("ModeBasis", "stress"): _FIELD,
+    ("Motion.body_forces", "acceleration"): v.VECTOR,
     ("Motion.momentum", "q"): _FIELD,
     ("PointMass", "mass"): v.SIGNED,
     ("PointMass", "node"): v.COUNT,
