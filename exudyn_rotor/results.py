@@ -66,9 +66,9 @@ def numbers(
     return field(metadata=told, **({"default": None, "kw_only": True} if optional else {}))
 
 
-def words(size: int | str, default: Any = MISSING) -> Any:
+def words(size: int | str, default: Any = MISSING, kw_only: bool = False) -> Any:
     """Describe a row of words of a result by its size, see :func:`numbers`."""
-    return field(default=default, metadata={"shape": (size,)})
+    return field(default=default, kw_only=kw_only, metadata={"shape": (size,)})
 
 
 def storable(cls: Class) -> Class:

@@ -268,6 +268,11 @@ class Foundation:
         """Undamped natural frequencies of the foundation alone, ascending [rad/s]."""
         return np.sqrt(scipy.linalg.eigh(self.stiffness, self.mass, eigvals_only=True))
 
+    @cached_property
+    def mode_shapes(self) -> np.ndarray:
+        """Its modes, ascending, as columns (k, k) normalised by the mass [1/√kg]."""
+        return scipy.linalg.eigh(self.stiffness, self.mass)[1]
+
     def __repr__(self) -> str:
         """Return a short summary."""
         low, high = self.frequencies[[0, -1]] / (2.0 * np.pi)
@@ -278,12 +283,12 @@ class Foundation:
 
     def modal(self) -> Foundation:
         """Return the same foundation in the coordinates of its modes, normalised by the mass."""
-        values, T = scipy.linalg.eigh(self.stiffness, self.mass)
+        T = self.mode_shapes
         return replace(
             self,
             mass=np.eye(self.size),
             damping=T.T @ self.damping @ T,
-            stiffness=np.diag(values),
+            stiffness=np.diag(self.frequencies**2),
             points={name: motion @ T for name, motion in self.points.items()},
             participation=None if self.participation is None else self.participation @ T,
         )
@@ -291,9 +296,8 @@ class Foundation:
     def with_damping_ratio(self, ratio: float) -> Foundation:
         """Return the foundation with one damping ratio of all its modes, instead of its damping."""
         checks.number(ratio, "ratio", least=0.0, most=1.0)
-        values, T = scipy.linalg.eigh(self.stiffness, self.mass)
-        rates = self.mass @ T
-        return replace(self, damping=(rates * (2.0 * ratio * np.sqrt(values))) @ rates.T)
+        rates = self.mass @ self.mode_shapes
+        return replace(self, damping=(rates * (2.0 * ratio * self.frequencies)) @ rates.T)
 
     def undamped(self) -> Foundation:
         """Return the foundation without damping."""

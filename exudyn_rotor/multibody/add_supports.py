@@ -42,11 +42,14 @@ class SceneSupport:
         that of the magnets and the controller.
     evaluation : tuple of str
         Who evaluates each of them in a time step.
+    base : SceneFoundation, MarkerIndex, ObjectIndex or None
+        What carries it; None for the ground.
     """
 
     support: Given
     objects: tuple[exudyn.ObjectIndex, ...]
     evaluation: tuple[str, ...]
+    base: Base | None = None
 
     @property
     def uses_python(self) -> bool:
@@ -192,18 +195,18 @@ def _added(
     mbs, parts = body.mbs, []
     if isinstance(support, MagneticBearing):
         items = add_magnetic(body, support, seat, seat.marker(mbs), sensed.marker(mbs))
-        return SceneSupport(support, items, (PYTHON, PYTHON))
+        return SceneSupport(support, items, (PYTHON, PYTHON), seat.base)
     if isinstance(support, Bearing):
         item = bearing_connector(body, support, seat, seat.marker(mbs))
-        return SceneSupport(support, (item,), (PYTHON,))
+        return SceneSupport(support, (item,), (PYTHON,), seat.base)
     across = support.stiffness, support.damping
     tilts = support.tilt_stiffness, support.tilt_damping
     if not any(map(acts, (*across, *tilts))):
-        return SceneSupport(support, (), ())
+        return SceneSupport(support, (), (), seat.base)
     base = seat.marker(mbs)
     if any(map(acts, across)):
         parts.append(displacement_connector(body, support, seat, base))
     if any(map(acts, tilts)):
         parts.append(tilt_connector(body, support, seat, base))
     objects, evaluation = zip(*parts, strict=True)
-    return SceneSupport(support, objects, evaluation)
+    return SceneSupport(support, objects, evaluation, seat.base)

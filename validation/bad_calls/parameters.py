@@ -57,6 +57,7 @@ BY_NAME: dict[str, Kind] = {
     "basis_shifts": v.ANY_VALUES,
     "basis": _FIELD,
     "bearings": _INTERFACES,
+    "beside": v.WORDS,
     "body": v.OBJECT,
     "build": v.FUNCTION,
     "carried_prestress": v.OBJECT,

@@ -12,7 +12,7 @@ points.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -103,6 +103,12 @@ class ControlledRotor(ExtendedRotor):
     @property
     def _more(self) -> int:
         return sum(one.size for one in self.controlled)
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """Names of the coordinates of a foundation, then of controllers."""
+        given = self.plain.beside if isinstance(self.plain, RotorOnFoundation) else ()
+        return given + names_of_controllers((one.interface, one.size) for one in self.controlled)
 
     @property
     def interfaces(self) -> tuple[str, ...]:
@@ -199,3 +205,12 @@ class ControlledRotor(ExtendedRotor):
     def _place(self, index: int) -> int:
         """Return where a controller's pair of supports is among those of the plain rotor."""
         return len(self.plain.supports) - 2 * len(self.controlled) + 2 * index
+
+
+def names_of_controllers(controllers: Iterable[tuple[str, int]]) -> tuple[str, ...]:
+    """Return the names of coordinates of controllers, given their interfaces and sizes."""
+    return tuple(
+        f"controller {index} at {interface}, {number}"
+        for index, (interface, size) in enumerate(controllers, 1)
+        for number in range(1, size + 1)
+    )

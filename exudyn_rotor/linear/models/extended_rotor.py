@@ -46,6 +46,11 @@ class ExtendedRotor(ABC):
         return self.plain.is_full
 
     @property
+    @abstractmethod
+    def beside(self) -> tuple[str, ...]:
+        """Names of the coordinates after those of the rotor's basis."""
+
+    @property
     def size(self) -> int:
         """Number of coordinates k."""
         return self.plain.size + self._more

@@ -76,6 +76,11 @@ class RotorOnFoundation(ExtendedRotor):
         return self.foundation.size
 
     @property
+    def beside(self) -> tuple[str, ...]:
+        """Names of the foundation's modes."""
+        return names_of_foundation(self.foundation)
+
+    @property
     def standing(self) -> np.ndarray:
         """Coordinates of the foundation."""
         return np.arange(self.plain.size, self.size)
@@ -170,6 +175,11 @@ class RotorOnFoundation(ExtendedRotor):
     def supports(self) -> tuple[Support, ...]:
         """Supports between rotor and foundation."""
         return self.plain.supports
+
+
+def names_of_foundation(foundation: Foundation) -> tuple[str, ...]:
+    """Return the names of a foundation's modes as coordinates."""
+    return tuple(f"foundation, {number}" for number in range(1, foundation.size + 1))
 
 
 def _coupling(support: Support, speed: float) -> tuple[Terms, Terms]:

@@ -62,7 +62,8 @@ class UnbalanceResponse(Response):
             One of :attr:`speeds` [rad/s].
         body : RotorBody
             Of the reduced rotor that the response is of, or in the scene that it is of; the system
-            is assembled. Bodies that the response does not know stand still as they are.
+            is assembled. Foundation and controllers of magnetic bearings start with it; bodies that
+            the response does not know stand still as they are.
         angle : float, optional
             Spin angle θ [rad]; the one with which the rotor starts by default.
 
@@ -74,8 +75,8 @@ class UnbalanceResponse(Response):
         Raises
         ------
         TypeError, ValueError
-            For a response of a SolidRotor or of another rotor, a speed at which it was not
-            computed, or a system that is not assembled.
+            For a response of a SolidRotor, of another rotor, or with another foundation or
+            controllers, a speed at which it was not computed, or a system that is not assembled.
         """
         speed = checks.number(speed, "speed", "rad/s")
         reduced_body(body)

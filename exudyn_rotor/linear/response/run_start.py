@@ -3,6 +3,7 @@
 A response keeps the coordinates of its model in harmonics, seen from the rotor: those of the
 reduced rotor's basis x, or those of the scene y. Of a reduced rotor, ``x = F f + T ζ`` with the
 motions F of the frame that its formulation has, and the basis Ψ = Q T of its modal coordinates.
+After x come the modes of a foundation, and pairs of controllers' coordinates, which turn as x does.
 """
 
 from __future__ import annotations
@@ -12,16 +13,22 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.linear.models.controlled_rotor import names_of_controllers
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.multibody.add_supports import SceneSupport
+from exudyn_rotor.multibody.foundation_body import SceneFoundation
 from exudyn_rotor.multibody.full_body import reduced_body
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
-from exudyn_rotor.results import Result, numbers
+from exudyn_rotor.results import Result, numbers, words
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
@@ -40,12 +47,15 @@ class RunStart(Result):
         Harmonics −N … N of the model's coordinates, rotor frame; None for a SolidRotor.
     basis : {'rotor', 'scene'}, optional
         Whether these are of the reduced rotor's basis or of a scene.
+    beside : tuple of str, optional
+        Names of those after the reduced rotor's: of a foundation and of controllers.
     """
 
     coordinates: np.ndarray | None = numbers(
         "abscissa", "harmonics", "coordinates", dtype=complex, optional=True
     )
     basis: str | None = field(default=None, kw_only=True)
+    beside: tuple[str, ...] = words("beside", default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -73,10 +83,12 @@ class RunStart(Result):
         if self.basis == "scene":
             state = scene.state(x, x_t, angle, speed)
         else:
-            (y, turn), (y_t, turn_t) = (_in_body(body, one) for one in (x, x_t))
+            own = x.size - len(self.beside)
+            (y, turn), (y_t, turn_t) = (_in_body(body, one[:own]) for one in (x, x_t))
             # a free spin departs from the mean rotation
             state = scene.state(y, y_t, angle + turn, speed + turn_t)
             state = replace(state, angle=angle, speed=speed)
+            state = _with_beside(body, state, x[own:], x_t[own:])
         return _with_carried_frame(scene, state, angle, speed)
 
     def _computed_at(self, value: float) -> int:
@@ -108,11 +120,20 @@ class RunStart(Result):
         else:
             scene = SceneCoordinates.of(body)
             source = body.selection.source
-            size, known = source.size, source.interfaces
+            names, standing = _beside(body)
+            if names != self.beside:
+                raise ValueError(
+                    f"body: beside rotor {body.name!r} the scene has {len(names)} coordinates of a "
+                    f"foundation and of controllers, the response {len(self.beside)}; give both "
+                    "the same supports, in the same order, and the same foundation"
+                )
+            size = source.size + len(names)
             axes = np.kron(np.eye(2), axes_of(source.axis).T)
-
-            def motion(name: str) -> np.ndarray:
-                return axes @ source.interfaces[name].motion
+            known = standing | {
+                name: np.pad(axes @ entry.motion, ((0, 0), (0, len(names))))
+                for name, entry in source.interfaces.items()
+            }
+            motion = known.__getitem__
 
         rest = scene.rest.copy()
         rest[scene.free[: scene.count]] = 0.0
@@ -136,11 +157,74 @@ class RunStart(Result):
         return bool(off <= _SAME_MOTION * np.abs(self.motion[:, place, :, :3]).max())
 
 
+def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
+    """Return the names of a scene's coordinates beside the rotor, and motions of a foundation.
+
+    The latter are those (6, k) of its points along (n1, n2, e), by all coordinates.
+    """
+    foundation, controllers = _foundation(body), _controllers(body)
+    names = names_of_controllers((one.support.interface, len(at)) for one, at in controllers)
+    if foundation is None:
+        return names, {}
+    given, own = foundation.foundation, body.selection.source.size
+    T = np.kron(np.eye(2), (body.motion.orientation @ axes_of(body.selection.source.axis)).T)
+    points = {
+        ON_FOUNDATION.format(name): np.pad(T @ U @ given.mode_shapes, ((0, 0), (own, len(names))))
+        for name, U in given.points.items()
+    }
+    return names_of_foundation(given) + names, points
+
+
+def _foundation(body: RotorBody) -> SceneFoundation | None:
+    """Return the foundation that carries supports of a rotor; None on the ground.
+
+    Raises
+    ------
+    ValueError
+        Where there are several.
+    """
+    bases = [one.base for one in body.supports if isinstance(one.base, SceneFoundation)]
+    if any(base is not bases[0] for base in bases):
+        raise ValueError(
+            f"body: rotor {body.name!r} stands on several foundations, and a response on one; "
+            "compute the response of the scene"
+        )
+    return bases[0] if bases else None
+
+
+def _controllers(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
+    """Return the magnetic bearings, and where their controllers' coordinates are in the scene."""
+    places = body.mbs.systemData.GetObjectLTGODE2
+    return [
+        (one, np.asarray(places(one.objects[1]), dtype=int))
+        for one in body.supports
+        if isinstance(one.support, MagneticBearing)
+    ]
+
+
+def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:
+    """Add the coordinates of a foundation and of controllers to the state of a rotor."""
+    q, q_t = state.q.copy(), state.q_t.copy()
+    base, first = _foundation(body), 0
+    if base is not None:
+        places = np.asarray(body.mbs.systemData.GetObjectLTGODE2(base.objects["physics"]))
+        T, first = base.foundation.mode_shapes, base.foundation.size
+        q[places], q_t[places] = T @ x[:first], T @ x_t[:first]
+    c, s = np.cos(state.angle), np.sin(state.angle)
+    R, R_t = np.array([[c, s], [-s, c]]), state.speed * np.array([[-s, c], [-c, -s]])
+    for _, places in _controllers(body):
+        of_one = slice(first, first + len(places))
+        pairs, rates = x[of_one].reshape(-1, 2), x_t[of_one].reshape(-1, 2)
+        q[places], q_t[places] = (pairs @ R).ravel(), (rates @ R + pairs @ R_t).ravel()
+        first += len(places)
+    return replace(state, q=q, q_t=q_t)
+
+
 def kept_basis(model: LinearModel) -> str | None:
     """Return the basis of a model's coordinates that a response keeps; None to keep none."""
     if isinstance(model, LinearScene):
         return "scene"
-    return "rotor" if isinstance(model, LinearRotor) else None
+    return "rotor" if isinstance(model, LinearRotor | ExtendedRotor) else None
 
 
 def _in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:

@@ -17,6 +17,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.models.basis_error import BasisError
+from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
@@ -372,7 +373,7 @@ def _folded(motion: Motion) -> Motion:
     return folded
 
 
-def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray | str]:
+def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, object]:
     """Return what a response keeps beside its motion: the level, and what runs begin with."""
     level = {"stiffening": model.stiffening}
     if kept_basis(model) is None:
@@ -382,7 +383,8 @@ def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, np.ndarray
     for row, one in zip(coordinates, solved, strict=True):
         for n, x in one.coordinates.items():
             row[top + n] = x
-    return level | {"coordinates": coordinates, "basis": kept_basis(model)}
+    beside = model.beside if isinstance(model, ExtendedRotor) else ()
+    return level | {"coordinates": coordinates, "basis": kept_basis(model), "beside": beside}
 
 
 def _check(frame: str, tolerance: float, residual: float, accuracy: float | None) -> None:

@@ -41,6 +41,13 @@ FOUNDATIONS = [
         ),
     ),
     *mutations(
+        "linear/response/run_start.py",
+        "test_start_beside.py::test_run_about_a_skew_axis_begins_at_an_angle",
+        ("controllers start turned back", "[[c, s], [-s, c]]", "[[c, -s], [s, c]]"),
+        ("controllers start without the rate of their turning", " + pairs @ R_t", ""),
+        ("a foundation starts at rest", "T @ x[:first], T @ x_t", "T @ x[:first], 0.0 * T @ x_t"),
+    ),
+    *mutations(
         "linear/models/finer_model.py",
         "test_basis_on_foundations.py",
         (
