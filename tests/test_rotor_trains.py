@@ -252,7 +252,7 @@ def test_links_are_where_their_ends_are():
     with pytest.raises(ValueError, match="'C' is unknown"):
         RotorTrain(both, ratios, positions={"C": np.zeros(3)})
     three = {name: rigid(*FIRST, axis=axis) for name, axis in zip("ABC", "zxz", strict=True)}
-    circle = [("A:a", "B:b"), ("B:b", "C:a"), ("C:b", "A:b")]
+    circle = [("A:a", "B:b"), ("C:a", "B:b"), ("C:b", "A:b")]
     links = [Link(one, other, Support(one[-1], 1e5)) for one, other in circle]
     RotorTrain(three, {**ratios, "C": 2.0}, links=links)
     links[2] = Link("C:b", "A:a", Support("b", 1e5))
