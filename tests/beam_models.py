@@ -7,11 +7,10 @@ import scipy.linalg as la
 
 from exudyn_rotor import ReducedRotor, SpinAxis
 from exudyn_rotor.reduction.fields import ReducedInterface
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.mode_kind import RIGID_KINDS
 from exudyn_rotor.theory.invariants import Invariants
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
-_KINDS = (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2, ModeKind.TILT_1, ModeKind.TILT_2)
 
 
 def element(
@@ -84,47 +83,73 @@ class BeamRotor:
             total[1, 2 * at + 1, 2 * at + 1] += polar
         return tuple(total)
 
+    @property
+    def along(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """M and K of the stretch, then of the twist, each (n, n)."""
+        count = len(self.stations)
+        young, density = (self.material[name] for name in ("youngsModulus", "density"))
+        shear = 0.5 * young / (1.0 + self.material["poissonsRatio"])
+        area = 0.25 * np.pi * (self.diameter**2 - self.bore**2)
+        polar = np.pi / 32.0 * (self.diameter**4 - self.bore**4)
+        total = np.zeros((4, count, count))
+        for i, length in enumerate(np.diff(self.stations)):
+            M = density * length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+            K = np.array([[1.0, -1.0], [-1.0, 1.0]]) / length
+            each = area * M, young * area * K, polar * M, shear * polar * K
+            total[:, i : i + 2, i : i + 2] += each
+        for at, mass, _, inertia in self.discs:
+            total[0, at, at] += mass
+            total[2, at, at] += inertia
+        return tuple(total)
+
     def reduced(self, radius: float = 0.02) -> ReducedRotor:
         """Return all of it as a reduced rotor, stations as interfaces '0', '1', …
 
-        In axes that turn, ``2G → J (2M − G)`` and ``C − K2 = M − G``.
+        In axes that turn, ``2G → J (2M − G)`` and ``C − K2 = M − G`` of bending. Coordinates are
+        (x, β) and (y, −α) of the stations, their stretch and their twist.
         """
         M, G, K = self.plane
-        z, one = np.asarray(self.stations), np.ones(len(self.stations))
-        move = np.kron(one, [1.0, 0.0])
-        mass = move @ M @ move
-        tilt = np.column_stack([z, one]).ravel()
-        center = move @ M @ tilt / mass
-        about = tilt - center * move
-        rigid = [q / np.sqrt(q @ M @ q) for q in (move, about)]
-        flexible = la.eigh(K, M)[1][:, 2:]
-        none = np.zeros(len(M))
-        # q = (x, β) in the first plane, (y, −α) in the second
-        T = np.column_stack([
-            np.r_[rigid[0], none], np.r_[none, rigid[0]],
-            np.r_[none, -rigid[1]], np.r_[rigid[1], none],
-            la.block_diag(flexible, flexible),
-        ])  # fmt: skip
-        both = [np.kron(np.eye(2), X) for X in (M, K, M - 0.5 * G, 0.5 * G)]
-        first, second = (np.r_[move, none] @ both[0], np.r_[none, move] @ both[0])
-        P = np.zeros((3, 3, len(T)))
-        P[2, :2] = np.r_[tilt, none] @ both[0], np.r_[none, tilt] @ both[0]
-        across = 0.5 * (tilt - np.kron(z, [1.0, 0.0])) @ G @ tilt
-        J = np.diag([across, across, tilt @ M @ tilt - across])
-        given = {"M": both[0], "K": both[1], "C": both[2], "K2": both[3]}
+        M_a, K_a, M_t, K_t = self.along
+        n = len(self.stations)
+        z, joined = np.asarray(self.stations), la.block_diag
+        parts = {
+            "M": joined(M, M, M_a, M_t),
+            "K": joined(K, K, K_a, K_t),
+            "C": joined(M - 0.5 * G, M - 0.5 * G, np.zeros((2 * n, 2 * n))),
+            "K2": joined(0.5 * G, 0.5 * G, np.zeros((2 * n, 2 * n))),
+            "G": joined(np.kron(_TURN, M - 0.5 * G), np.zeros((2 * n, 2 * n))),
+        }
+        zero = np.zeros((6 * n, 6 * n))
+        move = np.eye(2 * n)[:, ::2].sum(axis=1)
+        tilt = np.column_stack([z, np.ones(n)]).ravel()
+        mass, first_moment = move @ M @ move, move @ M @ tilt
+        center, one = first_moment / mass, np.ones(n)
+        rigid = np.zeros((6 * n, 6))
+        rigid[: 2 * n, 0] = rigid[2 * n : 4 * n, 1] = move
+        rigid[4 * n : 5 * n, 2] = rigid[5 * n :, 3] = one
+        rigid[2 * n : 4 * n, 4], rigid[: 2 * n, 5] = -tilt, tilt
+        momenta = rigid.T @ parts["M"]
+        P = np.zeros((3, 3, 6 * n))
+        P[2, 1], P[2, 0] = -momenta[4], momenta[5]
+        P[0, 1], P[1, 0] = 0.5 * momenta[3], -0.5 * momenta[3]
+        across = 0.5 * one @ M_t @ one
+        inertia = np.diag([across, across, tilt @ M @ tilt - across])
+        rigid[:, 4:] -= center * rigid[:, [1, 0]] * [-1.0, 1.0]
+        given = (K, M, 2), (K, M, 2), (K_a, M_a, 1), (K_t, M_t, 1)
+        flexible = [la.eigh(stiff, inert)[1][:, free:] for stiff, inert, free in given]
+        sizes = np.sqrt(np.einsum("ik,ij,jk->k", rigid, parts["M"], rigid))
+        T = np.hstack([rigid / sizes, joined(*flexible)])
         inv = Invariants(
             direction=np.array([0.0, 0.0, 1.0]), mass=mass, center=np.array([0.0, 0.0, center]),
-            J=J, S=np.vstack([first, second, 0.0 * first]), P=P, D=0.0 * both[0],
-            G=np.kron(_TURN, M - 0.5 * G), B=0.0 * both[0], **given,
+            J=inertia, S=momenta[:3], P=P, D=zero, B=zero, **parts,
         )  # fmt: skip
         inv = inv.moved(inv.center).in_basis(T)
-        places = {str(i): self._place(i, radius, T) for i in range(len(z))}
+        places = {str(i): self._place(i, radius, T) for i in range(n)}
         axis, foot = SpinAxis(np.array([0.0, 0.0, 1.0])), np.array([0.0, 0.0, center])
-        return ReducedRotor(axis, foot, inv, _KINDS, places, np.eye(len(T)))
+        return ReducedRotor(axis, foot, inv, RIGID_KINDS, places, np.eye(len(T)))
 
     def _place(self, station: int, radius: float, T: np.ndarray) -> ReducedInterface:
-        at, count = np.array([0.0, 0.0, self.stations[station]]), 2 * len(self.stations)
-        motion = np.zeros((6, len(T)))
-        motion[0], motion[4] = T[2 * station], T[2 * station + 1]
-        motion[1], motion[3] = T[count + 2 * station], -T[count + 2 * station + 1]
-        return ReducedInterface(at, at, radius, motion)
+        at, n = np.array([0.0, 0.0, self.stations[station]]), len(self.stations)
+        x, y = T[2 * station : 2 * station + 2], T[2 * (n + station) : 2 * (n + station) + 2]
+        motion = [x[0], y[0], T[4 * n + station], -y[1], x[1], T[5 * n + station]]
+        return ReducedInterface(at, at, radius, np.array(motion))

@@ -12,30 +12,63 @@ from beam_models import BeamRotor
 from spool_models import ROSS
 from train_models import lateral
 
-from exudyn_rotor import Link, RotorTrain, Support, campbell, linear_model, stability
+from exudyn_rotor import (
+    GearMesh,
+    Link,
+    ReducedRotor,
+    RotorTrain,
+    Support,
+    campbell,
+    linear_model,
+    stability,
+)
 
 DATA = ROSS["published"]
 SPEEDS = np.pi / 30.0 * np.array(DATA["rpm"])
 
 
+PLACES = [f"{name}:{DATA['between'][name]}" for name in DATA["rotors"]]
+
+
 @cache
-def dual_spool() -> RotorTrain:
+def spools() -> dict[str, ReducedRotor]:
     """Return both spools of beams."""
-    rotors, supports = {}, {}
+    rotors = {}
     for name, one in DATA["rotors"].items():
         discs = tuple(map(tuple, one["discs"]))
         size = one["bore"], one["diameter"], DATA["material"]
         rotors[name] = BeamRotor(tuple(one["stations"]), *size, discs).reduced()
-        supports[name] = [
-            Support(str(at), np.diag([kx, ky]), np.diag([cx, cy]))
+    return rotors
+
+
+def supports(axial: float) -> dict[str, list[Support]]:
+    """Return the bearings, those at the first station with a stiffness along the axis."""
+    return {
+        name: [
+            Support(str(at), np.diag([kx, ky, axial * (at == 0)]), np.diag([cx, cy, 0.0]))
             for at, kx, ky, cx, cy in one["bearings"]
         ]
+        for name, one in DATA["rotors"].items()
+    }
+
+
+def dual_spool() -> RotorTrain:
+    """Return one spool on the other."""
     between = DATA["between"]
-    first, second = (str(between[name]) for name in rotors)
-    spring = Support(first, between["stiffness"], between["damping"])
-    links = [Link(f"inner:{first}", f"outer:{second}", spring)]
-    origins = dict.fromkeys(rotors, np.zeros(3))
-    return RotorTrain(rotors, DATA["ratios"], supports, links, positions=origins)
+    spring = Support(str(between["inner"]), between["stiffness"], between["damping"])
+    origins = dict.fromkeys(spools(), np.zeros(3))
+    return RotorTrain(
+        spools(), DATA["ratios"], supports(0.0), [Link(*PLACES, spring)], positions=origins
+    )
+
+
+def geared_spools() -> RotorTrain:
+    """Return them side by side, with the gears of the other reference."""
+    gears, (first, second) = ROSS["geared"], ROSS["geared"]["teeth"]
+    given = {name: gears[name] for name in ("stiffness", "pressure_angle", "line_angle")}
+    links = [Link(*PLACES, GearMesh(radii=gears["base_radii"], **given))]
+    ratios = {"inner": 1.0, "outer": -first / second}
+    return RotorTrain(spools(), ratios, supports(DATA["axial"]), links)
 
 
 def test_beams_turn_without_a_mesh_to_average():
@@ -60,3 +93,14 @@ def test_exponents_in_turning_axes_are_those_of_ross(method):
     reference = DATA["exponents"][2]
     exact = np.array(reference["growth"]) + 1j * np.array(reference["frequencies"])
     assert np.abs(copies.ravel() - exact[:, None]).min(axis=1).max() < 1e-6
+
+
+def test_geared_beams_are_those_of_ross():
+    """Bending, torsion and stretch of both, on unequal bearings, with ``MultiRotor``."""
+    found = campbell(geared_spools(), SPEEDS, accuracy=None)
+    for row, reference in enumerate(DATA["geared"]):
+        values = found.growth[row] + 1j * found.frequencies_inertial[row]
+        values = values[values.imag > 1.0]
+        values = values[np.argsort(values.imag)][: len(reference["frequencies"])]
+        np.testing.assert_allclose(values.imag, reference["frequencies"], rtol=1e-8)
+        np.testing.assert_allclose(values.real, reference["growth"], atol=1e-6)

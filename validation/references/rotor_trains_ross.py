@@ -81,6 +81,8 @@ PUBLISHED = {
     "rpm": [0.0, 3000.0, 9000.0, 15000.0],  # of the inner one
 }  # fmt: skip
 
+AXIAL = 1e7  # of the bearings at station 0 of the published rotors, where they are geared
+
 
 def shaft(length: float, bore: float, diameter: float, discs: list[dict], start: float) -> list:
     """Return elements, those inside discs stiffened."""
@@ -183,24 +185,35 @@ def critical(ratio: float, order: float) -> list[float]:
 
 
 def geared() -> ross.MultiRotor:
-    """Return the spools side by side, with gears that weigh nothing."""
-    rotors, nodes = [], []
-    for index, (name, data) in enumerate(SPOOLS.items()):
-        elements, discs = parts(data)
-        nodes.append(node(data, GEARS["position"]))
-        gear = ross.GearElement(
-            n=nodes[-1], m=1e-9, Id=1e-12, Ip=1e-12, n_teeth=GEARS["teeth"][index],
-            base_diameter=2.0 * GEARS["base_radii"][index], pr_angle=GEARS["pressure_angle"],
-        )  # fmt: skip
+    """Return the spools side by side."""
+    given = []
+    for name, data in SPOOLS.items():
         bearings = [
             ross.BearingElement(n=node(data, z), kxx=k, cxx=c, kzz=along)
             for z, k, c, along in GEARS["bearings"][name]
         ]
+        given.append((*parts(data), bearings, node(data, GEARS["position"])))
+    return meshing(given)
+
+
+def meshing(given: list[tuple[list, list, list, int]]) -> ross.MultiRotor:
+    """Return two rotors of elements, discs and bearings, with gears that weigh nothing."""
+    rotors = []
+    for index, (elements, discs, bearings, at) in enumerate(given):
+        gear = ross.GearElement(
+            n=at, m=1e-9, Id=1e-12, Ip=1e-12, n_teeth=GEARS["teeth"][index],
+            base_diameter=2.0 * GEARS["base_radii"][index], pr_angle=GEARS["pressure_angle"],
+        )  # fmt: skip
         rotors.append(ross.Rotor(elements, [*discs, gear], bearings))
     return ross.MultiRotor(
-        *rotors, coupled_nodes=tuple(nodes), gear_mesh_stiffness=GEARS["stiffness"],
-        orientation_angle=GEARS["line_angle"],
+        *rotors, coupled_nodes=tuple(one[3] for one in given),
+        gear_mesh_stiffness=GEARS["stiffness"], orientation_angle=GEARS["line_angle"],
     )  # fmt: skip
+
+
+def of_pair(pair: ross.MultiRotor, speed: float) -> dict[str, list[float]]:
+    """Return the lowest exponents of geared rotors."""
+    return exponents(pair.M(), pair.C(speed) + speed * pair.G(), pair.K(speed), GEARED_MODES)
 
 
 def geared_results() -> dict:
@@ -208,34 +221,48 @@ def geared_results() -> dict:
     pair = geared()
     gears = [*pair.mesh.driving_gear.dof_global_index.values()]
     gears += pair.mesh.driven_gear.dof_global_index.values()
-    coupling, found = pair.coupling_matrix(), {"meshing": [], "apart": []}
+    coupling, apart = pair.coupling_matrix(), []
     for speed in SPEEDS:
         M, D, K = pair.M(), pair.C(speed) + speed * pair.G(), pair.K(speed)
-        found["meshing"].append(exponents(M, D, K, GEARED_MODES))
         K[np.ix_(gears, gears)] -= pair.mesh.stiffness * coupling
-        found["apart"].append(exponents(M, D, K, GEARED_MODES))
+        apart.append(exponents(M, D, K, GEARED_MODES))
     M, K = pair.M(), pair.K(0.0)
     squares, shapes = la.eigh(K, M)
     shapes = shapes[gears][:, squares > 1.0][:, :GEARED_MODES]
-    return {**GEARS, **found, "coupling": coupling.tolist(), "shapes": shapes.T.tolist()}
+    return {
+        **GEARS,
+        "meshing": [of_pair(pair, speed) for speed in SPEEDS],
+        "apart": apart,
+        "coupling": coupling.tolist(),
+        "shapes": shapes.T.tolist(),
+    }
 
 
-def published(speed: float) -> dict[str, list[float]]:
-    """Return the lowest exponents of the published dual spool at a speed of the inner one."""
-    data, blocks, first = PUBLISHED["material"], [], {}
+def published_parts() -> dict[str, tuple[list, list, list]]:
+    """Return elements, discs and bearings of the published rotors."""
+    data = PUBLISHED["material"]
     young, poisson = data["youngsModulus"], data["poissonsRatio"]
     material = ross.Material(
         name="published", rho=data["density"], E=young, G_s=young / (2.0 * (1.0 + poisson))
     )
+    made = {}
     for name, one in PUBLISHED["rotors"].items():
         size = {"idl": one["bore"], "odl": one["diameter"], "material": material}
         elements = [ross.ShaftElement(L=length, **size) for length in np.diff(one["stations"])]
         discs = [ross.DiskElement(n=n, m=m, Id=Id, Ip=Ip) for n, m, Id, Ip in one["discs"]]
         bearings = [
-            ross.BearingElement(n=n, kxx=kx, kyy=ky, cxx=cx, cyy=cy)
+            ross.BearingElement(n=n, kxx=kx, kyy=ky, cxx=cx, cyy=cy, kzz=AXIAL if n == 0 else 0.0)
             for n, kx, ky, cx, cy in one["bearings"]
         ]
-        made = ross.Rotor(elements, discs, bearings)
+        made[name] = elements, discs, bearings
+    return made
+
+
+def published(speed: float) -> dict[str, list[float]]:
+    """Return the lowest exponents of the published dual spool at a speed of the inner one."""
+    blocks, first = [], {}
+    for name, given in published_parts().items():
+        made = ross.Rotor(*given)
         first[name] = sum(len(block[0]) for block in blocks)
         lateral = [made.number_dof * n + i for n in range(len(made.nodes)) for i in (0, 1, 3, 4)]
         cut, rate = np.ix_(lateral, lateral), PUBLISHED["ratios"][name] * speed
@@ -248,6 +275,13 @@ def published(speed: float) -> dict[str, list[float]]:
         K[np.ix_(ends, ends)] += between["stiffness"] * pair
         D[np.ix_(ends, ends)] += between["damping"] * pair
     return exponents(M, D, K)
+
+
+def published_geared() -> list[dict[str, list[float]]]:
+    """Return exponents of the published rotors side by side, geared where the bearing was."""
+    at = PUBLISHED["between"]
+    pair = meshing([(*given, at[name]) for name, given in published_parts().items()])
+    return [of_pair(pair, np.pi / 30.0 * rpm) for rpm in PUBLISHED["rpm"]]
 
 
 def main() -> None:
@@ -267,6 +301,8 @@ def main() -> None:
         "geared": geared_results(),
         "published": {
             **PUBLISHED,
+            "axial": AXIAL,
+            "geared": published_geared(),
             "exponents": [published(np.pi / 30.0 * rpm) for rpm in PUBLISHED["rpm"]],
         },
     }
