@@ -75,14 +75,15 @@ class Companion:
         inverse = la.solve_triangular(lower, np.eye(len(M)), lower=True)
         symmetric = 0.5 * (K + _transposed(K))
         noise = _rounding(symmetric, inverse.T, rounding)
-        stiffness = _congruent(symmetric, inverse.T)
+        stiffness = _congruent(symmetric, inverse.T, 1)
         if not np.all(np.isfinite(stiffness)):
             raise ValueError("the system matrices have entries that are not finite")
         _, turn = np.linalg.eigh(stiffness)
         # Rayleigh quotients: eigh errs by the largest entry, even where that is of other axes
         squares = np.sum(turn * (stiffness @ turn), axis=-2)
         axes = inverse.T @ turn
-        circulatory, damping = _congruent(0.5 * (K - _transposed(K)), axes), _congruent(D, axes)
+        circulatory = _congruent(0.5 * (K - _transposed(K)), axes, -1)
+        damping = sum(_congruent(0.5 * (D + n * _transposed(D)), axes, n) for n in (1, -1))
         sides = np.linalg.norm(circulatory, axis=-2)
         squared = np.maximum(np.abs(squares), np.maximum(sides, noise[..., None]))
         fastest = np.sqrt(squared.max(axis=-1, initial=0.0))
@@ -113,6 +114,7 @@ class Companion:
         sense = np.sign(values.imag)[..., None]
         # real and imaginary parts of conjugate pairs, which stand side by side, +i first
         rows = _inverse(np.where(_transposed(sense) < 0.0, -z.imag, z.real))
+        rows = np.clip(rows, -_LARGE, _LARGE)
         real, imaginary = np.roll(rows, 1, axis=-2), np.roll(rows, -1, axis=-2)
         pairs = 0.5 * np.where(sense > 0.0, rows - 1j * imaginary, real + 1j * rows)
         return np.where(sense == 0.0, rows, pairs)
@@ -136,11 +138,11 @@ class Companion:
     @cached_property
     def _states(self) -> tuple[np.ndarray, np.ndarray]:
         """Unit vectors (x, λx/s), and the length of those that belong to unit vectors z."""
-        displacement = self.axes @ self._amounts
-        rates = (self.values() / self.scale[..., None])[..., None, :]
-        states = np.concatenate([displacement, displacement * rates], axis=-2)
-        lengths = np.linalg.norm(states, axis=-2)
-        return states / lengths[..., None, :], lengths
+        displacement, rates = self.axes @ self._amounts, self.values() / self.scale[..., None]
+        lengths = np.linalg.norm(displacement, axis=-2) * np.hypot(1.0, np.abs(rates))
+        displacement = displacement / lengths[..., None, :]
+        states = np.concatenate([displacement, displacement * rates[..., None, :]], axis=-2)
+        return states, lengths
 
     @cached_property
     def errors(self) -> tuple[np.ndarray, np.ndarray]:
@@ -156,8 +158,7 @@ class Companion:
         most, amounts = np.linalg.norm(self.A, axis=(-2, -1))[..., None], self._amounts
         stiff, damped, stored = self.noises[..., None]
         with np.errstate(over="ignore"):  # of left vectors of a defective eigenvalue
-            left = np.clip(left.real, -_LARGE, _LARGE) + 1j * np.clip(left.imag, -_LARGE, _LARGE)
-            forced = _transposed(left[..., count:])
+            forced = np.ascontiguousarray(_transposed(left[..., count:]))
             condition = np.linalg.norm(left, axis=-1) * np.linalg.norm(z, axis=-2)
             whole = np.linalg.norm(forced, axis=-2) * np.linalg.norm(amounts, axis=-2)
             real = _symmetric_norm(forced, amounts) if self.rounding == EPSILON else whole
@@ -212,15 +213,14 @@ def _symmetric_norm(left: np.ndarray, right: np.ndarray) -> np.ndarray:
     p, q, u, v = left.real, left.imag, right.real, right.imag
 
     def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return np.sum(a * b, axis=-2)
+        return np.einsum("...ij,...ij->...j", a, b)
 
     whole = dot(p, p) * dot(u, u) + dot(q, q) * dot(v, v) - 2.0 * dot(p, q) * dot(u, v)
     crossed = dot(p, u) ** 2 + dot(q, v) ** 2 - 2.0 * dot(p, v) * dot(q, u)
     return np.sqrt(np.maximum(0.5 * (whole + crossed), 0.0))
 
 
-def _congruent(X: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Return ``AᵀXA`` with exactly symmetric and skew parts."""
-    parts = [_transposed(axes) @ (0.5 * (X + sign * _transposed(X))) @ axes for sign in (1.0, -1.0)]
-    signed = zip(parts, (1.0, -1.0), strict=True)
-    return sum(0.5 * (Y + sign * _transposed(Y)) for Y, sign in signed)
+def _congruent(X: np.ndarray, axes: np.ndarray, sign: int) -> np.ndarray:
+    """Return ``AᵀXA`` exactly as symmetric (sign 1) or skew-symmetric (−1) as X is."""
+    Y = _transposed(axes) @ X @ axes
+    return 0.5 * (Y + sign * _transposed(Y))
