@@ -15,6 +15,7 @@ continued fractions, Risken, The Fokker-Planck Equation (1989), Sect. 9.3.
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg.lapack import zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import spacing
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -42,12 +43,12 @@ def solved(
     at = [orders[group] for group in groups]
     parts = [_part(given, group) for group in groups]
     ports = [np.kron(np.eye(group.shape[1]), system.ports) for group in groups]
-    outer, answers, outwards = np.zeros(2 * ports[-1].shape[1:]), [], []
+    outer, answers, outwards = np.zeros((1, *2 * ports[-1].shape[1:])), [], []
     for i in reversed(range(len(groups))):
         own = _blocks(system, values, at[i], at[i])
-        own = _with_adjoint(own, own) - ports[i] @ outer @ ports[i].T
+        own = own - ports[i] @ outer[0] @ ports[i].T
         forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
-        answers.append(np.linalg.solve(own, np.concatenate([forced, parts[i]], axis=-1)))
+        answers.append(_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
         if i > 0:
             inward = _blocks(links, values, at[i - 1], at[i])
             outward = _blocks(links, values, at[i], at[i - 1])
@@ -65,6 +66,20 @@ def solved(
         seen = port.T @ part
         shaped = part.reshape(*part.shape[:3], group.shape[1], -1)
         result[:, group] = shaped.transpose(0, 1, 3, 4, 2)
+    return result
+
+
+def _on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Return ``S⁻¹ F`` and ``S⁻ᴴ G`` of matrices S (…, n, n) and loads F, G (2, …, n, r)."""
+    result = np.empty_like(loads)
+    for place in np.ndindex(matrices.shape[:-2]):
+        # LAPACK itself: one factor for both, and scipy's checks would take longer
+        lu, pivots, singular = zgetrf(matrices[place])
+        if singular:
+            raise np.linalg.LinAlgError("singular matrix")
+        for side, form in enumerate((0, 2)):
+            at = side, *place
+            result[at] = zgetrs(lu, pivots, loads[at], trans=form)[0]
     return result
 
 

@@ -114,8 +114,10 @@ def convolved(terms: Terms, shapes: np.ndarray, orders: np.ndarray) -> np.ndarra
     result = np.zeros_like(shapes)
     for n, X in terms.items():
         steps, between = divmod(n, spacing(orders))
-        if not between:
-            result += X @ shifted(shapes, -steps)
+        kept = len(orders) - abs(steps)
+        if kept > 0 and not between:
+            to, at = max(steps, 0), max(-steps, 0)
+            result[to : to + kept] += X @ shapes[at : at + kept]
     return result
 
 
