@@ -15,6 +15,7 @@ continued fractions, Risken, The Fokker-Planck Equation (1989), Sect. 9.3.
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg as la
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import spacing
@@ -38,18 +39,20 @@ def solved(
         If a matrix is singular.
     """
     # axes: H and Hᴴ, sides above and below the middle, motions, rows, columns
-    given, links = np.stack([loads, forces]), system.projected(system.ports)
+    given = np.stack([loads, forces])
     groups = _groups(len(orders), system.order // spacing(orders))
     at = [orders[group] for group in groups]
     parts = [_part(given, group) for group in groups]
-    ports = [np.kron(np.eye(group.shape[1]), system.ports) for group in groups]
-    outer, answers, outwards = np.zeros((1, *2 * ports[-1].shape[1:])), [], []
+    ports = [la.block_diag(*[system.ports] * group.shape[1]) for group in groups]
+    answers, outwards = [], []
     for i in reversed(range(len(groups))):
         own = _blocks(system, values, at[i], at[i])
-        own = own - ports[i] @ outer[0] @ ports[i].T
+        if answers:
+            own = own - ports[i] @ outer[0] @ ports[i].T
         forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
         answers.append(_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
         if i > 0:
+            links = system.projected(system.ports)
             inward = _blocks(links, values, at[i - 1], at[i])
             outward = _blocks(links, values, at[i], at[i - 1])
             outwards.append(_with_adjoint(outward, inward))
@@ -106,12 +109,10 @@ def _blocks(
     result = np.zeros(shape, dtype=complex)
     for side, row, column in np.ndindex(sides, *counts):
         m = columns[side % len(columns), column]
-        rate = values + 1j * m * system.speed
+        rate = (values + 1j * m * system.speed)[:, None, None]
         n = int(rows[side % len(rows), row] - m)
-        parts = (system.M, rate**2), (system.D, rate), (system.K, np.ones_like(rate))
-        for terms, factor in parts:
-            if n in terms:
-                result[side, :, row, :, column] += factor[:, None, None] * terms[n]
+        M, D, K = (terms.get(n, 0.0) for terms in (system.M, system.D, system.K))
+        result[side, :, row, :, column] = (rate * M + D) * rate + K
     return result.reshape(sides, len(values), *(count * system.size for count in counts))
 
 
