@@ -44,10 +44,10 @@ def solved(
     at = [orders[group] for group in groups]
     parts = [_part(given, group) for group in groups]
     ports = [la.block_diag(*[system.ports] * group.shape[1]) for group in groups]
-    answers, outwards = [], []
+    outer, answers, outwards = None, [], []
     for i in reversed(range(len(groups))):
         own = _blocks(system, values, at[i], at[i])
-        if answers:
+        if outer is not None:
             own = own - ports[i] @ outer[0] @ ports[i].T
         forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
         answers.append(_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
