@@ -9,16 +9,16 @@ from exudyn_rotor import SolidRotor, SpinAxis, add_rotor, recommended_settings
 
 STEP, STEPS = 2e-4, 60  # no more instants than are looked at
 RUBBER = {"youngsModulus": 2.1e9, "poissonsRatio": 0.3, "density": 7850.0}
-AXES = {"x": ([1.0, 0.0, 0.0], [0.0, 0.01, 0.0]), "z": ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])}
+AXES = {"y": ([0.0, 1.0, 0.0], [0.01, 0.0, 0.0]), "z": ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])}
 
 
 def bar(name):
-    """A soft bar of 20 nodes with an unbalance, about z, or about an axis beside it along x."""
+    """A soft bar of 20 nodes with an unbalance, about z, or about an axis beside it along y."""
     along, shift = map(np.array, AXES[name])
     across = np.roll(along, 1)
     low = -0.03 * across - 0.025 * np.roll(across, 1)
     solid = occ.Box(tuple(low), tuple(0.3 * along - low))
-    direction = occ.X if name == "x" else occ.Z
+    direction = occ.Y if name == "y" else occ.Z
     solid.faces.Min(direction).name, solid.faces.Max(direction).name = "left", "right"
     mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.3))
     rotor = SolidRotor.from_ngsolve(mesh, RUBBER, SpinAxis(along, shift), order=1)

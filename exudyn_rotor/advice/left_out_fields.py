@@ -4,7 +4,7 @@ In all nodal displacements the recorded motion ``c = Ψζ`` leaves in (105) and 
 
     r = f − M c̈ − (D + 2ωG) ċ − (K − ω²Ĉ + ω⁴K4 + ω̇W) c + ω²h − ω̇g,
 
-f being the loads at the interfaces, as the equations of motion tell them
+f being the loads where something acts on the rotor, as the equations of motion tell them
 (:mod:`exudyn_rotor.advice.residual`), and the weight. What works on the mass-orthonormal columns Q
 of the rotor, rounding and other loads, is taken out with the inertia forces: ``r − M Q Qᵀ r``. What
 the modes leave out is ``v = K⁺ r``, by inertia relief: the first correction, exact for loads that
@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from exudyn_rotor.advice.residual import interface_loads, recorded_states
+from exudyn_rotor.advice.residual import place_loads, recorded_states
 from exudyn_rotor.advice.run_loads import instants, turned, weight
 from exudyn_rotor.multibody.full_plan import make_full_plan
 from exudyn_rotor.multibody.record import Record
@@ -116,7 +116,10 @@ def left_out_at_nodes(
     loads, zeta, frame = recorded_states(body, record, picked)
     basis = reduced.shapes.matrix @ body.selection.T
     forces = _unbalanced(body, record, picked, solid, basis)
-    forces[:, :count] += _at_interfaces(solid, body, interface_loads(body, loads, size))
+    for place, values in place_loads(body, loads, size):
+        columns = place.load_columns(solid)
+        if columns is not None:
+            forces[:, :count] += columns @ values
     columns, rigid = reduced.shapes.matrix, len(reduced.rigid_kinds)
     forces[:, :count] -= solid.mass @ (columns @ (columns.T @ forces[:, :count]))
     # the static stretch less that of the modes, in their own equilibrium
@@ -140,21 +143,14 @@ def left_out_at_nodes(
     )
 
 
-def _at_interfaces(solid: SolidRotor, body: RotorBody, loads: np.ndarray) -> np.ndarray:
-    """Return loads (6i, s) of the interfaces at the nodes, (3n, s)."""
-    ends = [solid.interfaces[name] for name in body.selection.source.interfaces]
-    parts = zip(ends, np.split(loads, len(ends)) if ends else (), strict=True)
-    at_nodes = np.zeros((solid.nodes.size, loads.shape[1]))
-    for end, part in parts:
-        at_nodes += end.mean_motion(solid.node_count).T @ part
-    return at_nodes
-
-
 def _unbalanced(
     body: RotorBody, record: Record, picked: np.ndarray, solid: SolidRotor, basis: np.ndarray
 ) -> np.ndarray:
     """Return r without M c̈ and loads at interfaces, then ``h`` as a last column, (3n, s + 1)."""
-    setup = replace(body.plan.setup, modal_coordinates=None, modal_velocities=None)
+    # damping in proportion to the mass leaves no force beyond the modes
+    setup = replace(
+        body.plan.setup, modal_coordinates=None, modal_velocities=None, mass_damping=0.0
+    )
     full = make_full_plan(solid, setup).motion
     inv, terms, form = full.invariants, full.spin_terms, body.formulation
     omega, times = record.speed[picked], record.time[picked]

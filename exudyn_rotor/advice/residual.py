@@ -1,19 +1,24 @@
 """What the modes of a run leave out: static response of the interfaces beyond the modes.
 
-The loads F of the interfaces follow from the equations of motion, ``(U T)ᵀ F = f``, in the sense of
-least squares. With R, the flexibility of the attachment modes beyond that of the modes, they deform
-the rotor at its interfaces by ``R F`` more than the run shows. The rotor's own centrifugal load
-stretches it likewise, by Ω² times what its static response has beyond the modes.
+The loads F where something acts on the rotor (:mod:`exudyn_rotor.multibody.load_places`) follow
+from the equations of motion, ``Uᵀ F = f`` with the motion U of these places, in the sense of least
+squares. With R, the flexibility of the attachment modes beyond that of the modes, those at
+interfaces deform the rotor there by ``R F`` more than the run shows. The rotor's own centrifugal
+load stretches it likewise, by Ω² times what its static response has beyond the modes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
+from exudyn_rotor.multibody.load_places import LoadPlace, load_places
 from exudyn_rotor.multibody.record import Record
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.nodal import skew
 
 _SEEN = 1e-3  # singular values below this share of the largest tell nothing about loads
 
@@ -40,8 +45,8 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     bent = motion @ np.where(flexible[:, None], columns, 0.0)
     moved = motion @ columns
     moved += np.tile(np.vstack([frame, np.zeros_like(frame)]), (len(rotor.interfaces), 1))
-    left_out = rest @ interface_loads(body, loads, size)
-    left_out += np.outer(stretch, record.speed[picked] ** 2)
+    left_out = np.outer(stretch, record.speed[picked] ** 2)
+    left_out += rest @ at_interfaces(rotor, place_loads(body, loads, size), len(picked))
     shown = np.tile([True] * 3 + [False] * 3, len(rotor.interfaces))
     missing, *sizes = (
         np.linalg.norm(values[shown], axis=0).max() for values in (left_out, moved, bent)
@@ -49,15 +54,41 @@ def residual_deflection(body: RotorBody, record: Record, size: float) -> float |
     return float(missing / max(sizes)) if max(sizes) else 0.0
 
 
-def interface_loads(body: RotorBody, loads: np.ndarray, size: float) -> np.ndarray:
-    """Return forces and moments at all interfaces (6n, s), mesh axes, turning with the rotor.
+def place_loads(
+    body: RotorBody, loads: np.ndarray, size: float
+) -> list[tuple[LoadPlace, np.ndarray]]:
+    """Return the places of the rotor's loads, with forces and moments there (3 or 6, s).
 
-    `loads` are those of :func:`recorded_states`; `size` [m] makes forces and moments comparable.
+    In mesh axes, which turn with the rotor. `loads` are those of :func:`recorded_states`; `size`
+    [m] makes forces and moments comparable.
     """
-    motion = _motion(body.selection.source)[0]
-    scale = np.tile([1.0] * 3 + [size] * 3, len(motion) // 6)
-    solve = np.linalg.pinv(_equations(body, motion) * scale, rcond=_SEEN)
-    return scale[:, None] * (solve @ loads)
+    places = load_places(body)
+    if not places:
+        return []
+    counts = [len(place.motion) for place in places]
+    scale = np.concatenate([([1.0] * 3 + [size] * 3)[:count] for count in counts])
+    solve = np.linalg.pinv(_equations(body, places) * scale, rcond=_SEEN)
+    found = np.split(scale[:, None] * (solve @ loads), np.cumsum(counts)[:-1])
+    return list(zip(places, found, strict=True))
+
+
+def at_interfaces(
+    rotor: ReducedRotor, found: list[tuple[LoadPlace, np.ndarray]], count: int
+) -> np.ndarray:
+    """Return forces and moments (6n, count) about the reference points of all interfaces.
+
+    `found` is what :func:`place_loads` returns.
+    """
+    names = list(rotor.interfaces)
+    total = np.zeros((len(names), 6, count))
+    for place, values in found:
+        if place.interface is None:
+            continue
+        row = total[names.index(place.interface)]
+        row[: len(values)] += values
+        arm = place.point - rotor.interfaces[place.interface].reference
+        row[3:] += skew(arm) @ values[:3]
+    return total.reshape(6 * len(names), count)
 
 
 def recorded_states(
@@ -92,10 +123,10 @@ def _stretch(rotor: ReducedRotor, body: RotorBody) -> np.ndarray:
     return motion[:, flexible] @ (h[flexible] / rotor.frequencies[flexible] ** 2)
 
 
-def _equations(body: RotorBody, motion: np.ndarray) -> np.ndarray:
-    """Return what loads at the interfaces (6n) do: on the modes, and as forces on the frame."""
-    on_modes = (motion @ body.selection.T).T
-    forces = np.tile(np.hstack([np.eye(3), np.zeros((3, 3))]), len(motion) // 6)
+def _equations(body: RotorBody, places: Sequence[LoadPlace]) -> np.ndarray:
+    """Return what loads at places do: on the modes, and as forces on the frame."""
+    on_modes = np.vstack([place.motion for place in places]).T
+    forces = np.hstack([np.eye(3, len(place.motion)) for place in places])
     e = body.motion.invariants.direction
     free = {0: np.zeros((3, 3)), 2: np.eye(3) - np.outer(e, e), 3: np.eye(3)}
     frame = free[body.formulation.translation_count] @ forces

@@ -106,6 +106,10 @@ def check_run(
     modes and no record of loads, hence none of the rows ``unresisted load``, ``top modes``,
     ``residual``, ``displacement``, ``stress``, ``divergence`` and ``explicit``.
 
+    ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
+    the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
+    what a resonance makes of the modes' error, and how missing modes ring after a sudden start.
+
     ===================  =======  ==================================================================
     name                 limit    meaning
     ===================  =======  ==================================================================

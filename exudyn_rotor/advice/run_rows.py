@@ -18,8 +18,9 @@ from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solid_rotor import SolidRotor
 
 _UNKNOWN = (
-    "not seen are errors of the mesh, loads that are not at interfaces, what a resonance makes of "
-    "the modes' error, and the ringing of missing modes after a sudden start"
+    "not seen are errors of the mesh, loads elsewhere than at interfaces and markers of "
+    "body.add_marker, what a resonance makes of the modes' error, and the ringing of missing modes "
+    "after a sudden start"
 )
 Row = tuple[str, str, float, str]  # name, meaning, value, what to do
 # name, measure of Measures, meaning, what to do

@@ -50,22 +50,28 @@ def add_marker(
         point, motion, radius = _of_interface(body, where)
         if weights is not None:
             raise ValueError("weights: are for mesh nodes; an interface has its own")
+        place = None
     else:
-        point, motion, radius = _of_nodes(body, where, weights, kind)
+        point, motion, radius, place = _of_nodes(body, where, weights, kind)
     motion = np.vstack([motion[:3] - skew(shift) @ motion[3:], motion[3:]])
     marker_body = body.objects["marker_body"]
     if kind == "position":
         nodes = append_nodes(body.mbs, marker_body, (point + shift)[None, :], motion[:3])
         item = MarkerSuperElementPosition(meshNodeNumbers=nodes, weightingFactors=[1.0], **common)
-        return body.mbs.AddMarker(item)
-    axis = SpinAxis(body.frame.B @ body.axis.direction)
-    nodes = append_nodes(body.mbs, marker_body, *virtual_nodes(point + shift, radius, motion, axis))
-    turn = np.eye(4)
-    turn[:3, :3] = body.frame.B
-    item = MarkerSuperElementRigid(
-        meshNodeNumbers=nodes, weightingFactors=[1.0 / 3.0] * 3, localHT=turn, **common
-    )
-    return body.mbs.AddMarker(item)
+    else:
+        axis = SpinAxis(body.frame.B @ body.axis.direction)
+        nodes = append_nodes(
+            body.mbs, marker_body, *virtual_nodes(point + shift, radius, motion, axis)
+        )
+        turn = np.eye(4)
+        turn[:3, :3] = body.frame.B
+        item = MarkerSuperElementRigid(
+            meshNodeNumbers=nodes, weightingFactors=[1.0 / 3.0] * 3, localHT=turn, **common
+        )
+    number = body.mbs.AddMarker(item)
+    if place is not None:
+        body.node_places[int(number)] = place
+    return number
 
 
 def interface_motion(body: RotorItems, name: str) -> tuple[np.ndarray, np.ndarray, float]:
@@ -85,8 +91,8 @@ def _of_interface(body: RotorItems, name: str) -> tuple[np.ndarray, np.ndarray, 
 
 def _of_nodes(
     body: RotorItems, where: Sequence[int], weights: ArrayLike | None, kind: str
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return the same for mesh nodes: weighted means, as Exudyn's marker takes them."""
+) -> tuple[np.ndarray, np.ndarray, float, tuple[np.ndarray, np.ndarray]]:
+    """Return the same for mesh nodes, weighted means as Exudyn's marker takes them; and these."""
     described = "where: an interface, or mesh nodes"
     if not body.mesh_node_count:
         raise ValueError(
@@ -117,4 +123,4 @@ def _of_nodes(
             f"where: the nodes {checks.shown(nodes.tolist())} lie on a line or in a point and show "
             "no rotation; give more nodes, an interface, or kind='position'"
         )
-    return point, motion, float(np.sqrt(0.5 * np.trace(moments)))
+    return point, motion, float(np.sqrt(0.5 * np.trace(moments))), (nodes, share)

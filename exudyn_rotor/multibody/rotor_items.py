@@ -58,6 +58,8 @@ class RotorItems:
         What :func:`exudyn_rotor.add_supports` added.
     drives : list
         What :func:`exudyn_rotor.add_drive` added.
+    node_places : dict
+        By marker number, mesh nodes and weights of markers that ``add_marker`` put there.
     """
 
     mbs: exudyn.MainSystem
@@ -71,6 +73,7 @@ class RotorItems:
     mesh_stress: bool = False
     supports: list = field(default_factory=list, init=False)
     drives: list = field(default_factory=list, init=False)
+    node_places: dict = field(default_factory=dict, init=False)
     record_sensors: dict = field(default_factory=dict, init=False)
     mark: Mark | None = field(default=None, init=False)
 

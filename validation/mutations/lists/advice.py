@@ -174,12 +174,33 @@ ADVICE = [
         ("stretch by the speed", "np.outer(terms.h, omega**2)", "np.outer(terms.h, omega)"),
         ("stretch of the modes added", "forces[:, count:] -= solid", "forces[:, count:] += solid"),
         ("static stress counted twice", "left - speed**2 * stretch", "left"),
-        ("loads at interfaces left out", "at_nodes += end.mean", "at_nodes += 0.0 * end.mean"),
+        (
+            "loads at interfaces left out",
+            "forces[:, :count] += columns @ values",
+            "forces[:, :count] += 0.0 * columns @ values",
+        ),
         (
             "work on the modes left in",
             "(columns.T @ forces[:, :count])",
             "(0.0 * columns.T @ forces[:, :count])",
         ),
+    ),
+    *mutations(
+        "advice/residual.py",
+        "test_errors_at_nodes.py::test_loads_beside_the_reference_point_have_a_moment",
+        ("arm reversed", "row[3:] += skew(arm)", "row[3:] -= skew(arm)"),
+    ),
+    *mutations(
+        "multibody/load_places.py",
+        "test_attachment.py::test_estimate_after_a_run_is_what_the_springs_would_bend",
+        ("interface far off", "return min(found", "return max(found"),
+    ),
+    *mutations(
+        "multibody/load_places.py",
+        "test_errors_at_nodes.py",
+        ("moments of springs", "or kind not in _FORCES", "or True"),
+        ("axes of the marker body", "[turn.T @ part", "[turn @ part"),
+        ("lever of the point reversed", "mean[:3] - skew(arm)", "mean[:3] + skew(arm)"),
     ),
     *mutations(
         "advice/left_out_fields.py",
