@@ -153,8 +153,8 @@ ADVICE = [
         ),
         (
             "centrifugal stretch left out",
-            "left_out += np.outer(stretch, record.speed[picked] ** 2)",
-            "left_out += np.outer(0.0 * stretch, record.speed[picked] ** 2)",
+            "left_out = np.outer(stretch, record.speed[picked] ** 2)",
+            "left_out = np.outer(0.0 * stretch, record.speed[picked] ** 2)",
         ),
         ("stretch of the modes added", ", body) - _stretch(", ", body) + _stretch("),
         (
