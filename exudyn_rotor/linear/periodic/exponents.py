@@ -17,6 +17,7 @@ from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
+from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
@@ -24,6 +25,8 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     fold,
 )
 
+# distance of exponents, over the base, and cosine of shapes, from which families are conjugate
+_SAME_FAMILY, _ALIKE = 1e-3, 0.7
 # decay over Ω above which a motion is gone before the coefficients change
 _GONE = 100.0
 METHODS = ("auto", "floquet", "hill", "eigen")
@@ -133,7 +136,7 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
             columns = one_of_each_family(solution, system.speed)
         if columns is None:
             return None
-        columns, paired = _without_conjugates(solution.values, np.sort(columns))
+        columns, paired = _without_conjugates(solution, columns, system.base)
         values = solution.values[columns]
         sizes = _sizes(values, abs(system.speed))
         return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
@@ -141,16 +144,22 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     return solve_hill(system, choose, tolerance).with_conjugates()
 
 
-def _without_conjugates(values: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return columns without conjugates of others among them, and whether those had one.
-
-    Conjugates follow each other.
-    """
-    follows = np.diff(columns, append=-1) == 1
-    paired = follows & (values[columns].imag > 0.0)
-    paired[:-1] &= values[columns[1:]] == values[columns[:-1]].conj()
-    kept = ~np.roll(paired, 1)
-    return columns[kept], paired[kept]
+def _without_conjugates(
+    solution: HillSolution, columns: np.ndarray, base: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return columns without those of conjugate families of others, and which others these are."""
+    values, shapes = solution.values[columns], solution.shapes[:, :, columns]
+    apart = values - values[:, None].conj()
+    steps = np.rint(apart.imag / base)
+    near = np.triu(np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base), 1)
+    paired, dropped = np.zeros((2, len(columns)), dtype=bool)
+    for one, other in zip(*np.nonzero(near), strict=True):
+        conjugate = shifted(shapes[::-1, :, one].conj(), int(steps[one, other]))
+        sizes = np.linalg.norm(conjugate) * np.linalg.norm(shapes[:, :, other])
+        alike = abs(np.vdot(conjugate, shapes[:, :, other])) > _ALIKE * sizes
+        if alike and not (dropped[one] or paired[one] or dropped[other]):
+            paired[one], dropped[other] = True, True
+    return columns[~dropped], paired[~dropped]
 
 
 def _sizes(values: np.ndarray, speed: float) -> np.ndarray:
