@@ -3,16 +3,28 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from point_rotors import ring_rotor
+from point_rotors import SKEW_AXIS, ring_rotor
+from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
+    Foundation,
     JournalBearing,
+    Mount,
     OilFilm,
+    SolidRotor,
+    Support,
     TiltingPadBearing,
+    add_foundation,
     add_rotor,
     add_supports,
+    bearing_loads,
     grooved_pads,
+    linear_model,
+    recommended_settings,
+    stability,
+    steady_state,
 )
+from exudyn_rotor.theory.axis import SpinAxis
 
 RADIUS, CLEARANCE, SPEED = 50.8e-3, 74.9e-6, 100.0 * np.pi
 GAPS = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])  # of five pads, the load between two
@@ -25,7 +37,11 @@ def film(preload=0.5, **changes):
 
 
 def bearing(load=(0.0, -2079.5), interface="left", **changes):
-    own = {name: changes.pop(name) for name in ("pivot", "whirl_ratio") if name in changes}
+    own = {
+        name: changes.pop(name)
+        for name in ("pivot", "whirl_ratio", "pad_inertia")
+        if name in changes
+    }
     return TiltingPadBearing(interface=interface, load=load, film=film(**changes), **own)
 
 
@@ -90,10 +106,122 @@ def test_pads_that_tilt_do_not_make_a_rotor_whirl():
     assert growths[1] > 5.0
 
 
+# ------------------------------------------------------------------ tilts as coordinates
+
+MASS, INERTIA = 100.0, 3e-4
+THREE = grooved_pads(2.0 * CLEARANCE, np.radians([10.0, 130.0, 250.0]), 0.2, 0.5)
+ENDS = {"left": [0.0, 0.0, -0.15], "right": [0.0, 0.0, 0.15]}
+BLOCK = Foundation.rigid(
+    80.0, [3.0, 4.0, 2.0], [0.0, -0.1, 0.02],
+    [Mount([x, -0.2, z], [2e7, 3e7, 2e7], 2e3) for x in (-0.2, 0.2) for z in (-0.2, 0.2)], ENDS,
+)  # fmt: skip
+
+
+def on_pads(axis=(0.0, 0.0, 1.0), inertia=INERTIA, **options):
+    """Return a rigid rotor, its supports, one of them with three pads, and a load by axis."""
+    turn = Rotation.align_vectors([axis], [[0.0, 0.0, 1.0]])[0].as_matrix()
+    rings = ring_rotor(0.1, 0.15, MASS)
+    whole = np.kron(np.eye(10), turn)
+    rotor = SolidRotor.from_matrices(
+        rings.mass, whole @ rings.stiffness @ whole.T, rings.nodes @ turn.T, axis
+    )
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    gravity = 9.81 * SpinAxis(axis).plane @ [0.0, -1.0]
+    film = OilFilm(RADIUS, RADIUS, 0.02, THREE, "none", nodes=24, axial_nodes=0)
+    load = bearing_loads(rotor, list(ENDS), gravity)[0]
+    pads = TiltingPadBearing(interface="left", film=film, load=load, pad_inertia=inertia, **options)
+    held = Support("right", np.diag([4e7, 6e7, 1e7]), 3e4)
+    return rotor, [pads, held], gravity
+
+
+def scene(rotor, supports, gravity, foundation=None, **options):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, gravity=gravity, **options)
+    base = None if foundation is None else add_foundation(mbs, foundation, gravity=gravity)
+    added = add_supports(body, supports, base)
+    mbs.Assemble()
+    return mbs, body, added
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+@pytest.mark.parametrize(
+    ("axis", "foundation"),
+    [((0.0, 0.0, 1.0), BLOCK), (SKEW_AXIS, None)],
+    ids=["on a block", "skew"],
+)
+def test_scene_and_linear_analyses_agree(axis, foundation):
+    rotor, supports, gravity = on_pads(axis)
+    mbs, body, _ = scene(rotor, supports, gravity, foundation, spin=SPEED)
+    ours, theirs = (
+        stability(model, [SPEED], accuracy=None).exponents[0]
+        for model in (
+            linear_model(rotor, supports=supports, foundation=foundation),
+            linear_model(mbs, body=body),
+        )
+    )
+    assert np.sum(ours.real < -1e3) >= 3  # of the pads
+    for one in ours[ours.imag >= 0.0]:
+        assert np.abs(theirs - one).min() < 1e-6 * max(abs(one), SPEED)
+
+
+def test_light_pads_follow_at_once():
+    """Their films, the tilts eliminated at the speed, are the coefficients of the whirl."""
+    pads = on_pads(inertia=1e-9)[1][0]
+    linear, total = pads.linearised(), 0.0
+    for film, t, mass in zip(linear.films, linear.tangents, linear.masses, strict=True):
+        K, C = (X[:2, :2] for X in film.matrices(SPEED))
+        Z = K + 1j * SPEED * C
+        total = total + Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * SPEED**2)
+    stiffness, damping = pads.coefficients(SPEED)
+    expected = stiffness + 1j * SPEED * damping
+    np.testing.assert_allclose(total, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
+
+
+def run(mbs, end_time, step):
+    settings = recommended_settings(end_time, step)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    return mbs.systemData.GetODE2Coordinates()
+
+
+def test_a_run_stays_in_the_equilibrium():
+    rotor, supports, gravity = on_pads()
+    mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
+    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
+    start, tilts = steady_state(body).state(), supports[0].tilts(SPEED)
+    np.testing.assert_allclose(start.q[places], tilts, rtol=1e-6)
+    body.start_from(start)
+    # the run's own tolerance
+    np.testing.assert_allclose(run(mbs, 0.01, 2e-4)[places], tilts, rtol=1e-4)
+
+
+def test_films_brake_a_free_spin():
+    """Beside the middle of the bearing, before anything moves."""
+    rotor, supports, gravity = on_pads()
+    mbs, body, _ = scene(rotor, supports, 0.0 * gravity, initial_speed=SPEED)
+    spin = body.add_spin_sensor()
+    mbs.Assemble()
+    run(mbs, 1e-7, 2e-8)
+    still = np.zeros(2)
+    torque = sum(one.film.state(still, still, SPEED).torque for one in supports[0].pad_bearings)
+    slower = SPEED - mbs.GetSensorValues(spin)[1]
+    assert slower == pytest.approx(torque / (MASS * 0.1**2) * 1e-7, rel=2e-3)
+
+
+def test_absent_pads_have_no_tilt_to_linearise():
+    loose = grooved_pads(CLEARANCE, np.radians([10.0, 130.0, 250.0]), 0.2)
+    film = OilFilm(RADIUS, RADIUS, 0.02, loose, nodes=36, axial_nodes=0)
+    pads = TiltingPadBearing(interface="left", film=film, load=[0.0, -500.0], pad_inertia=INERTIA)
+    with pytest.raises(ValueError, match=r"pads \[0\] carry nothing at 314"):
+        pads.linearised().films[1].terms(SPEED)
+
+
 def test_refused_input():
     for changes, match in (
         ({"pivot": 1.0}, "pivot: needs"),
         ({"whirl_ratio": 0.0}, "whirl_ratio: needs"),
+        ({"pad_inertia": 0.0}, "pad_inertia: needs"),
         ({"cavitation": "mass-conserving"}, "film: bearing at 'left'"),
     ):
         with pytest.raises(ValueError, match=match):
@@ -108,7 +236,7 @@ def test_refused_input():
     before = mbs.systemData.NumberOfMarkers()
     closed = OilFilm(0.05, 0.05, 0.02, film().pads, "mass-conserving", axial_nodes=0)
     for refused, match in (
-        (bearing(), "give the scene its linearised"),
+        (bearing(), "give pad_inertia, and their tilts become coordinates"),
         (JournalBearing(interface="left", film=closed), "scenes need another cavitation"),
     ):
         with pytest.raises(ValueError, match=match):

@@ -31,6 +31,12 @@ def _finite(axial_nodes: int) -> Kind:
     return lambda name, load: er.JournalBearing(interface=name, film=film, load=load)
 
 
+def _tilting(name: str, load: np.ndarray) -> Given:
+    gaps = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])
+    film = er.OilFilm(**OIL, pads=er.grooved_pads(1e-4, gaps, 0.2, 0.5), axial_nodes=0)
+    return er.TiltingPadBearing(interface=name, film=film, load=load, pad_inertia=1e-5)
+
+
 def _rolling(name: str, load: np.ndarray) -> Given:
     size = {"count": 8, "pitch_radius": 0.033, "element_radius": 0.006, "stiffness": 7e9}
     return er.RollingBearing(interface=name, load=load, damping=500.0, **size)
@@ -55,6 +61,7 @@ KINDS: dict[str, Kind] = {
     ),
     "JournalBearing, one axial profile": _finite(0),
     "JournalBearing, 12 axial nodes": _finite(12),
+    "TiltingPadBearing, 5 pads, one profile": _tilting,
 }
 
 
@@ -89,10 +96,10 @@ def cost(steps: int, repeats: int) -> list[str]:
             bearings = [KINDS[name](end, load) for end, load in pair]
             found.append(_seconds(rotor, bearings, steps, **spins[spin]))
     first = min(times[next(iter(KINDS)), "constant speed"])
-    lines = [f"{'µs per step, two bearings':36}" + "".join(f"{spin:>24}" for spin in spins)]
+    lines = [f"{'µs per step, two bearings':40}" + "".join(f"{spin:>24}" for spin in spins)]
     for name in KINDS:
         best = [min(times[name, spin]) for spin in spins]
-        lines.append(f"{name:36}" + "".join(f"{1e6 * t:15.0f} ({t / first:5.1f})" for t in best))
+        lines.append(f"{name:40}" + "".join(f"{1e6 * t:15.0f} ({t / first:5.1f})" for t in best))
     return lines
 
 

@@ -79,6 +79,8 @@ class Bearing(LoadedBearing):
         See :class:`LoadedBearing`.
     """
 
+    _tried: ClassVar[np.ndarray] = _HIGHER
+
     @property
     def law(self) -> Law:
         """For scenes: the force on the journal [N] by x, y, ẋ, ẏ, θ and Ω, anywhere, unchecked."""
@@ -126,15 +128,18 @@ class Linearised:
     def __call__(self, speed: float) -> np.ndarray:
         """Return the coefficient, shape (2, 2).
 
-        Without an equilibrium, at rest above all, that at the next of some higher speeds: some ask
+        Without an equilibrium, at rest above all, that at the next of some other speeds: some ask
         for the directions that a bearing holds. What asks for its size calls `check_range` before.
         """
-        for tried in (speed, *_HIGHER):
+        for tried in (speed, *self.bearing._tried):
             try:
-                return self.bearing.coefficients(tried)[self.index]
-            except ValueError as error:
+                return self._value(tried)
+            except (ValueError, ArithmeticError) as error:
                 refused = error
         raise refused
+
+    def _value(self, speed: float) -> np.ndarray:
+        return self.bearing.coefficients(speed)[self.index]
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed at which the bearing has no equilibrium, by a ValueError."""

@@ -1,10 +1,12 @@
-"""A linear support with coordinates of its own: what an active bearing is in linear analyses."""
+"""Linear supports with coordinates of their own: active bearings, and pads that tilt."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from exudyn_rotor.bearings.support import Coefficient, Support
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +42,54 @@ class ControlledSupport:
         return 2 * len(self.inertia)
 
     @property
+    def masses(self) -> np.ndarray:
+        """Inertia of every own coordinate, shape (2b,) [kg]."""
+        return np.repeat(self.inertia, 2)
+
+    @property
     def direct_stiffness(self) -> np.ndarray:
         """Stiffness that acts without the controller, shape (2, 2) [N/m]."""
         return self.stiffness[:2, :2]
+
+
+@dataclass(frozen=True, eq=False)
+class PadSupport:
+    """Films of pads that tilt about pivots, with the pads' tilts as own coordinates, which stand.
+
+    A pad's coordinate s is the motion of its bore along the tangent at the pivot; its film acts on
+    ``x − s t``, as a support between the journal and what moves by ``s t``.
+
+    Attributes
+    ----------
+    interface : str
+        The journal.
+    masses : ndarray, shape (p,)
+        Of every pad, its inertia about the pivot over the square of the radius [kg].
+    tangents : ndarray, shape (p, 2)
+        Along (n1, n2).
+    films : tuple of Support
+        Of every pad.
+    static_stiffness : Coefficient
+        Of all, slowly, the tilts eliminated [N/m].
+    """
+
+    interface: str
+    masses: np.ndarray
+    tangents: np.ndarray
+    films: tuple[Support, ...]
+    static_stiffness: Coefficient
+
+    @property
+    def sensor(self) -> str:
+        """The journal's interface."""
+        return self.interface
+
+    @property
+    def size(self) -> int:
+        """Number of own coordinates."""
+        return len(self.masses)
+
+    @property
+    def direct_stiffness(self) -> float:
+        """None: all of it acts on what the pads see."""
+        return 0.0

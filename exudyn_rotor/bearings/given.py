@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.reduction.fields import ReducedInterface
@@ -27,20 +27,21 @@ def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
     Raises
     ------
     TypeError, ValueError
-        For anything else, a bearing without a load, and a magnetic one.
+        For anything else, a bearing without a load, and one with states of its own.
     """
     linear, controlled = linear_supports(supports)
     if controlled:
         raise ValueError(
-            f"supports: the magnetic bearing at {controlled[0].interface!r} has states of its own, "
-            "which this analysis does not take; give a Support with its stiffness and damping"
+            f"supports: the bearing at {controlled[0].interface!r}, magnetic or of pads with "
+            "inertia, has states of its own, which this analysis does not take; give a Support "
+            "with its stiffness and damping, or pads without pad_inertia"
         )
     return linear
 
 
 def linear_supports(
     supports: Sequence[Given] | Given,
-) -> tuple[tuple[Support, ...], tuple[ControlledSupport, ...]]:
+) -> tuple[tuple[Support, ...], tuple[ControlledSupport | PadSupport, ...]]:
     """Return supports for linear analyses, those without and with coordinates of their own.
 
     Raises
@@ -49,15 +50,16 @@ def linear_supports(
         For anything else, and a bearing without a load that needs one.
     """
     linear: list[Support] = []
-    controlled: list[ControlledSupport] = []
+    controlled: list[ControlledSupport | PadSupport] = []
     for given in given_supports(supports):
         one = given if isinstance(given, Support) else given.linearised()
-        (controlled if isinstance(one, ControlledSupport) else linear).append(one)
+        (linear if isinstance(one, Support) else controlled).append(one)
     return tuple(linear), tuple(controlled)
 
 
 def check_interfaces(
-    supports: Iterable[Given | ControlledSupport], known: Mapping[str, Interface | ReducedInterface]
+    supports: Iterable[Given | ControlledSupport | PadSupport],
+    known: Mapping[str, Interface | ReducedInterface],
 ) -> None:
     """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
 
@@ -81,5 +83,5 @@ def check_interfaces(
                 )
 
 
-def _asked(place: str, support: Given | ControlledSupport) -> str:
+def _asked(place: str, support: Given | ControlledSupport | PadSupport) -> str:
     return "" if place == support.interface else f" as that of its sensor, {place!r}"

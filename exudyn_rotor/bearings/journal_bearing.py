@@ -22,9 +22,9 @@ class JournalBearing(Bearing):
 
     Linear analyses take its coefficients in the equilibrium under the load; scenes its force at
     every evaluation, with one axial profile (``axial_nodes=0``) twenty times as long as that of a
-    :class:`ShortJournalBearing`. In scenes the journal's centre has its film inside the
-    circle in which the grid resolves the thickness all around, ``film.clearance − film.thinnest``;
-    beyond, the force goes on by its tangent, so that Newton's method comes back.
+    :class:`ShortJournalBearing`. In scenes the journal's centre has its film where the
+    grid resolves the thickness all around, up to ``film.reach``; beyond, the force goes on by its
+    tangent, so that Newton's method comes back.
 
     Parameters
     ----------
@@ -149,6 +149,8 @@ class _FilmLaw:
             self._empty = state.solution.empty
             return *state.force.tolist(), -state.torque
 
-        if hypot(x, y) <= self._most:
+        distance = hypot(x, y)
+        if distance <= self._most:
             return force(x, y)
-        return by_tangent(force, x, y, self._most, self._step)
+        most = self._film.reach(np.array([x, y]) / distance)
+        return force(x, y) if distance <= most else by_tangent(force, x, y, most, self._step)

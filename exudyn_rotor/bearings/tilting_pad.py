@@ -2,12 +2,13 @@
 
 A pad that tilts by δ about its pivot at the angle φ_p of the bore moves its centre of curvature
 along the bore, by ``s t`` with ``t = (−sin φ_p, cos φ_p)`` and s = −R δ. Its film, that of a fixed
-pad, sees the journal at ``q − s t``. A pad has no inertia here, and its pivot neither friction nor
-flexibility: the force of its film passes through the pivot,
+pad, sees the journal at ``q − s t``. Its pivot has neither friction nor flexibility; with the
+inertia I about it,
 
-    t · F(q − s t, q̇ − ṡ t) = 0.                                                          (1)
+    I/R² s̈ = −t · F(q − s t, q̇ − ṡ t),                                                    (1)
 
-In small whirl with the frequency ν, the film's Z = K + i ν C, the sum over the pads is
+and where a pad rests, or has no inertia, the force of its film passes through the pivot. In small
+whirl of pads without inertia, of the frequency ν and with the films' Z = K + i ν C, the bearing has
 
     Z_b = Σ Z − Z t tᵀZ/(tᵀZ t),   K_b = Re Z_b,   C_b = Im Z_b/ν.                        (2)
 
@@ -18,31 +19,38 @@ J. W. Lund, *Spring and damping coefficients for the tilting-pad journal bearing
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Law
+from exudyn_rotor.bearings.bearing import Bearing, Law, Linearised
+from exudyn_rotor.bearings.controlled_support import PadSupport
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.support import Support
 
-_STEPS, _SHORTER = 60, 8  # of Newton's method, and halvings of one
+_KEPT = 16  # equilibria
+_STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
 _CLOSE = 1e-9  # of the load: it stops there
 _TILTS = 24  # tried, between those at which an edge touches
-_SMALL = 1e-9  # of the largest moment: none
+_SMALL = 1e-9  # of the largest moment, or of a force: none
+_BARELY = 1e-3  # of μ Ω L (R/c)³: the stiffness of a film about to vanish
+_NEAR, _STILL = 8, 1e-12  # steps from the last tilt, and what of the radius counts as none
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TiltingPadBearing(Bearing):
     """Journal bearing whose pads tilt about pivots.
 
-    For linear analyses: stiffness and damping at the whirl's frequency, the pads' motions
-    eliminated. In time a pad's tilt has a history, which a force of place and velocity has not:
-    scenes take :meth:`linearised`, about the middle of the bearing; where the speed varies, a
-    :class:`Support` with a table of the coefficients, which need not be solved for in every step.
+    With `pad_inertia` the pads' tilts are coordinates, in scenes and in linear analyses. Without it
+    linear analyses have stiffness and damping at the whirl's frequency, the tilts eliminated, and
+    scenes, in which a tilt has a history, take :meth:`linearised`, about the middle of the bearing.
 
     Parameters
     ----------
@@ -53,7 +61,10 @@ class TiltingPadBearing(Bearing):
     pivot : float, optional
         Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
     whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance.
+        Frequency of the whirl over the spin speed, 1 for unbalance, of pads without inertia.
+    pad_inertia : float, optional
+        Of each pad about its pivot, along the axis [kg m²]. Light pads follow the journal at once:
+        the smaller it is, the less it matters.
     load : array_like, shape (2,), optional
         Static load on the journal along (n1, n2) [N], which linear analyses need.
 
@@ -77,16 +88,23 @@ class TiltingPadBearing(Bearing):
     True
     """
 
+    _tried: ClassVar[np.ndarray] = np.array([1e3, 1e2, 1e4, 1e5])  # at which most pads carry
+
     film: OilFilm
     pivot: float = 0.5
     whirl_ratio: float = 1.0
-    _last: dict[tuple[float, ...], _Pads] = field(default_factory=dict, init=False, repr=False)
+    pad_inertia: float | None = None
+    _last: dict[tuple[float, ...], _Pads | str] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
         checks.keep_numbers(self, {"pivot": "", "whirl_ratio": ""}, above=0.0)
         checks.number(self.pivot, "pivot", below=1.0)
+        if self.pad_inertia is not None:
+            checks.keep_numbers(self, {"pad_inertia": "kg m²"}, above=0.0)
         if self.film.pads[0].closed or self.film.cavitation == "mass-conserving":
             raise ValueError(
                 f"film: bearing at {self.interface!r}: needs pads with gaps between them, and "
@@ -97,8 +115,21 @@ class TiltingPadBearing(Bearing):
     def _law(self) -> Law:
         raise ValueError(
             f"bearing at {self.interface!r}: tilting pads have no force by place and velocity "
-            "alone; give the scene its linearised()"
+            "alone; give pad_inertia, and their tilts become coordinates, or give the scene its "
+            "linearised()"
         )
+
+    @property
+    def tangents(self) -> np.ndarray:
+        """Directions t at the pivots along (n1, n2), shape (pads, 2)."""
+        pivots = np.array([pad.start + self.pivot * pad.arc for pad in self.film.pads])
+        return direction(pivots + 0.5 * np.pi)
+
+    @property
+    def pad_bearings(self) -> list[JournalBearing]:
+        """The film of every pad as a bearing of its own, between the journal and the pad."""
+        films = [replace(self.film, pads=[pad]) for pad in self.film.pads]
+        return [JournalBearing(interface=self.interface, film=film) for film in films]
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -138,14 +169,42 @@ class TiltingPadBearing(Bearing):
         Z = self._state(speed, load).impedance(whirl)
         return Z.real, Z.imag / whirl
 
+    def linearised(self) -> Support | PadSupport:
+        """Return the support for linear analyses: the coefficients under the load at every speed.
+
+        With the pads' tilts as coordinates where these have inertia; then every pad must carry.
+
+        Raises
+        ------
+        ValueError
+            Where the bearing has no load.
+        """
+        if self.pad_inertia is None:
+            return super().linearised()
+        self._static_load(None)
+        count = len(self.film.pads)
+        films = [
+            Support(self.interface, *(_OfPads(self, index, pad) for index in (0, 1)))
+            for pad in range(count)
+        ]
+        masses = np.full(count, self.pad_inertia / self.film.radius**2)
+        static = _OfPads(self, 0)
+        return PadSupport(self.interface, masses, self.tangents, tuple(films), static)
+
     def _state(self, speed: float, load: ArrayLike | None) -> _Pads:
-        """Return the pads in equilibrium; the last ones are kept, for several ask in turn."""
+        """Return the pads in equilibrium; some are kept, for several ask in turn."""
         load = self._static_load(load)
         key = checks.number(speed, "speed", "rad/s"), *load.tolist()
         if key not in self._last:
-            state = self._solved(speed, load)
-            self._last.clear()
-            self._last[key] = state
+            try:
+                found = self._solved(speed, load)
+            except ValueError as error:
+                found = str(error)
+            if len(self._last) >= _KEPT:
+                self._last.clear()
+            self._last[key] = found
+        if isinstance(self._last[key], str):
+            raise ValueError(self._last[key])
         return self._last[key]
 
     def _solved(self, speed: float, load: np.ndarray) -> _Pads:
@@ -155,12 +214,16 @@ class TiltingPadBearing(Bearing):
                 f"speed, load: bearing at {self.interface!r}: need numbers other than 0, got "
                 f"{speed:g} rad/s and {size:g} N"
             )
-        pads, far = _Pads.of(self.film, self.pivot, speed), 0.2 * self.film.clearance
-        state = pads.at(1.5 * far * load / size)
+        pads, far = _Pads.of(self, speed), 0.2 * self.film.clearance
+        state, best, vain = pads.at(1.5 * far * load / size), np.inf, 0
         for _ in range(_STEPS):
             left = state.force + load
             if np.linalg.norm(left) < _CLOSE * size:
                 return state
+            vain = 0 if np.linalg.norm(left) < best else vain + 1
+            best = min(best, np.linalg.norm(left))
+            if vain == _VAIN:
+                break
             move = np.linalg.lstsq(state.impedance(0.0).real, left, rcond=1e-12)[0]
             state = state.after(move * min(1.0, far / max(np.linalg.norm(move), 1e-300)), load)
         raise ArithmeticError(
@@ -181,17 +244,21 @@ class _Pads:
     states: list[FilmState | None]
 
     @classmethod
-    def of(cls, film: OilFilm, pivot: float, speed: float) -> _Pads:
+    def of(cls, bearing: TiltingPadBearing, speed: float) -> _Pads:
         """Return pads with films of their own, before they are at a place."""
-        films = [replace(film, pads=[pad]) for pad in film.pads]
-        pivots = np.array([pad.start + pivot * pad.arc for pad in film.pads])
+        films = [each.film for each in bearing.pad_bearings]
         none = np.full(len(films), np.nan)
-        return cls(films, direction(pivots + 0.5 * np.pi), speed, np.zeros(2), none, [])
+        return cls(films, bearing.tangents, speed, np.zeros(2), none, [])
 
     def at(self, place: np.ndarray) -> _Pads:
         """Return the pads with the journal at a place [m]."""
         pairs = list(zip(self.films, self.tangents, strict=True))
-        shifts = np.array([_shift(film, place, t, self.speed) for film, t in pairs])
+        shifts = np.array(
+            [
+                _shift(film, place, t, self.speed, last)
+                for (film, t), last in zip(pairs, self.shifts, strict=True)
+            ]
+        )
         still = np.zeros(2)
         states = [
             None if np.isnan(s) else film.state(place - s * t, still, self.speed)
@@ -220,19 +287,52 @@ class _Pads:
         """Force on the journal [N], shape (2,)."""
         return sum((state.force for state in self.states if state is not None), start=np.zeros(2))
 
+    @cached_property
+    def coefficients(self) -> list[tuple[np.ndarray, np.ndarray] | None]:
+        """Stiffness and damping of each film, (2, 2); None for absent pads."""
+        return [None if state is None else state.coefficients() for state in self.states]
+
     def impedance(self, whirl: float) -> np.ndarray:
         """Return Z_b of (2) at a frequency [rad/s], shape (2, 2)."""
         total = np.zeros((2, 2), dtype=complex)
-        for state, t in zip(self.states, self.tangents, strict=True):
-            if state is not None:
-                K, C = state.coefficients()
+        for coefficients, t in zip(self.coefficients, self.tangents, strict=True):
+            if coefficients is not None:
+                K, C = coefficients
                 Z = K + 1j * whirl * C
                 total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t)
         return total
 
 
-def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> float:
-    """Return s of a pad without a moment about its pivot; NaN where no tilt makes it carry."""
+@dataclass(frozen=True, eq=False)
+class _OfPads(Linearised):
+    """Stiffness (`index` 0) or damping of one pad's film; slow stiffness of all without `pad`."""
+
+    pad: int | None = None
+
+    def check_range(self, speed: float) -> None:
+        """Refuse a speed at which there is no equilibrium, or none of a pad, by a ValueError."""
+        self._value(speed)
+
+    def _value(self, speed: float) -> np.ndarray:
+        state = self.bearing._state(speed, None)
+        if any(each is None for each in state.states):
+            absent = [number for number, each in enumerate(state.states) if each is None]
+            raise ValueError(
+                f"bearing at {self.bearing.interface!r}: pads {absent} carry nothing at {speed:g} "
+                "rad/s, so that their tilts are free; give the pads a preload, or leave out "
+                "pad_inertia"
+            )
+        if self.pad is None:
+            return state.impedance(0.0).real
+        return state.coefficients[self.pad][self.index]
+
+
+def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: float) -> float:
+    """Return s of a pad without a moment about its pivot; NaN where no tilt makes it carry.
+
+    Sought near the `last` one, unless that is NaN, by Newton's method; else, and where this leaves
+    the film, over all tilts.
+    """
     u = film.grid.u.reshape(-1, 2)
     room = film.grid.offset.ravel() - u @ place - film.thinnest
     lever = u @ t
@@ -244,6 +344,20 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> flo
             "resolve; give more nodes, or a smaller load"
         )
 
+    unit = film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
+    for _ in range(_NEAR):
+        if not low < last < high:  # or NaN
+            break
+        state = film.state(place - last * t, np.zeros(2), speed)
+        rise = t @ state.coefficients()[0] @ t
+        carried = np.linalg.norm(state.force)
+        if not (rise > _BARELY * unit and carried > _SMALL * unit * film.clearance):
+            break
+        step = float(t @ state.force / rise)
+        last -= step
+        if abs(step) < _STILL * film.radius and low < last < high:
+            return last
+
     def moment(s: float) -> float:
         return float(t @ film.force(place - s * t, np.zeros(2), speed))
 
@@ -253,4 +367,6 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float) -> flo
     rises = np.flatnonzero((found[:-1] < -small) & (found[1:] > small))
     if not len(rises):
         return np.nan
-    return brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
+    found = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
+    held = film.state(place - found * t, np.zeros(2), speed).coefficients()[0]
+    return found if t @ held @ t > 0.0 else np.nan  # where no pressure is left

@@ -18,6 +18,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.magnetic_connectors import add_magnetic
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -28,6 +29,7 @@ from exudyn_rotor.multibody.support_connectors import (
     displacement_connector,
     tilt_connector,
 )
+from exudyn_rotor.multibody.tilting_pads import add_pads
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +41,8 @@ class SceneSupport:
     support : Support or bearing
     objects : tuple of ObjectIndex
         Its connectors: for displacements, for tilts, where it acts on them; of a magnetic bearing
-        that of the magnets and the controller.
+        that of the magnets and the controller; of tilting pads their films and, last, the pads,
+        whose coordinates are the tilts [rad].
     evaluation : tuple of str
         Who evaluates each of them in a time step.
     base : SceneFoundation, MarkerIndex, ObjectIndex or None
@@ -131,7 +134,7 @@ def add_supports(
     check_interfaces(supports, body.selection.source.interfaces)
     for support in supports:
         if isinstance(support, Bearing):
-            _check_law(body, support)
+            _check_law(body, _with_law(support))
         elif isinstance(support, Support):
             _check_about_the_axis(body, support)
     seats = [Seat.of(body, support.interface, base) for support in supports]
@@ -142,6 +145,13 @@ def add_supports(
     )
     body.supports.extend(added)
     return added
+
+
+def _with_law(bearing: Bearing) -> Bearing:
+    """Return a bearing whose law scenes take: of tilting pads with inertia, that of one film."""
+    if isinstance(bearing, TiltingPadBearing) and bearing.pad_inertia is not None:
+        return bearing.pad_bearings[0]
+    return bearing
 
 
 def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
@@ -196,6 +206,8 @@ def _added(
     if isinstance(support, MagneticBearing):
         items = add_magnetic(body, support, seat, seat.marker(mbs), sensed.marker(mbs))
         return SceneSupport(support, items, (PYTHON, PYTHON), seat.base)
+    if isinstance(support, TiltingPadBearing):
+        return SceneSupport(support, *add_pads(body, support, seat), seat.base)
     if isinstance(support, Bearing):
         item = bearing_connector(body, support, seat, seat.marker(mbs))
         return SceneSupport(support, (item,), (PYTHON,), seat.base)

@@ -6,7 +6,7 @@ constraints hold at the ground: three virtual nodes for every point move as its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import exudyn
@@ -120,14 +120,25 @@ def foundation_marker(
     base: SceneFoundation, name: str, place: np.ndarray, axes: np.ndarray
 ) -> exudyn.MarkerIndex:
     """Add a rigid marker of a point at its place [m], with these axes as columns."""
-    motion, number = base.foundation.motion(name, place), base.objects["marker_body"]
+    motion = base.foundation.motion(name, place)
+    return virtual_marker(base.mbs, base.objects["marker_body"], place, motion, axes)
+
+
+def virtual_marker(
+    mbs: exudyn.MainSystem,
+    number: exudyn.ObjectIndex,
+    place: np.ndarray,
+    motion: np.ndarray,
+    axes: np.ndarray,
+) -> exudyn.MarkerIndex:
+    """Add a rigid marker of a flexible body at a place [m] with the motion (6, k)."""
     nodes = virtual_nodes(place, _ARM, motion, SpinAxis(axes[:, 2]))
     frame = np.eye(4)
     frame[:3, :3] = axes
-    return base.mbs.AddMarker(
+    return mbs.AddMarker(
         MarkerSuperElementRigid(
             bodyNumber=number,
-            meshNodeNumbers=append_nodes(base.mbs, number, *nodes),
+            meshNodeNumbers=append_nodes(mbs, number, *nodes),
             weightingFactors=[1.0 / 3.0] * 3,
             localHT=frame,
             visualization={"show": False, "showMarkerNodes": False},
@@ -197,16 +208,15 @@ def add_foundation(
             visualization=VObjectGenericODE2(show=False),
         )
     )
-    body = mbs.AddObject(_marker_body(placed, [frame, coordinates]))
-    _hold(mbs, frame)
+    body = mbs.AddObject(massless_body([frame, coordinates], placed.size, placed.participation))
+    hold(mbs, frame)
     load = add_weight(mbs, body, g)
     objects = {"physics": physics, "marker_body": body}
     return SceneFoundation(mbs, placed, coordinates, objects, load)
 
 
-def _marker_body(foundation: Foundation, nodes: list) -> ObjectFFRFreducedOrder:
-    """Return the massless body of the markers; its participation serves gravity alone."""
-    size, S = foundation.size, foundation.participation
+def massless_body(nodes: list, size: int, S: np.ndarray | None = None) -> ObjectFFRFreducedOrder:
+    """Return the massless body of the markers; the participation S (3, k) serves gravity alone."""
     empty = exudyn.MatrixContainer()
     empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
     return ObjectFFRFreducedOrder(
@@ -221,10 +231,13 @@ def _marker_body(foundation: Foundation, nodes: list) -> ObjectFFRFreducedOrder:
     )
 
 
-def _hold(mbs: exudyn.MainSystem, frame: exudyn.NodeIndex) -> None:
+def hold(
+    mbs: exudyn.MainSystem, frame: exudyn.NodeIndex, coordinates: Sequence[int] = range(6)
+) -> None:
+    """Hold coordinates of a frame's node: translations, then rotations."""
     origin = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
     ground = mbs.AddMarker(origin)
-    for coordinate in range(6):
+    for coordinate in coordinates:
         marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=frame, coordinate=coordinate))
         hidden = VCoordinateConstraint(show=False)
         mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, marker], visualization=hidden))

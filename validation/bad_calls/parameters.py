@@ -601,6 +601,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("TiltingPadBearing", "film"): v.OBJECT,
     ("TiltingPadBearing", "pivot"): v.POSITIVE.but(outside=1.0),
     ("TiltingPadBearing", "whirl_ratio"): v.POSITIVE,
+    ("TiltingPadBearing", "pad_inertia"): v.POSITIVE,
     ("SqueezeFilmDamper", "interface"): v.NAME,
     ("SqueezeFilmDamper", "radius"): v.POSITIVE,
     ("SqueezeFilmDamper", "clearance"): v.POSITIVE,

@@ -64,6 +64,13 @@ class FilmData:
         """Thickness of the thinnest film that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
+    def reach(self, direction: np.ndarray) -> float:
+        """Return how far the journal may go that way, of length 1 (2,), the film resolved [m]."""
+        closing = (self.grid.u @ direction).ravel()
+        room = (self.grid.offset - self.thinnest).ravel()
+        near = closing > 0.0
+        return float(np.min(room[near] / closing[near], initial=np.inf))
+
     def _heights(self, position: np.ndarray) -> np.ndarray:
         """Return h in the middle, at the left and the right face of each volume, (3, n) [m]."""
         return self.grid.offset - self.grid.u @ position

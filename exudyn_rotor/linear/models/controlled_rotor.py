@@ -1,13 +1,13 @@
-"""A rotor on supports that have coordinates of their own: magnetic bearings.
+"""A rotor on supports that have coordinates of their own: magnetic bearings, pads that tilt.
 
-Own coordinates are pairs along (n1, n2). In the rotor frame, where all equations are, a pair with
-the inertia μ that stands still has those of a point mass beside the rotor,
+A controller's coordinates are pairs along (n1, n2). In the rotor frame, where all equations are, a
+pair with the inertia μ that stands still has those of a point mass beside the rotor,
 
     μ (q̈ + 2Ω ẽ q̇ − Ω² q),
 
 and what is between rotor and controller turns as any support does: where both control axes are
 alike, all coefficients are constant. On a foundation magnets act, and sensors measure, against its
-points.
+points. The tilts of pads stand still; their films act as supports between the journal and a pad.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.bearings.controlled_support import ControlledSupport
+from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
@@ -32,7 +32,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.rotating_axes import turned_harmonics
+from exudyn_rotor.theory.rotating_axes import into_rotor_frame, turned_harmonics
 
 _ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
 _TURN = skew([0.0, 0.0, 1.0])
@@ -46,18 +46,19 @@ class ControlledRotor(ExtendedRotor):
     ----------
     plain : LinearRotor or RotorOnFoundation
         The rotor on all else, and on the stiffness that acts without controllers.
-    controlled : tuple of ControlledSupport
+    controlled : tuple of ControlledSupport and PadSupport
+        These last.
     """
 
     plain: LinearRotor | RotorOnFoundation
-    controlled: tuple[ControlledSupport, ...]
+    controlled: tuple[ControlledSupport | PadSupport, ...]
 
     @classmethod
     def of(
         cls,
         rotor: ReducedRotor | SolidRotor,
         supports: Sequence[Support],
-        controlled: Sequence[ControlledSupport],
+        controlled: Sequence[ControlledSupport | PadSupport],
         stiffening: str = "auto",
         foundation: Foundation | None = None,
     ) -> ControlledRotor:
@@ -70,6 +71,7 @@ class ControlledRotor(ExtendedRotor):
         """
         made = LinearRotor.of if isinstance(rotor, ReducedRotor) else LinearRotor.of_solid
         check_interfaces(controlled, rotor.interfaces)
+        controlled = sorted(controlled, key=lambda one: isinstance(one, PadSupport))
         places = [
             support
             for one in controlled
@@ -117,8 +119,8 @@ class ControlledRotor(ExtendedRotor):
 
     @property
     def standing(self) -> np.ndarray:
-        """Coordinates of a foundation; the controllers' turn with the rotor."""
-        return self.plain.standing
+        """Coordinates of a foundation, and of pads; the controllers' turn with the rotor."""
+        return np.r_[self.plain.standing, self.plain.size + self._turning : self.size]
 
     @property
     def standing_interfaces(self) -> tuple[str, ...]:
@@ -136,20 +138,32 @@ class ControlledRotor(ExtendedRotor):
         """Mass matrix, the controllers' inertia last."""
         return self._joined(self.plain.mass_matrix, np.diag(self._inertia))
 
+    @property
+    def stiffness_varies(self) -> bool:
+        """True where supports or a static displacement have a stiffness that is not in Ω²."""
+        return self.plain.stiffness_varies or self._turning < self._more
+
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
         return self._wide(self.plain.interface_motion(name))
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return points of the rotor, and one for each pair of the controllers' coordinates."""
-        given = self.plain.point_motions(most)
-        standing = given.standing
+        """Return points of the rotor, one for each pair of the controllers' coordinates, and pads.
+
+        These mass for mass, as foundations.
+        """
+        given, rows = self.plain.point_motions(most), np.eye(self.size)[self.plain.size :]
+        pads = np.sqrt(given.share(self.plain.invariants.mass) * self._inertia)[:, None] * rows
+        own = [pads[self._turning :]]
+        if given.standing is not None:
+            own.insert(0, self._wide(given.standing))
+        standing = np.vstack(own)
         wide = replace(
             given,
             motion=self._wide(given.motion),
-            standing=None if standing is None else self._wide(standing),
+            standing=standing if len(standing) else None,
         )
-        return with_pairs(wide, np.eye(self.size)[self.plain.size :])
+        return with_pairs(wide, rows[: self._turning])
 
     def own_rows(self, index: int) -> slice:
         """Return where the coordinates of a controller are."""
@@ -164,27 +178,34 @@ class ControlledRotor(ExtendedRotor):
         """Return the equations at a spin speed [rad/s]."""
         plain, own = self.plain.at(speed), self._inertia
         D, K = ({n: self._joined(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
-        beside = slice(self.plain.size, None)
+        beside, own = slice(self.plain.size, self.plain.size + self._turning), own[: self._turning]
         gyroscopic = np.kron(np.eye(len(own) // 2), _TURN[:2, :2])
         D[0][beside, beside] += 2.0 * speed * own[:, None] * gyroscopic
         K[0][beside, beside] -= speed**2 * np.diag(own)
-        for terms, added in zip((D, K, K), self._between, strict=True):
-            factor = speed if added is self._between[2] else 1.0
-            for n, X in added.items():
-                terms[n] = terms.get(n, 0.0) + factor * X
+        for between in (self._between, self._films(speed)):
+            for terms, added, factor in zip((D, K, K), between, (1.0, 1.0, speed), strict=True):
+                for n, X in added.items():
+                    terms[n] = terms.get(n, 0.0) + factor * X
         H = None if plain.H is None else self._joined(plain.H)
         return PeriodicSystem(plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding)
 
     @cached_property
     def _inertia(self) -> np.ndarray:
-        """Inertia of the controllers' coordinates [kg]."""
-        return np.concatenate([np.repeat(one.inertia, 2) for one in self.controlled])
+        """Inertia of the own coordinates [kg]."""
+        return np.concatenate([one.masses for one in self.controlled])
+
+    @cached_property
+    def _turning(self) -> int:
+        """Number of own coordinates that turn with the rotor; they come first."""
+        return sum(one.size for one in self.controlled if isinstance(one, ControlledSupport))
 
     @cached_property
     def _between(self) -> tuple[Terms, Terms, Terms]:
         """Fourier terms of damping, stiffness and stiffness per Ω that controllers bring."""
         sums = {}, {}, {}
         for index, one in enumerate(self.controlled):
+            if isinstance(one, PadSupport):
+                continue
             count = len(one.damping) // 2
             lifted = np.kron(np.eye(count), _ACROSS)
             D, K = (lifted @ X @ lifted.T for X in (one.damping, one.stiffness))
@@ -195,6 +216,22 @@ class ControlledRotor(ExtendedRotor):
             ports = stacked([self._displacement(self._place(index)), self.sensed(index), own])
             turning = D @ np.kron(np.eye(count), _TURN)
             join_turning(sums, tuple(map(turned_harmonics, (D, K, turning))), ports)
+        return sums
+
+    def _films(self, speed: float) -> tuple[Terms, Terms, Terms]:
+        """Return what :attr:`_between` is of films on pads, at a spin speed [rad/s]."""
+        sums = {}, {}, {}
+        for index, one in enumerate(self.controlled):
+            if not isinstance(one, PadSupport):
+                continue
+            journal = self._displacement(self._place(index))
+            own = np.eye(self.size)[self.own_rows(index)]
+            for film, tangent, row in zip(one.films, one.tangents, own, strict=True):
+                seen = dict(journal)
+                for n, t in into_rotor_frame(np.array([*tangent, 0.0])).items():
+                    seen[n] = seen.get(n, 0.0) - np.outer(t, row)
+                parts = ({n: X[:3, :3] for n, X in part.items()} for part in film.parts(speed))
+                join_turning(sums, tuple(parts), seen)
         return sums
 
     def _displacement(self, place: int) -> dict[int, np.ndarray]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor_body import RotorBody
@@ -27,7 +28,7 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     speed : float
         Spin speed [rad/s].
     orders : ndarray of int, shape (h,)
-        With −1 and 1 among them.
+        With −1, 0 and 1 among them.
     """
     harmonics = np.zeros((len(orders), scene.size), dtype=complex)
     places = _places(scene.body, speed)
@@ -42,7 +43,19 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])
         harmonics[orders.tolist().index(n)] = motion @ target
+    harmonics[orders.tolist().index(0)] = scene.N.T @ _tilts(scene, speed)
     return harmonics
+
+
+def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
+    """Return the tilts of pads in equilibrium [rad] by the free coordinates."""
+    found, data = np.zeros(len(scene.rest)), scene.body.mbs.systemData
+    loads = dict(_loads(scene.body))
+    for one in scene.body.supports:
+        if isinstance(one.support, TiltingPadBearing) and np.any(loads.get(one.support, 0.0)):
+            tilts = one.support.tilts(speed, loads[one.support])
+            found[data.GetObjectLTGODE2(one.objects[-1])] = np.nan_to_num(tilts)
+    return found[scene.free]
 
 
 def _across(scene: SceneCoordinates, name: str) -> np.ndarray:

@@ -303,7 +303,7 @@ def _about_steady_motion(
             torque = spin.drive_torque(twist[middle], (Y + change)[middle], least)
             change = change - torque * twist
         Y = Y + change
-        metres = np.sqrt(np.diag(system.M[0]) / scene.mass)
+        metres = 1.0 / scene.metre(np.diag(system.M[0]))
         if np.abs(left / metres).max() > _UNHELD * scene.mass:
             break
         moved = np.abs(change * metres)

@@ -142,7 +142,7 @@ def linearised(
     residual = (
         M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + rotor_D @ v + rotor_K @ x - rotor_force - force
     )
-    sizes = np.sqrt(probe.scene.mass / np.maximum(np.diag(T.T @ M @ T), 1e-300))
+    sizes = probe.scene.metre(np.diag(T.T @ M @ T))
 
     def moved(x_i: np.ndarray) -> np.ndarray:
         return probe.force(theta, x + x_i, v)

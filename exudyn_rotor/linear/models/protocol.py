@@ -69,6 +69,10 @@ class PointMotions:
     standing: np.ndarray | None = None
     ends: tuple[int, ...] = ()
 
+    def share(self, mass: float) -> float:
+        """Return the points that move per mass [1/kg] of a rotor."""
+        return (len(self.points) - (not self.is_mesh)) / mass  # rings have one at rest
+
 
 class Space(Protocol):
     """Where the equations of a model are solved: in all its coordinates, or in a subspace.

@@ -112,8 +112,7 @@ class RotorOnFoundation(ExtendedRotor):
         ``1/√m``.
         """
         points = self.plain.point_motions(most)
-        moving = len(points.points) - (not points.is_mesh)  # rings have one at rest
-        share = np.sqrt(moving / self.plain.invariants.mass)
+        share = np.sqrt(points.share(self.plain.invariants.mass))
         return replace(
             points,
             motion=self._wide(points.motion),

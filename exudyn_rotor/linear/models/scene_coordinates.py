@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
@@ -107,6 +108,26 @@ class SceneCoordinates:
                 found.extend(data.GetObjectLTGODE2(one.objects[1]))
         places = [np.flatnonzero(self.free == number) for number in found]
         return np.concatenate([*places, np.zeros(0)]).astype(int).reshape(-1, 2)
+
+    @cached_property
+    def _most(self) -> np.ndarray:
+        """The most of each coordinate that counts as a metre: of a pad's tilt, a metre of its bore.
+
+        A light pad moves as little as its journal.
+        """
+        most, data = np.full(len(self.rest), np.inf), self.body.mbs.systemData
+        for one in self.body.supports:
+            if isinstance(one.support, TiltingPadBearing) and one.support.pad_inertia is not None:
+                tilts = data.GetObjectLTGODE2(one.objects[-1])
+                most[tilts] = 1.0 / one.support.film.radius
+        return np.array([most[self.free[column != 0.0]].min() for column in self.N.T])
+
+    def metre(self, mass: np.ndarray) -> np.ndarray:
+        """Return how much of each coordinate counts as a metre, from the mass matrix's diagonal.
+
+        What moves as much kinetic energy as the rotor by a metre.
+        """
+        return np.minimum(np.sqrt(self.mass / np.maximum(mass, 1e-300)), self._most)
 
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""

@@ -220,12 +220,18 @@ BEARINGS = [
         ),
     ),
     *mutations(
+        "multibody/tilting_pads.py",
+        "test_tilting_pad.py::test_a_run_stays_in_the_equilibrium",
+        ("pads of a scene go the other way", "= -radius * seat.axes", "= radius * seat.axes"),
+    ),
+    *mutations(
         "bearings/tilting_pad.py",
         "test_tilting_pad.py",
         ("pads held", "total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t)", "total += Z"),
         ("pads eliminated at rest", "Z = K + 1j * whirl * C", "Z = K + 0j * whirl * C"),
         ("pads tilt the other way", "return -self._state", "return self._state"),
-        ("pivots in the middle", "pad.start + pivot * pad.arc", "pad.start + 0.5 * pad.arc"),
+        ("pivots in the middle", "pad.start + self.pivot * pad.arc", "pad.start + 0.5 * pad.arc"),
+        ("pads of another inertia", "self.pad_inertia / self.film.radius**2", "self.pad_inertia"),
     ),
     *mutations(
         "bearings/rolling.py",
