@@ -22,9 +22,9 @@ class JournalBearing(Bearing):
 
     Linear analyses take its coefficients in the equilibrium under the load; scenes its force at
     every evaluation, with one axial profile (``axial_nodes=0``) twenty times as long as that of a
-    :class:`ShortJournalBearing`. In scenes the journal's centre has its film where the
-    grid resolves the thickness all around, up to ``film.reach``; beyond, the force goes on by its
-    tangent, so that Newton's method comes back.
+    :class:`ShortJournalBearing`. In scenes the journal's centre has its film where it
+    is thicker all around than ``film.thinnest``, which the grid resolves; beyond, the force goes on
+    by its tangent, so that Newton's method comes back.
 
     Parameters
     ----------
@@ -152,5 +152,5 @@ class _FilmLaw:
         distance = hypot(x, y)
         if distance <= self._most:
             return force(x, y)
-        most = self._film.reach(np.array([x, y]) / distance)
+        most = self._film._reach(np.array([x, y]) / distance)
         return force(x, y) if distance <= most else by_tangent(force, x, y, most, self._step)

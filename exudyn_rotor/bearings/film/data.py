@@ -64,7 +64,7 @@ class FilmData:
         """Thickness of the thinnest film that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
-    def reach(self, direction: np.ndarray) -> float:
+    def _reach(self, direction: np.ndarray) -> float:
         """Return how far the journal may go that way, of length 1 (2,), the film resolved [m]."""
         closing = (self.grid.u @ direction).ravel()
         room = (self.grid.offset - self.thinnest).ravel()
