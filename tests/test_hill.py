@@ -142,6 +142,9 @@ def test_a_mass_that_one_direction_alone_holds(drag, k):
     stiffness[0] = stiffness[0] - speed**2 * np.eye(2)
     system = PeriodicSystem(speed, {0: np.eye(2)}, damping, stiffness)
     exact = np.concatenate([np.roots([1.0, 0.0, held]), np.roots([1.0, drag, k])]) + 1j * speed
+    every = motions(system, "hill").values
+    apart = np.abs(fold(every[:, None] - exact, system.base))
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-6
     found = floquet_modes(system)
     values = np.concatenate([found.values, found.values.conj()])
     if k == 0.0:  # the more damped one of two real exponents is not among the modes

@@ -147,17 +147,24 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
 def _without_conjugates(
     solution: HillSolution, columns: np.ndarray, base: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return columns without those of conjugate families of others, and which others these are."""
+    """Return columns without those of conjugate families of others, and which others these are.
+
+    Two families that are their own conjugates may share their shape, and are not each other's.
+    """
     values, shapes = solution.values[columns], solution.shapes[:, :, columns]
     apart = values - values[:, None].conj()
     steps = np.rint(apart.imag / base)
-    near = np.triu(np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base), 1)
-    paired, dropped = np.zeros((2, len(columns)), dtype=bool)
+    near = np.triu(np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base))
+    paired, dropped, alone = np.zeros((3, len(columns)), dtype=bool)
     for one, other in zip(*np.nonzero(near), strict=True):
         conjugate = shifted(shapes[::-1, :, one].conj(), int(steps[one, other]))
         sizes = np.linalg.norm(conjugate) * np.linalg.norm(shapes[:, :, other])
         alike = abs(np.vdot(conjugate, shapes[:, :, other])) > _ALIKE * sizes
-        if alike and not (dropped[one] or paired[one] or dropped[other]):
+        if not alike or alone[one] or paired[one] or dropped[one] or dropped[other]:
+            continue
+        if one == other:
+            alone[one] = True
+        else:
             paired[one], dropped[other] = True, True
     return columns[~dropped], paired[~dropped]
 

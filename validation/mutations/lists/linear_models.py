@@ -230,6 +230,11 @@ LINEAR_MODELS = [
             "paired[one], dropped[other] = True, True",
             "paired[one], dropped[one] = True, False",
         ),
+        (
+            "families that are their own conjugates stand for others",
+            "alone[one] = True",
+            "alone[one] = False",
+        ),
     ),
     *mutations(
         "linear/periodic/inverse_iteration.py",
