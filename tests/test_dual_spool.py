@@ -145,6 +145,23 @@ def test_estimates_of_responses(name):
         np.testing.assert_allclose(found.basis_errors[row], away, rtol=0.1, atol=1e-3)
 
 
+def test_estimates_of_rotors_apart_are_those_of_each():
+    """At speeds of their own; the mean over a turn of the outer one differs by its unevenness."""
+    supports = {
+        name: [Support(at, 2e7, 100.0) for at in ("front", "rear")] for name in ("inner", "outer")
+    }
+    rotors = {name: spool(name, 5, True) for name in supports}
+    train = RotorTrain(rotors, {"inner": 1.0, "outer": -1.5}, supports)
+    with pytest.warns(UserWarning, match="rotor 'inner'"):
+        both = np.abs(campbell(train, [300.0], modes=14).basis_shifts[0])
+    for name, rate in train.ratios.items():
+        with pytest.warns(UserWarning, match="the reduced rotor"):
+            alone = campbell(rotors[name], [300.0 * abs(rate)], modes=6, supports=supports[name])
+        alone = np.abs(alone.basis_shifts[0])
+        assert alone.max() > 1.0
+        assert np.abs(both[:, None] - alone).min(axis=0).max() < 5e-3 * alone.max()
+
+
 def test_free_spins_and_good_bases():
     """Exponents without the free spin are shifted alike; with enough modes there is no warning."""
     train = geared(5, True)
