@@ -15,7 +15,6 @@ continued fractions, Risken, The Fokker-Planck Equation (1989), Sect. 9.3.
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg as la
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import spacing
@@ -43,7 +42,7 @@ def solved(
     groups = _groups(len(orders), system.order // spacing(orders))
     at = [orders[group] for group in groups]
     parts = [_part(given, group) for group in groups]
-    ports = [la.block_diag(*[system.ports] * group.shape[1]) for group in groups]
+    ports = [_repeated(system.ports, group.shape[1]) for group in groups]
     outer, answers, outwards = None, [], []
     for i in reversed(range(len(groups))):
         own = _blocks(system, values, at[i], at[i])
@@ -114,6 +113,13 @@ def _blocks(
         M, D, K = (terms.get(n, 0.0) for terms in (system.M, system.D, system.K))
         result[side, :, row, :, column] = (rate * M + D) * rate + K
     return result.reshape(sides, len(values), *(count * system.size for count in counts))
+
+
+def _repeated(ports: np.ndarray, count: int) -> np.ndarray:
+    """Return the motions (k, p) in each of some harmonics, shape (count k, count p)."""
+    blocks = np.zeros((count, len(ports), count, ports.shape[1]))
+    blocks[range(count), :, range(count)] = ports
+    return blocks.reshape(count * len(ports), -1)
 
 
 def _part(motions: np.ndarray, group: np.ndarray) -> np.ndarray:
