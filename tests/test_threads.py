@@ -2,11 +2,12 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
 from exudyn_rotor.sweep import sweep
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.threads import eig, one_thread
 
 
 def counts(_value: float = 0.0) -> set[int]:
@@ -39,3 +40,16 @@ def test_a_sweep_uses_one_thread_for_each_value():
     with pytest.raises(RuntimeError):
         sweep(lambda value: value.missing, [1.0])
     assert counts() == {2}
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_eigenproblems_are_shared_out_and_the_same_to_the_digit(monkeypatch):
+    matrices = np.random.default_rng(0).normal(size=(9, 60, 60))
+    expected, lengths, solve = np.linalg.eig(matrices), [], np.linalg.eig
+    monkeypatch.setattr(np.linalg, "eig", lambda part: lengths.append(len(part)) or solve(part))
+    for found, known in zip(eig(matrices), expected, strict=True):
+        np.testing.assert_array_equal(found, known)
+    with one_thread():
+        eig(matrices)
+    eig(matrices[0])
+    assert sorted(lengths) == [4, 4, 5, 5, 60]
