@@ -340,7 +340,7 @@ def test_own_spin_that_nothing_holds_does_not_twist_in_bearings_off_the_axis(hea
     assert abs(state.interface_motion("left")[5]) < 1e-6
 
 
-@pytest.mark.parametrize(("heavy", "message"), [(0.0, "that nothing holds"), (1e-4, "'elastic'")])
-def test_own_spin_that_nothing_holds_against_a_torque_is_refused(heavy, message):
-    with pytest.raises(UnconvergedError, match=message):
+@pytest.mark.parametrize("heavy", [0.0, 1e-4])
+def test_own_spin_that_nothing_holds_against_a_torque_is_refused(heavy):
+    with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(with_own_spin(heavy, torque=0.1))
