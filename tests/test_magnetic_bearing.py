@@ -405,7 +405,7 @@ def test_refused_input():
             rigid(), [1.0, 2.0], supports=[AXIAL])),
         (ValueError, "needs values above zero", lambda: sensitivity(
             rigid(), [0.0, 2.0], supports=pair())),
-        (ValueError, "dense=True takes all nodes", lambda: linear_model(
+        (ValueError, r"dense=True\), which takes all nodes", lambda: linear_model(
             three_masses(), supports=pair(), dense=False)),
     ):  # fmt: skip
         with pytest.raises(error, match=match):

@@ -6,6 +6,8 @@ import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg as la
+from scipy.interpolate import CubicSpline
+from test_base_motion import SHAKEN
 from test_foundations import BLOCK, POINTS, two_masses
 from test_magnetic_bearing import (
     DELAYED,
@@ -18,6 +20,7 @@ from test_magnetic_bearing import (
     bearing,
     closed_loop,
     pair,
+    rigid,
 )
 from test_supports_in_scenes import SKEW, SPEED, TO_X, rings
 
@@ -25,13 +28,16 @@ from exudyn_rotor import (
     Formulation,
     Support,
     Unbalance,
+    add_base_motion,
     add_foundation,
     add_rotor,
     add_supports,
+    base_response,
     campbell,
     critical_speed_map,
     critical_speeds,
     linear_model,
+    recommended_settings,
     select_modes,
     sensitivity,
     stability,
@@ -39,6 +45,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 AXIAL = Support("right", np.diag([0.0, 0.0, 5e5]), 0.0, np.diag([0.0, 0.0, 4e3]))
 OWN = (1.5e6, 4e6)
@@ -168,3 +175,28 @@ def test_maps():
     found = stability_map(build, [3e6], [SPEED], accuracy=None)
     expected = stability(build(3e6, 0.0)[0], [SPEED], accuracy=None)
     assert found.growth[0, 0] == pytest.approx(expected.growth.max(), rel=1e-9)
+
+
+def test_shaken_ground_moves_scene_and_list_alike():
+    """By the integrator's second order."""
+    supports = [*pair(controller=PD), Support("left", np.diag([1e5, 2e5, 1e6]), 50.0)]
+    model = linear_model(rigid(), supports=supports, foundation=BLOCK)
+    found = base_response(model, SHAKEN, speed=SPEED, end_time=0.02, tolerance=1e-4, at="left")
+    exact = CubicSpline(found.time, found.displacement("left") @ axes_of(rigid().axis).T)
+    errors = []
+    for step in (1e-4, 5e-5):
+        mbs = exu.SystemContainer().AddSystem()
+        body, base = add_rotor(mbs, rigid(), spin=SPEED), add_foundation(mbs, BLOCK)
+        add_base_motion(mbs, SHAKEN, [body, base])
+        add_supports(body, supports, base)
+        sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
+        mbs.Assemble()
+        settings = recommended_settings(end_time=0.018, step=step)
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = 1e-3
+        mbs.SolveDynamic(settings)
+        stored = mbs.GetSensorStoredData(sensor)
+        expected = exact(stored[:, 0])
+        errors.append(np.abs(stored[:, 1:4] - expected).max() / np.abs(expected).max())
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[1] < 3e-4

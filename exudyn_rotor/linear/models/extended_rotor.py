@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
@@ -13,11 +12,11 @@ import scipy.linalg as la
 
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.theory.invariants import Invariants
 
 
-class ExtendedRotor(ABC):
+class ExtendedRotor(InAllCoordinates, ABC):
     """Base of linear models, whose dataclasses hold `plain`; see :class:`LinearModel`.
 
     Attributes
@@ -101,17 +100,9 @@ class ExtendedRotor(ABC):
         mesh = self.plain.mesh
         return None if mesh is None else replace(mesh, columns=self._wide(mesh.columns))
 
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
-        space = self.plain.space(count, fastest, loads=loads, held=held, residual=residual)
+    def whole_space(self, held: bool) -> WholeSpace:
+        """Return all coordinates, `held` without a spin that nothing holds."""
+        space = self.plain.whole_space(held)
         others = space.others
         if others is not None:
             others = self._joined(others, np.eye(self._more))

@@ -147,9 +147,9 @@ def linear_model(
         return _founded(LinearRotor.of_solid(target, linear, stiffening), foundation)
     if foundation is not None or controlled:
         raise ValueError(
-            f"target: a SolidRotor of {3 * target.node_count} degrees of freedom, more than "
-            f"{DENSE_SIZE}, on a foundation or magnetic bearings: give the reduced rotor, "
-            "rotor.reduce(…), whose error the analyses estimate; dense=True takes all nodes"
+            f"target: a SolidRotor of {3 * target.node_count} degrees of freedom on a foundation "
+            "or magnetic bearings: give the reduced rotor, rotor.reduce(…), whose error the "
+            "analyses estimate, or linear_model(rotor, …, dense=True), which takes all nodes"
         )
     return FullRotor.of(target, linear, stiffening).with_spin()
 

@@ -33,7 +33,7 @@ from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.linear.models.spin import Spin
 from exudyn_rotor.linear.models.standing_space import StandingSpace
 from exudyn_rotor.linear.models.turned_rotor import TurnedRotor
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -41,7 +41,7 @@ _HELD = 1e-10  # share of the largest torsional stiffness per unit mass that cou
 
 
 @dataclass(frozen=True, eq=False)
-class LinearTrain:
+class LinearTrain(InAllCoordinates):
     """Several rotors with supports and links, ready for any speed.
 
     Attributes
@@ -299,16 +299,8 @@ class LinearTrain:
         free = turn[:, values <= _HELD * max(values[-1], 0.0)]
         return la.orth(np.column_stack(momenta) @ free)
 
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+    def whole_space(self, held: bool) -> WholeSpace:
+        """Return all coordinates, `held` without a spin that nothing holds."""
         momenta = self._free_spins
         # coordinates that fix the free spins, as far apart as can be
         _, _, pivots = la.qr(momenta.T, pivoting=True)

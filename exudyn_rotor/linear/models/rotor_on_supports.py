@@ -24,7 +24,7 @@ from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
-from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -40,7 +40,7 @@ _SINGULAR = 1e-12  # of a stiffness that leaves motions free
 
 
 @dataclass(frozen=True, eq=False)
-class LinearRotor(SupportedRotor):
+class LinearRotor(SupportedRotor, InAllCoordinates):
     """A reduced rotor with linear supports, ready for any spin speed.
 
     Attributes
@@ -237,16 +237,8 @@ class LinearRotor(SupportedRotor):
         motion = np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1)
         return PointMotions(points, motion, None, True)
 
-    def space(
-        self,
-        count: int,
-        fastest: float,
-        *,
-        loads: Sequence[np.ndarray] = (),
-        held: bool = False,
-        residual: float = 1e-7,
-    ) -> WholeSpace:
-        """Return where to solve the equations: in all coordinates, whatever is asked for."""
+    def whole_space(self, held: bool) -> WholeSpace:
+        """Return all coordinates, `held` without a spin that nothing holds."""
         light = replace(self, rotor=self.rotor.without_shapes())
         if self.free_spin is None:
             return WholeSpace(light, can_be_sent=True)

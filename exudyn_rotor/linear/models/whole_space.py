@@ -100,7 +100,7 @@ class WholeSpace:
 
 
 class InAllCoordinates:
-    """Base of models that are solved in all coordinates, and cannot go to other processes."""
+    """Base of models that are solved in all coordinates."""
 
     def space(
         self,
@@ -112,6 +112,10 @@ class InAllCoordinates:
         residual: float = 1e-7,
     ) -> WholeSpace:
         """Return where to solve the equations: in all coordinates, whatever is asked for."""
+        return self.whole_space(held)
+
+    def whole_space(self, held: bool) -> WholeSpace:
+        """Return all coordinates, `held` without a spin that nothing holds; for one process."""
         return WholeSpace(self, can_be_sent=False)
 
 
