@@ -84,6 +84,8 @@ def test_no_replaced_entry_loads(name, tmp_path):
         with pytest.raises(ValueError, match=r"kept\.npz: damaged"):
             load(name, path)
         for label, wrong in wrong_values(key, value, name).items():
+            if not value.size and np.array_equal(wrong, value):
+                continue
             forge(path, data | {key: wrong})
             try:
                 load(name, path)

@@ -80,6 +80,7 @@ BAD = {
     "label": ("", 3, ["a"], b"a"),
     "accuracy": (np.nan, -1.0, 0.0, 2.0, "x", [0.1], True),
     "body": (3, ROTOR),
+    "foundation": (3, "block", ROTOR, np.eye(3)),
     "target": (3, None, "rotor", np.eye(3), UNBALANCE, Support),
 }  # fmt: skip
 

@@ -61,6 +61,12 @@ class RunStart(Result):
         super().__post_init__()
         if (self.coordinates is None) != (self.basis is None):
             raise ValueError("coordinates, basis: need each other; give both, or none")
+        known = self.coordinates.shape[2] if self.basis == "rotor" else 1
+        if len(self.beside) >= known:
+            raise ValueError(
+                f"beside: needs fewer names than the {known} coordinates of a rotor and what is "
+                f"beside it, got {len(self.beside)}"
+            )
         if self.basis is not None:
             checks.choice(self.basis, "basis", BASES)
             if self.coordinates.shape[1] % 2 == 0:
