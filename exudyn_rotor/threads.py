@@ -1,7 +1,7 @@
 """Dense problems of some hundred coordinates on one thread of the linear algebra library.
 
 Many of them, one after the other, take up to fifty times longer on several threads, which wait
-for one another.
+for one another. Eigenproblems of one stack are shared out instead, each to one thread.
 """
 
 from __future__ import annotations
