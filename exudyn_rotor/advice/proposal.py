@@ -218,7 +218,8 @@ def propose(
     :mod:`exudyn_rotor.advice.mode_choice`. Without known supports the flexibility of the flexible
     modes alone is the response: what a mode adds to it at rest is ``‖φ_k‖²/ω_k²``. All of this is
     relative to the modes given. What static responses to loads at the interfaces add to those is in
-    the reasons; above half the accuracy, or with all modes in the band, that warns.
+    the reasons; above half the accuracy, or with all modes in the band, that warns. Other nodes and
+    the stress err by more; :func:`exudyn_rotor.check_run` with `solid` says by how much.
 
     Step: generalised alpha makes the period of a motion of frequency ω longer by ``(ωh)²/12`` of
     itself (0.0844 (ωh)² at Exudyn's spectral radius 0.9). Half the accuracy is allowed for that at
@@ -331,7 +332,7 @@ def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> lis
         f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
         f"{request.highest / _HERTZ:.4g} Hz of the rotor frame",
         f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
-        f"{held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
+        f"of interfaces {held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
     ]
     if chosen.missing is not None:
         lines.append(
