@@ -14,6 +14,7 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     TiltingPadBearing,
+    Unbalance,
     add_foundation,
     add_rotor,
     add_supports,
@@ -23,6 +24,7 @@ from exudyn_rotor import (
     recommended_settings,
     stability,
     steady_state,
+    unbalance_response,
 )
 from exudyn_rotor.theory.axis import SpinAxis
 
@@ -194,6 +196,20 @@ def test_a_run_stays_in_the_equilibrium():
     body.start_from(start)
     # the run's own tolerance
     np.testing.assert_allclose(run(mbs, 0.01, 2e-4)[places], tilts, rtol=1e-4)
+
+
+def test_a_response_sets_the_tilts():
+    """Those of the response of the scene itself, about the same equilibrium."""
+    rotor, supports, gravity = on_pads()
+    mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
+    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
+    linear, own = (
+        unbalance_response(model, [SPEED], Unbalance("left", 1e-3), accuracy=None)
+        .state(SPEED, body)
+        .q[places]
+        for model in (linear_model(rotor, supports=supports), linear_model(mbs, body=body))
+    )
+    np.testing.assert_allclose(linear, own, rtol=0.0, atol=1e-6 * np.abs(own).max())
 
 
 def test_films_brake_a_free_spin():

@@ -14,6 +14,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.controlled_rotor import names_of_controllers
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_scene import LinearScene
@@ -168,7 +169,7 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
 
     The latter are those (6, k) of its points along (n1, n2, e), by all coordinates.
     """
-    foundation, controllers = _foundation(body), _controllers(body)
+    foundation, controllers = _foundation(body), [*_controllers(body), *_pads(body)]
     names = names_of_controllers((one.support.interface, len(at)) for one, at in controllers)
     if foundation is None:
         return names, {}
@@ -208,8 +209,18 @@ def _controllers(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
     ]
 
 
+def _pads(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
+    """Return the bearings with tilting pads, and where the tilts are in the scene."""
+    places = body.mbs.systemData.GetObjectLTGODE2
+    return [
+        (one, np.asarray(places(one.objects[-1]), dtype=int))
+        for one in body.supports
+        if isinstance(one.support, TiltingPadBearing)
+    ]
+
+
 def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:
-    """Add the coordinates of a foundation and of controllers to the state of a rotor."""
+    """Add the coordinates of a foundation, controllers and pads to the state of a rotor."""
     q, q_t = state.q.copy(), state.q_t.copy()
     base, first = _foundation(body), 0
     if base is not None:
@@ -222,6 +233,10 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
         of_one = slice(first, first + len(places))
         pairs, rates = x[of_one].reshape(-1, 2), x_t[of_one].reshape(-1, 2)
         q[places], q_t[places] = (pairs @ R).ravel(), (rates @ R + pairs @ R_t).ravel()
+        first += len(places)
+    for one, places in _pads(body):
+        of_one, radius = slice(first, first + len(places)), one.support.film.radius
+        q[places], q_t[places] = -x[of_one] / radius, -x_t[of_one] / radius
         first += len(places)
     return replace(state, q=q, q_t=q_t)
 
