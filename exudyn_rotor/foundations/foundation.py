@@ -184,10 +184,13 @@ class Foundation:
         """
         omega = checks.vector(frequencies, "frequencies", "rad/s", size=None)
         zeta, m = (
-            np.broadcast_to(checks.array(value, name), omega.shape)
-            if np.ndim(value) == 0
-            else checks.vector(value, name, size=len(omega))
-            for value, name in ((damping_ratios, "damping_ratios"), (masses, "masses"))
+            np.broadcast_to(given, omega.shape)
+            if given.ndim == 0
+            else checks.vector(given, name, size=len(omega))
+            for given, name in (
+                (checks.array(damping_ratios, "damping_ratios"), "damping_ratios"),
+                (checks.array(masses, "masses"), "masses"),
+            )
         )
         for values, name, good in (
             (omega, "frequencies", np.all(omega > 0.0)),
