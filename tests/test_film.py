@@ -131,14 +131,22 @@ def test_coefficients_are_those_of_someyas_bore_which_turns(row):
     assert damping == pytest.approx(row[9:], abs=0.025 * max(row[9:]))
 
 
-@pytest.mark.parametrize("case", tables.ross_cases()[:3], ids=lambda case: f"{case['load']:g}")
+@pytest.mark.parametrize(
+    "case",
+    [case for case in tables.ross_cases() if case["method"] == "perturbation"],
+    ids=lambda case: f"{case['geometry']}, {case['load']:g}",
+)
 def test_coefficients_are_those_of_ross(case):
-    """ROSS 2.3.0, 40 × 10 elements, two of its entries times √2 (`validation.references.film`)."""
+    """ROSS 2.3.0, two of its entries times √2 (`validation.references.film`).
+
+    With 80 × 10 and 120 × 14 elements its damping of the lobed bore differs by 2.8 %.
+    """
+    within = 0.02 if case["geometry"] == "circular" else 0.025
     state = tables.ross_state(case)
     assert state.eccentricity_ratio == pytest.approx(case["ratio"], rel=5e-3)
     for found, name in zip(state.coefficients(), ("stiffness", "damping"), strict=True):
         expected = np.reshape(case[name], (2, 2))
-        assert found == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
+        assert found == pytest.approx(expected, abs=within * np.abs(expected).max())
 
 
 def test_losses_are_those_of_someyas_table():

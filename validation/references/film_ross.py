@@ -67,4 +67,7 @@ def solved(case: dict, circumferential: int, axial: int) -> dict:
 
 if __name__ == "__main__":
     path = Path(__file__).with_name("film_ross.json")
-    path.write_text(json.dumps([solved(case, 40, 10) for case in CASES], indent=1) + "\n")
+    found = [
+        solved(case, *((120, 14) if case["geometry"] == "lobe" else (40, 10))) for case in CASES
+    ]
+    path.write_text(json.dumps(found, indent=1) + "\n")
