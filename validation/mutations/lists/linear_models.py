@@ -200,8 +200,8 @@ LINEAR_MODELS = [
         "test_hill.py::test_a_mass_that_one_direction_alone_holds",
         (
             "two free copies taken for a motion and its conjugate",
-            "min(resolution, _SAME_FAMILY * step)",
-            "_SAME_FAMILY * step",
+            "[mode] if own_pair else [mode, other]",
+            "[mode, other]",
         ),
     ),
     *mutations(
