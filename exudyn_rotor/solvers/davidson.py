@@ -12,7 +12,8 @@ from tqdm import tqdm
 from exudyn_rotor.solvers.lanczos import Modes
 from exudyn_rotor.solvers.rounding import rounding_unit
 
-_BLOCKS = 5  # of as many columns as modes are sought are kept
+_BLOCKS = 3, 5  # of as many columns as modes are sought are kept, at least and at most
+_ROOM = 1e9  # bytes of a basis; only the least number of blocks may take more
 _MORE = 5  # modes are sought beside those that are wanted
 _GUARDS = 2  # of them must nearly converge, so that none below is missed
 _GUARD_MULTIPLE = 1e4
@@ -74,7 +75,8 @@ def davidson_modes(
     first = inverse.start(sought)
     seeded = np.random.default_rng(_SEED).standard_normal((size, _GUARDS))
     first = inverse.precondition(mass @ np.hstack([first, seeded]))
-    space = _Space(stiffness, mass, first, max(_BLOCKS * sought, first.shape[1] + sought))
+    blocks = int(np.clip(_ROOM / (8.0 * size * sought), *_BLOCKS))
+    space = _Space(stiffness, mass, first, max(blocks * sought, first.shape[1] + sought))
     unit = _ROUNDING_SHARE * rounding_unit(stiffness)
     share = min(_RESIDUAL, np.sqrt(tolerance))
     factors = np.where(np.arange(sought) < count, 1.0, _GUARD_MULTIPLE)[: count + _GUARDS]
