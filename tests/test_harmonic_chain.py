@@ -10,6 +10,7 @@ from exudyn_rotor.linear.periodic.harmonics import (
     hill_matrices,
     slopes,
 )
+from exudyn_rotor.linear.periodic.inverse_iteration import moved_together
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 
 SIZE, PORTS = 5, 2
@@ -63,3 +64,23 @@ def test_both_sides_and_slopes_are_those_of_the_whole_matrix(multiples, count):
 def test_only_motions_at_periodic_coefficients_are_coupled():
     assert system_of(()).ports.shape == (SIZE, 0)
     assert system_of((1, 2)).ports.shape == (SIZE, PORTS)
+
+
+def test_systems_that_stand_still_are_iterated_together():
+    system, unit, none = system_of(()), np.eye(SIZE), np.zeros((SIZE, SIZE))
+    M, D, K = (terms[0] for terms in (system.M, system.D, system.K))
+    terms = np.array([(M, D, K), (M, D, 2.0 * K), (unit, none, none)], dtype=complex)
+    exact, states = np.linalg.eig(
+        [
+            np.block([[none, unit], [-np.linalg.solve(m, k), -np.linalg.solve(m, d)]])
+            for m, d, k in terms
+        ]
+    )
+    shapes = states[:, :SIZE] / np.linalg.norm(states[:, :SIZE], axis=1, keepdims=True)
+    values, wanted = exact * (1.0 + 1e-4), np.ones(exact.shape, dtype=bool)
+    wanted[1, ::2] = False
+    found = moved_together(terms, values, shapes + 1e-4 * random(*shapes.shape), wanted)
+    assert np.array_equal(found[~wanted], values[~wanted])
+    # cubic: 1e-12 times the squared condition of the eigenvalues
+    np.testing.assert_allclose(found[:2][wanted[:2]], exact[:2][wanted[:2]], rtol=1e-9)
+    assert np.all(np.isnan(found[2]))  # a singular matrix

@@ -68,8 +68,8 @@ class BasisError:
         if self.left_out is None:
             return np.array([0j * entry.values for entry in modes])
         shifts = np.full(chosen.shape, np.nan, dtype=complex)
-        for row, used, speed, entry in zip(shifts, chosen, speeds, modes, strict=True):
-            row[used] = self.left_out.shifts(speed, entry.columns(np.flatnonzero(used)))
+        judged = [entry.columns(used) for entry, used in zip(modes, chosen, strict=True)]
+        shifts[chosen] = np.concatenate(self.left_out.shifts(speeds, judged))
         return shifts
 
     @one_thread()
@@ -80,10 +80,12 @@ class BasisError:
         if not self.is_known:
             return None
         shifts = np.full(len(speeds), np.nan, dtype=complex)
-        for index, (speed, mode) in enumerate(zip(speeds, modes, strict=True)):
-            if mode is not None:
-                full = self.left_out is None
-                shifts[index] = 0.0 if full else self.left_out.shifts(speed, mode)[0]
+        known = [index for index, mode in enumerate(modes) if mode is not None]
+        if self.left_out is None:
+            shifts[known] = 0.0
+        else:
+            given = [speeds[index] for index in known], [modes[index] for index in known]
+            shifts[known] = [found[0] for found in self.left_out.shifts(*given)]
         return shifts
 
     @one_thread()

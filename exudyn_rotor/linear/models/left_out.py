@@ -24,7 +24,10 @@ neither in Q nor among the static responses are not seen: of the error they are 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,13 +35,34 @@ from exudyn_rotor.linear.models.finer_model import FinerModel, finer_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, moved, nearest_root
+from exudyn_rotor.linear.periodic.inverse_iteration import (
+    OFF_ROOT,
+    moved,
+    moved_together,
+    nearest_root,
+)
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 _FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
 _STEP = 1e-3  # of differences by the speed, relative
 _SMALL = 1e-5  # harmonics of a mode of unit length
 _FAR = 1e-3  # share of an eigenvalue by which it moves far
+_MOST_ENTRIES = 1_000_000  # of the matrices of speeds that are looked at together
+
+
+class _Start(NamedTuple):
+    """A finer system with λ (k,) and harmonics (h, c, k), of `orders` (h,), of the reduced one."""
+
+    system: PeriodicSystem
+    orders: np.ndarray
+    values: np.ndarray
+    shapes: np.ndarray
+
+    def moved(self, values: np.ndarray, shapes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+        """Return eigenvalues after an inverse iteration of those `wanted`."""
+        result = values.astype(complex)
+        result[wanted] = moved(self.system, self.orders, values[wanted], shapes[..., wanted])[0]
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,29 +107,32 @@ class LeftOut:
         wide[lacking, kept:] = np.eye(more)
         return system.projected(wide), np.arange(kept + more) >= kept
 
-    def shifts(self, speed: float, modes: FloquetModes) -> np.ndarray:
-        """Return the estimated ``λ − λ_reduced`` of modes at a speed, shape (k,), complex [1/s].
+    def shifts(self, speeds: Sequence[float], modes: Sequence[FloquetModes]) -> list[np.ndarray]:
+        """Return the estimated ``λ − λ_reduced`` of the modes at each speed, (k,), complex [1/s].
 
         Free rigid motions, λ = 0, are in every basis; theirs is zero.
         """
-        shifts = np.zeros(len(modes.values), dtype=complex)
         if not np.any(self.finer.lacking):
-            return shifts
+            return [0j * entry.values for entry in modes]
+        result: list[np.ndarray] = []
+        at_once = max(1, _MOST_ENTRIES // len(self.finer.lacking) ** 2)
+        for first in range(0, len(speeds), at_once):
+            few = slice(first, first + at_once)
+            starts = [self._start(*each) for each in zip(speeds[few], modes[few], strict=True)]
+            if all(start.system.is_constant for start in starts):
+                result += _shifts_together(starts)
+            else:
+                result += [_shifts(start.moved, start.values, start.shapes) for start in starts]
+        return result
+
+    def _start(self, speed: float, modes: FloquetModes) -> _Start:
+        """Return the motions of the reduced model in the coordinates of the finer one."""
         system, lacking = self.at(speed)
-        vectors = modes.vectors if self.others is None else self.others.T @ modes.vectors
-        start = np.zeros((len(modes.orders), len(lacking), len(shifts)), dtype=complex)
-        start[:, ~lacking] = vectors
-        moving = np.flatnonzero(modes.values)
         used = self._used(modes, system.step)
-        values, start = modes.values[moving], start[used][..., moving]
-        found = moved(system, modes.orders[used], values, start)[0]
-        # from where a large one leads, for another eigenvalue may be nearer to λ, and the motion is
-        # not quite without that one's
-        far = np.abs(found - values) > _FAR * np.abs(values)
-        if np.any(far):
-            found[far] = moved(system, modes.orders[used], found[far], start[..., far])[0]
-        shifts[moving] = found - values
-        return shifts
+        vectors = modes.vectors if self.others is None else self.others.T @ modes.vectors
+        shapes = np.zeros((np.count_nonzero(used), len(lacking), len(modes.values)), dtype=complex)
+        shapes[:, ~lacking] = vectors[used]
+        return _Start(system, modes.orders[used], modes.values, shapes)
 
     @staticmethod
     def _used(modes: FloquetModes, step: int) -> np.ndarray:
@@ -154,3 +181,29 @@ class LeftOut:
         z, w = np.linalg.solve(H, np.column_stack([slope @ x, M @ x])).T  # H is Hermitian
         parts = (np.vdot(w, X) for X in (square @ z, slope @ z, slope @ x))
         return float((nearest_root(*parts) + shifted - speed).real)
+
+
+def _shifts(
+    move: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray],
+    values: np.ndarray,
+    shapes: np.ndarray,
+) -> np.ndarray:
+    """Return by how much eigenvalues move; one step takes λ, motions, and which are wanted."""
+    found = move(values, shapes, values != 0.0)
+    # from where a large one leads, for another eigenvalue may be nearer to λ, and the motion is
+    # not quite without that one's
+    far = np.abs(found - values) > _FAR * np.abs(values)
+    return move(found, shapes, far) - values
+
+
+def _shifts_together(starts: Sequence[_Start]) -> list[np.ndarray]:
+    """Return :func:`_shifts` of systems that do not change in time, in arrays of equal width."""
+    counts = [len(start.values) for start in starts]
+    values = np.zeros((len(starts), max(counts)), dtype=complex)
+    shapes = np.zeros((len(starts), starts[0].system.size, max(counts)), dtype=complex)
+    for i, (start, count) in enumerate(zip(starts, counts, strict=True)):
+        values[i, :count], shapes[i, :, :count] = start.values, start.shapes[0]
+    systems = [start.system for start in starts]
+    terms = np.array([[X[0] for X in (one.M, one.D, one.K)] for one in systems], dtype=complex)
+    shifts = _shifts(partial(moved_together, terms), values, shapes)
+    return [row[:count] for row, count in zip(shifts, counts, strict=True)]

@@ -49,7 +49,7 @@ def solved(
         if outer is not None:
             own = own - ports[i] @ outer[0] @ ports[i].T
         forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
-        answers.append(_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
+        answers.append(_all_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
         if i > 0:
             links = system.projected(system.ports)
             inward = _blocks(links, values, at[i - 1], at[i])
@@ -71,18 +71,30 @@ def solved(
     return result
 
 
-def _on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
+def _all_on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Return ``S⁻¹ F`` and ``S⁻ᴴ G`` of matrices S (…, n, n) and loads F, G (2, …, n, r)."""
     result = np.empty_like(loads)
     for place in np.ndindex(matrices.shape[:-2]):
-        # LAPACK itself: one factor for both, and scipy's checks would take longer
-        lu, pivots, singular = zgetrf(matrices[place])
-        if singular:
-            raise np.linalg.LinAlgError("singular matrix")
-        for side, form in enumerate((0, 2)):
-            at = side, *place
-            result[at] = zgetrs(lu, pivots, loads[at], trans=form)[0]
+        at = slice(None), *place
+        result[at] = on_both_sides(matrices[place], *loads[at])
     return result
+
+
+def on_both_sides(
+    matrix: np.ndarray, load: np.ndarray, force: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return ``S⁻¹ f`` and ``S⁻ᴴ g``; a complex matrix S in C order is overwritten.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If S is singular.
+    """
+    # LAPACK itself: one factor, of Sᵀ in its order, for both, and scipy's checks take longer
+    lu, pivots, singular = zgetrf(matrix.T, overwrite_a=True)
+    if singular:
+        raise np.linalg.LinAlgError("singular matrix")
+    return zgetrs(lu, pivots, load, trans=1)[0], zgetrs(lu, pivots, force.conj())[0].conj()
 
 
 def _groups(count: int, reach: int) -> list[np.ndarray]:

@@ -20,7 +20,8 @@ def nearest_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     """Return the root δ of ``aδ² + bδ + c = 0`` next to zero."""
     root = np.sqrt(b**2 - 4.0 * a * c + 0j)
     larger = np.where(np.abs(b + root) > np.abs(b - root), b + root, b - root)
-    return np.where(c == 0.0, 0.0, -2.0 * c / np.where(larger == 0.0, 1.0, larger))
+    with np.errstate(invalid="ignore"):  # NaN of a singular matrix
+        return np.where(c == 0.0, 0.0, -2.0 * c / np.where(larger == 0.0, 1.0, larger))
 
 
 def moved(
@@ -57,7 +58,7 @@ def moved(
     forces = convolved(system.M, shapes, orders) if forces is None else forces
     loads = slopes(system, shifted, shapes, orders)
     answers = np.full((2, *loads.shape), np.nan, dtype=complex)
-    at_once = max(1, _MOST_ENTRIES // (loads[:, :, :1].size * system.size))
+    at_once = max(1, _MOST_ENTRIES // (len(orders) * system.size**2))
     for start in range(0, len(values), at_once):
         few = slice(start, start + at_once)
         given = shifted[few], loads[..., few], forces[..., few]
@@ -67,6 +68,45 @@ def moved(
     square, linear = convolved(system.M, z, orders), slopes(system, shifted, z, orders)
     a, b, c = (np.sum(w.conj() * X, axis=(0, 1)) for X in (square, linear, loads))
     return shifted + nearest_root(a, b, c), z, w
+
+
+def moved_together(
+    terms: np.ndarray, values: np.ndarray, shapes: np.ndarray, wanted: np.ndarray
+) -> np.ndarray:
+    """Return the eigenvalues of :func:`moved` of several systems that do not change in time.
+
+    Parameters
+    ----------
+    terms : ndarray, shape (s, 3, k, k), complex
+        M, D and K.
+    values : ndarray, shape (s, j), complex
+        λ to begin with.
+    shapes : ndarray, shape (s, k, j), complex
+        x to begin with.
+    wanted : ndarray of bool, shape (s, j)
+        Which λ to move; the others are returned as they are.
+    """
+    shifted, size = values * (1.0 + OFF_ROOT), terms.shape[-1]
+    rates = shifted[:, None]
+
+    def inertia_and_slopes(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        inertia = terms[:, 0] @ x
+        return inertia, 2.0 * rates * inertia + terms[:, 1] @ x
+
+    forces, loads = inertia_and_slopes(shapes)
+    powers = np.stack([shifted**2, shifted, np.ones_like(shifted)], axis=-1)
+    answers = np.zeros((2, *shapes.shape), dtype=complex)
+    for i, j in np.argwhere(wanted):
+        dynamic = (powers[i, j] @ terms[i].reshape(3, -1)).reshape(size, size)
+        try:
+            answers[:, i, :, j] = harmonic_chain.on_both_sides(
+                dynamic, loads[i, :, j], forces[i, :, j]
+            )
+        except np.linalg.LinAlgError:
+            answers[:, i, :, j] = np.nan
+    z, w = answers
+    a, b, c = (np.sum(w.conj() * X, axis=1) for X in (*inertia_and_slopes(z), loads))
+    return np.where(wanted, shifted + nearest_root(a, b, c), values)
 
 
 def settled(

@@ -242,6 +242,12 @@ LINEAR_MODELS = [
         ("eigenvalue moved the other way", "-2.0 * c /", "2.0 * c /"),
     ),
     *mutations(
+        "linear/periodic/inverse_iteration.py",
+        "test_harmonic_chain.py::test_systems_that_stand_still_are_iterated_together",
+        ("half the slope by the inertia", "2.0 * rates * inertia", "rates * inertia"),
+        ("all eigenvalues are moved", "np.where(wanted, shifted", "np.where(True, shifted"),
+    ),
+    *mutations(
         "linear/periodic/harmonics.py",
         "test_harmonic_chain.py",
         ("half the slope", "2.0 * rates * shapes, orders)", "rates * shapes, orders)"),
@@ -254,6 +260,11 @@ LINEAR_MODELS = [
             "harmonics further out push",
             "own = own - ports[i] @ outer[0]",
             "own = own + ports[i] @ outer[0]",
+        ),
+        (
+            "left vector of the transpose",
+            "force.conj())[0].conj()",
+            "force)[0]",
         ),
         ("middle with one side", "(X.sum(axis=1, keepdims=True) for X", "(X[:, :1] for X"),
         (

@@ -97,7 +97,7 @@ TRAINS = [
             "max(highest, step)",
             "step",
         ),
-        ("a large shift is found once", "if np.any(far):", "if False:"),
+        ("a large shift is found once", "move(found, shapes, far) - values", "found - values"),
     ),
     *mutations(
         "linear/models/link_places.py",
