@@ -7,13 +7,19 @@ import numpy as np
 import pytest
 from models import disc_rotor
 from run_scenes import solve
+from scipy.spatial.transform import Rotation
 from soft_bars import STEP, STEPS, bar, run
 
 from exudyn_rotor import (
     AssumptionWarning,
+    JournalBearing,
+    OilFilm,
+    Pad,
     PrescribedMotion,
+    ShortJournalBearing,
     SolidRotor,
     add_rotor,
+    add_supports,
     check_run,
     propose,
 )
@@ -40,6 +46,11 @@ def solid():
     return bar("z")
 
 
+@pytest.fixture(scope="module")
+def beside():
+    return bar("y")
+
+
 @pytest.mark.parametrize("scene", SCENES)
 def test_rows_are_those_of_all_modes(solid, scene):
     """Mass-orthonormal modes, all of them, span the same displacements."""
@@ -49,6 +60,38 @@ def test_rows_are_those_of_all_modes(solid, scene):
     for row in whole.rows:
         assert row.value == pytest.approx(modes[row.name].value, rel=3e-3, abs=1e-15)
         assert row.ok == modes[row.name].ok
+
+
+SIZE = {"radius": 0.03, "length": 0.02, "viscosity": 0.02}
+PADS = [Pad(start=-0.5 * np.pi - 1.0, arc=2.0, clearance=1e-4)]
+PLACE = np.array([2e-5, -1.1e-4])  # the mean angle of the pad is along -n2
+SHORT = ShortJournalBearing(interface="left", clearance=1e-4, **SIZE)
+PAD = JournalBearing(interface="left", film=OilFilm(pads=PADS, **SIZE))
+FILMS = {"short": (SHORT, 0.99e-4), "pad": (PAD, 1e-4 - PAD.film.thinnest)}
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
+@pytest.mark.parametrize("spin", [300.0, "free"])
+@pytest.mark.parametrize("kind", FILMS)
+def test_a_journal_out_of_its_film_fails_the_check(beside, kind, spin):
+    """Its mean displacement, in whatever axes the rotor lies, for full and reduced bodies."""
+    film, reach = FILMS[kind]
+    options = {"translation": "none", "spin": spin, "stiffening": "none"}
+    options["rotation"] = Rotation.from_rotvec([0.3, -0.7, 0.4]).as_matrix()
+    moved = beside.axis.plane @ PLACE
+    for model in (beside, beside.reduce(2)):
+        trial = add_rotor(exudyn.SystemContainer().AddSystem(), model, **options).motion
+        start = np.tile(moved, beside.node_count)
+        if model is not beside:  # the first three modes are mass-orthonormal translations
+            S = trial.invariants.S
+            start = np.r_[S[:, :3].T @ moved, np.zeros(S.shape[1] - 3)]
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = add_rotor(mbs, model, modal_coordinates=start, **options)
+        add_supports(body, film)
+        mbs.Assemble()
+        row = check_run(body, warn=False)["film"]
+        assert row.value == pytest.approx(np.linalg.norm(PLACE) / reach, rel=1e-3)
+        assert not row.ok
 
 
 def test_stiffening_of_a_mesh_is_estimated_as_for_modes():

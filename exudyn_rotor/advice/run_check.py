@@ -36,6 +36,7 @@ def default_limits(accuracy: float) -> dict[str, float]:
         "travel": 0.1,
         "adrift": 1.0,
         "locked": 1e-6,
+        "film": 1.0,
         "frozen spin": accuracy,
         "connections": 0.0,
         "unresisted load": 0.01,
@@ -121,6 +122,8 @@ def check_run(
     ``adrift``           1        the same distance where the spin is prescribed, too: nothing holds
                                   the rotor in its place
     ``locked``           1e-6     locked coordinates off their place [rad], [size]
+    ``film``             1        displacement of a journal at the end over that beyond which its
+                                  film is too thin and the law goes on by its tangent
     ``frozen spin``      a        angular momentum of the changing moment of inertia over the whole,
                                   left out by ``spin_coupling='frozen'``; the error of spin speeds
     ``connections``      0        connectors, joints and loads that the rotor cannot carry:

@@ -5,18 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import exudyn
 import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
+from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
 _RINGING = 1.5  # energy about the static stretch over that of a start without it, with a margin
 _SPEEDS = np.linspace(0.1, 2.0, 20)  # looked at for growth, over the highest speed reached
+_KINDS = exudyn.OutputVariableType
+_BRAKING = "ConnectorRigidBodySpringDamper"  # of a film that brakes a free spin; in its own axes
 _HALVES = (slice(0, 3), slice(3, 6))  # translation, and tilt times the size
 _EXPLICIT = {"RK33": np.sqrt(3.0), "VelocityVerlet": 2.0}  # ωh that undamped motion bears
 _RK44 = np.sqrt(8.0)  # likewise; those with step control keep below it themselves
@@ -275,6 +280,27 @@ class Measures:
         """Return the largest spin angle per step [rad]."""
         solver = last_solver(self.body)
         return 0.0 if solver is None else solver.step * self.fastest
+
+    def film_use(self) -> float | None:
+        """Return the largest displacement of a journal now, over the way to the end of its film.
+
+        None without films.
+        """
+        axes = self.body.plan.setup.placement.rotation @ axes_of(self.body.axis)
+        shares = []
+        for added in self.body.supports:
+            if not isinstance(added.support, Bearing):
+                continue
+            local = self.body.mbs.GetObject(added.objects[0])["objectType"] == _BRAKING
+            kind = _KINDS.DisplacementLocal if local else _KINDS.Displacement
+            place = self.body.mbs.GetObjectOutput(added.objects[0], kind)
+            x, y = place[:2] if local else place @ axes[:, :2]
+            distance = np.hypot(x, y)
+            direction = np.array([x, y]) / distance if distance else np.array([1.0, 0.0])
+            reach = added.support._reach(direction)
+            if np.isfinite(reach):
+                shares.append(float(distance / reach))
+        return max(shares, default=None)
 
     def explicit_step(self) -> float:
         """Return ``ω_max h`` over what an explicit solver bears; 0 for an implicit one."""

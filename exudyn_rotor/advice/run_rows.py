@@ -118,6 +118,15 @@ def rows(
         f"the motion has {measures.frequency:.4g} rad/s on average, in its own coordinates; take "
         "smaller steps, whose square the error follows, or start without a jump if it rings",
     )
+    film = measures.film_use()
+    if film is not None:
+        yield (
+            "film",
+            "displacement of a journal at the end over that to which it has a film",
+            film,
+            "the journal touches, or the start was too sudden for the step: begin with smaller "
+            "steps, above all with a full body, or in the steady state",
+        )
     left_out = measures.frozen()
     if left_out is not None:
         yield (

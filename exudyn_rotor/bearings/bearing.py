@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import hypot
+from math import hypot, inf
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -93,6 +93,10 @@ class Bearing(LoadedBearing):
         Scenes need it where the spin is free.
         """
         return None
+
+    def _reach(self, direction: np.ndarray) -> float:
+        """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
+        return inf
 
     @abstractmethod
     def _law(

@@ -59,6 +59,9 @@ class JournalBearing(Bearing):
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
 
+    def _reach(self, direction: np.ndarray) -> float:
+        return self.film._reach(direction)
+
     @property
     def _law(self) -> Law:
         law = self.law_with_torque

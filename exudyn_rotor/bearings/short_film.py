@@ -82,6 +82,9 @@ class ShortFilmBearing(Bearing):
         """``μ R L³/c²`` [N s], before rates that are relative to the clearance."""
         return self.viscosity * self.radius * self.length**3 / self.clearance**2
 
+    def _reach(self, direction: np.ndarray) -> float:
+        return THINNEST * self.clearance
+
     def _checked_film(
         self, displacement: ArrayLike, velocity: ArrayLike, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:

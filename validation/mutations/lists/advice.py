@@ -4,6 +4,17 @@ from validation.mutations.mutation import mutations
 
 ADVICE = [
     *mutations(
+        "advice/run_measures.py",
+        "test_full_run_check.py::test_a_journal_out_of_its_film_fails_the_check",
+        ("journal in other axes", "place @ axes[:, :2]", "place[:2]"),
+        ("local axes turned", "x, y = place[:2] if local else", "x, y ="),
+        (
+            "way across the film's",
+            "added.support._reach(direction)",
+            "added.support._reach(-direction)",
+        ),
+    ),
+    *mutations(
         "advice/unresisted.py",
         "test_run_check.py::test_loads_at_the_node_and_weight_are_felt",
         (
