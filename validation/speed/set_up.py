@@ -2,7 +2,7 @@
 
 Then what each part of our own set-up takes, with what ``stiffening='full'`` and stress add.
 
-python -m validation set_up [--json FILE] [--quick]
+python -m validation set_up [--json FILE] [--quick | --large]
 """
 
 from __future__ import annotations
@@ -20,14 +20,18 @@ from exudyn_rotor import SolidRotor, free_modes
 from exudyn_rotor.demo.scene import BEARINGS, STEEL, disc_on_shaft
 
 MODES = 20
-ELEMENT_SIZES, QUICK_SIZES = (0.0155, 0.0085), (0.05,)  # m
+# lengths of the elements [m], and how much shorter they are than the radius of curves
+Size = tuple[float, float]
+SIZES: tuple[Size, ...] = ((0.0155, 2.0), (0.0085, 2.0))
+QUICK_SIZES: tuple[Size, ...] = ((0.05, 2.0),)
+LARGE_SIZES: tuple[Size, ...] = ((0.0056, 2.8),)
 
 
-def by_fem_interface(element_size: float) -> np.ndarray:
+def by_fem_interface(size: Size) -> np.ndarray:
     """Return the eigenfrequencies [rad/s] that FEMinterface computes."""
     fem = FEMinterface()
     fem.ImportMeshFromNGsolve(
-        disc_on_shaft(element_size),
+        disc_on_shaft(*size),
         materials=STEEL,
         boundaryNamesList=list(BEARINGS),
         meshOrder=2,
@@ -36,28 +40,28 @@ def by_fem_interface(element_size: float) -> np.ndarray:
     return np.sqrt(fem.eigenValues)
 
 
-def by_solid_rotor(element_size: float) -> np.ndarray:
+def by_solid_rotor(size: Size) -> np.ndarray:
     """Return the eigenfrequencies [rad/s] of the same rotor from SolidRotor."""
-    rotor = SolidRotor.from_ngsolve(disc_on_shaft(element_size), STEEL, axis="x")
+    rotor = SolidRotor.from_ngsolve(disc_on_shaft(*size), STEEL, axis="x")
     return free_modes(rotor, MODES).frequencies
 
 
-def timed(compute: Callable[[float], np.ndarray], element_size: float) -> tuple[np.ndarray, float]:
+def timed(compute: Callable[[Size], np.ndarray], size: Size) -> tuple[np.ndarray, float]:
     """Return the result and the seconds it took."""
     start = time.perf_counter()
-    return compute(element_size), time.perf_counter() - start
+    return compute(size), time.perf_counter() - start
 
 
-def parts(element_size: float) -> dict[str, float]:
+def parts(size: Size) -> dict[str, float]:
     """Return the seconds of each part of a set-up, one after the other on one rotor."""
     rotor, model = timed(
-        lambda size: SolidRotor.from_ngsolve(disc_on_shaft(size), STEEL, axis="x"), element_size
+        lambda size: SolidRotor.from_ngsolve(disc_on_shaft(*size), STEEL, axis="x"), size
     )
-    modes, found = timed(lambda _: free_modes(rotor, MODES), element_size)
-    _, reduction = timed(lambda _: rotor.reduce(modes), element_size)
-    prestress, static = timed(lambda _: rotor.prestress(), element_size)
-    _, full = timed(lambda _: rotor.reduce(modes, prestress=prestress), element_size)
-    _, stress = timed(lambda _: rotor.reduce(modes, stress=True), element_size)
+    modes, found = timed(lambda _: free_modes(rotor, MODES), size)
+    _, reduction = timed(lambda _: rotor.reduce(modes), size)
+    prestress, static = timed(lambda _: rotor.prestress(), size)
+    _, full = timed(lambda _: rotor.reduce(modes, prestress=prestress), size)
+    _, stress = timed(lambda _: rotor.reduce(modes, stress=True), size)
     return {
         "mesh, mass and stiffness": model,
         f"{MODES} free modes": found,
@@ -67,19 +71,19 @@ def parts(element_size: float) -> dict[str, float]:
     }
 
 
-def compare(element_size: float) -> dict:
+def compare(size: Size) -> dict:
     """Return degrees of freedom, seconds of both, their ratio, and how far the results differ."""
-    mesh = disc_on_shaft(element_size)
+    mesh = disc_on_shaft(*size)
     mesh.ngmesh.SecondOrder()
-    theirs, slow = timed(by_fem_interface, element_size)
-    ours, fast = timed(by_solid_rotor, element_size)
+    theirs, slow = timed(by_fem_interface, size)
+    ours, fast = timed(by_solid_rotor, size)
     return {
         "degrees_of_freedom": 3 * len(mesh.ngmesh.Points()),
         "fem_interface": slow,
         "solid_rotor": fast,
         "ratio": slow / fast,
         "deviation": float(np.abs(np.sort(ours) / np.sort(theirs) - 1.0).max()),
-        "parts": parts(element_size),
+        "parts": parts(size),
     }
 
 
@@ -87,9 +91,12 @@ def main() -> None:
     """Compare and print a table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
-    parser.add_argument("--quick", action="store_true", help="a coarse mesh")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--quick", action="store_true", help="a coarse mesh")
+    which.add_argument("--large", action="store_true", help="200 000 degrees of freedom")
     options = parser.parse_args()
-    rows = [compare(size) for size in (QUICK_SIZES if options.quick else ELEMENT_SIZES)]
+    sizes = QUICK_SIZES if options.quick else LARGE_SIZES if options.large else SIZES
+    rows = [compare(size) for size in sizes]
     print("  dofs   FEMinterface [s]   SolidRotor [s]   ratio   deviation")
     for row in rows:
         print(
