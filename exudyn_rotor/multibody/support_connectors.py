@@ -11,7 +11,8 @@ local angular velocity in axes of the frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import exudyn
 import numpy as np
@@ -19,15 +20,19 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.seats import Seat, point_marker, rigid_marker
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
 _KINDS = exudyn.OutputVariableType
+_BRAKING = "springForceTorqueUserFunction"
 Numbers = Sequence[float]
+SpinReader = Callable[[exudyn.MainSystem], tuple[float, float]]
 
 
 # ------------------------------------------------------------------ displacements
@@ -77,10 +82,51 @@ def bearing_connector(
 
     Its torque acts on a spin that is free; a prescribed one does not feel it.
     """
+    name, force = _bearing_function(body, bearing, seat.axes, _spin_reader(body))
+    if name == _BRAKING:
+        item = RigidBodySpringDamper(
+            markerNumbers=[base, rigid_marker(body, bearing.interface)],
+            stiffness=np.zeros((6, 6)),
+            damping=np.zeros((6, 6)),
+        )
+    else:
+        marker = point_marker(body, bearing.interface)
+        item = CartesianSpringDamper(markerNumbers=[base, marker])
+    setattr(item, name, force)
+    return body.mbs.AddObject(item)
+
+
+@contextmanager
+def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
+    """Hold the cages of all rolling bearings where they are at the spin angle `angle` [rad]."""
+    axes = body.plan.setup.placement.rotation @ axes_of(body.axis)
+    turning = _spin_reader(body)
+
+    def held(mbs: exudyn.MainSystem) -> tuple[float, float]:
+        return angle, turning(mbs)[1]
+
+    rolling = [one for one in body.supports if isinstance(one.support, RollingBearing)]
+
+    def let(spin: SpinReader) -> None:
+        for one in rolling:
+            function = _bearing_function(body, one.support, axes, spin)
+            body.mbs.SetObjectParameter(one.objects[0], *function)
+
+    let(held)
+    try:
+        yield
+    finally:
+        let(turning)
+
+
+def _bearing_function(
+    body: RotorItems, bearing: Bearing, axes: np.ndarray, spin: SpinReader
+) -> tuple[str, Callable]:
+    """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     if body.formulation.has_spin and bearing.law_with_torque is not None:
-        return _braking_connector(body, bearing, base)
-    spin, law = _spin_reader(body), bearing.law
-    (a, d), (b, e), (c, f) = seat.axes[:, :2].tolist()
+        return _BRAKING, _braking_function(bearing, spin)
+    law = bearing.law
+    (a, d), (b, e), (c, f) = axes[:, :2].tolist()
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
@@ -88,28 +134,18 @@ def bearing_connector(
         fx, fy = law(x, y, vx, vy, *spin(mbs))
         return [-a * fx - d * fy, -b * fx - e * fy, -c * fx - f * fy]
 
-    marker = point_marker(body, bearing.interface)
-    item = CartesianSpringDamper(markerNumbers=[base, marker], springForceUserFunction=force)
-    return body.mbs.AddObject(item)
+    return "springForceUserFunction", force
 
 
-def _braking_connector(
-    body: RotorItems, bearing: Bearing, base: exudyn.MarkerIndex
-) -> exudyn.ObjectIndex:
-    """Add a connector with force and torque, in the axes of its base."""
-    spin, law = _spin_reader(body), bearing.law_with_torque
+def _braking_function(bearing: Bearing, spin: SpinReader) -> Callable:
+    """Return force and torque, in the axes of the connector's base."""
+    law = bearing.law_with_torque
 
     def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
         fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
         return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
 
-    item = RigidBodySpringDamper(
-        markerNumbers=[base, rigid_marker(body, bearing.interface)],
-        stiffness=np.zeros((6, 6)),
-        damping=np.zeros((6, 6)),
-        springForceTorqueUserFunction=force,
-    )
-    return body.mbs.AddObject(item)
+    return force
 
 
 # ------------------------------------------------------------------ tilts
@@ -204,7 +240,7 @@ def _start_speed(body: RotorItems) -> float:
     return body.plan.setup.placement.speed
 
 
-def _spin_reader(body: RotorItems) -> Callable[[exudyn.MainSystem], tuple[float, float]]:
+def _spin_reader(body: RotorItems) -> SpinReader:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
     node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
     angles, rates = _KINDS.Coordinates, _KINDS.Coordinates_t

@@ -10,10 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import spin_at_start
 from exudyn_rotor.theory.rotating_axes import axes_of, into_rotor_frame
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
@@ -70,11 +72,13 @@ def _across(scene: SceneCoordinates, name: str) -> np.ndarray:
 def _places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
     """Return the equilibria of the journals by interface [m]."""
     loads = _loads(body)
-    return {
-        bearing.interface: bearing.equilibrium(speed, load)
-        for bearing, load in loads
-        if np.any(load) and speed != 0.0
-    }
+    places, cage = {}, spin_at_start(body)[0]
+    for bearing, load in loads:
+        if np.any(load) and isinstance(bearing, RollingBearing):
+            places[bearing.interface] = bearing.equilibrium(speed, load, cage)
+        elif np.any(load) and speed != 0.0:
+            places[bearing.interface] = bearing.equilibrium(speed, load)
+    return places
 
 
 def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:

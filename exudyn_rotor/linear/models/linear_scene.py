@@ -33,6 +33,8 @@ from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 from exudyn_rotor.multibody.marker_body import around
 from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.start_state import spin_at_start
+from exudyn_rotor.multibody.support_connectors import held_cages
 from exudyn_rotor.theory.nodal import skew
 
 ABOUT = ("steady", "given")
@@ -202,7 +204,8 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             As :meth:`at`, where loads do not repeat with every revolution, and where nothing holds
             the own spin of a rotor with an elastic drive against a torque.
         """
-        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
+        checks.number(speed, "speed", "rad/s")
+        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
             _check_period(self, probe)
             _, orders, harmonics = _resolved(self, probe, tolerance)
         return orders, harmonics
@@ -277,7 +280,7 @@ def _about_steady_motion(
     Returned are the equations, the orders and the harmonics; None where more samples are needed.
     `tolerance` counts relative to the motion, but for a step of differences in the equations.
     """
-    speed = probe.speed
+    speed, equations = probe.speed, tolerance == _AT_REST
     angles = 2.0 * np.pi * np.arange(samples) / samples
     orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
     waves = np.exp(1j * np.outer(angles, orders))
@@ -286,8 +289,8 @@ def _about_steady_motion(
     for iteration in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
-        terms = [_terms(*entry) for entry in _scaled(points)]
-        if any(X is None for X in terms):
+        terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
+        if equations and not all(resolved):
             return None
         system = PeriodicSystem(speed, *terms, scene.structural_damping, probe.rounding)
         if scene.about == "given":
@@ -311,9 +314,9 @@ def _about_steady_motion(
         if sizes.max() > _FAR * scene.length:
             break
         # what the equations need is the motion to a share of their step of differences
-        counts = probe.step if tolerance == _AT_REST else max(sizes.max(), _SMALLEST)
+        counts = probe.step if equations else max(sizes.max(), _SMALLEST)
         if moved.max() < tolerance * counts:
-            if spin is not None and tolerance != _AT_REST:
+            if spin is not None and not equations:
                 spin.check_held(torque, _UNHELD * np.sqrt(scene.mass), speed)
             limit = tolerance * max(sizes.max(), counts)
             return (system, orders, Y) if sizes[[0, 1, -2, -1]].max() <= limit else None
@@ -344,19 +347,18 @@ def _scaled(points: list[tuple]) -> Iterator[tuple[np.ndarray, np.ndarray, float
         yield X, scale, size
 
 
-def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> Terms | None:
-    """Return the Fourier terms of samples over a revolution; None where they do not resolve it."""
+def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
+    """Return the Fourier terms of samples over a revolution, and whether these resolve it."""
     count = len(samples)
     spectrum = np.fft.fft(samples, axis=0) / count
     sizes = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2))
     top = count // 2
-    if sizes[top - 1 : top + 2].max() > _CONVERGED * largest:
-        return None
+    resolved = bool(sizes[top - 1 : top + 2].max() <= _CONVERGED * largest)
     terms = {0: spectrum[0].real}
     for n in range(1, top - 1):
         if sizes[n] > _NOISE * largest:
             terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
-    return terms
+    return terms, resolved
 
 
 def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
