@@ -39,7 +39,9 @@ from exudyn_rotor.theory.nodal import skew
 
 ABOUT = ("steady", "given")
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
-_MOST_ITERATIONS = 25
+_MOST_ITERATIONS = 40
+_RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
+_LEAST_SHARE = 2e-3  # of a step
 _NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
 _UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
@@ -185,6 +187,8 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
     def steady_motion(self, speed: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.
 
+        Cages of rolling bearings stand where they are when the rotor starts.
+
         Parameters
         ----------
         speed : float
@@ -278,7 +282,8 @@ def _about_steady_motion(
     """Linearise about the steady motion, found by Newton's method on its harmonics.
 
     Returned are the equations, the orders and the harmonics; None where more samples are needed.
-    `tolerance` counts relative to the motion, but for a step of differences in the equations.
+    `tolerance` counts relative to the motion, but for a step of differences in the equations. The
+    motion alone does not need resolved equations: Newton's method then takes more steps.
     """
     speed, equations = probe.speed, tolerance == _AT_REST
     angles = 2.0 * np.pi * np.arange(samples) / samples
@@ -296,6 +301,13 @@ def _about_steady_motion(
         if scene.about == "given":
             return system, orders, Y
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples
+        metres = 1.0 / scene.metre(np.diag(system.M[0]))
+        size = np.linalg.norm(residual / metres)
+        if iteration and size > _RISE * before and share > _LEAST_SHARE:
+            change, share = 0.5 * change, 0.5 * share
+            Y = Y - change
+            continue
+        before, share = size, 1.0
         K = hill_matrices(system, orders)[2]
         change, left = (X.reshape(Y.shape) for X in _solved(K, -residual.ravel()))
         if spin is not None:
@@ -306,7 +318,6 @@ def _about_steady_motion(
             torque = spin.drive_torque(twist[middle], (Y + change)[middle], least)
             change = change - torque * twist
         Y = Y + change
-        metres = 1.0 / scene.metre(np.diag(system.M[0]))
         if np.abs(left / metres).max() > _UNHELD * scene.mass:
             break
         moved = np.abs(change * metres)
@@ -322,7 +333,9 @@ def _about_steady_motion(
             return (system, orders, Y) if sizes[[0, 1, -2, -1]].max() <= limit else None
     raise UnconvergedError(
         f"linear scene at {speed:g} rad/s: no steady motion found; is there a load that nothing "
-        "holds, or a resonance without damping? about='given' needs no steady motion"
+        "holds, a resonance without damping, or a stop or a bearing with clearance that the rotor "
+        "leaves and hits? A damped run from rest shows what it does there; about='given' needs no "
+        "steady motion"
     )
 
 
