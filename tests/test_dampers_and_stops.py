@@ -1,5 +1,6 @@
 """Squeeze-film dampers and stops against closed forms."""
 
+import exudyn as exu
 import numpy as np
 import pytest
 from point_rotors import ring_rotor
@@ -7,7 +8,11 @@ from point_rotors import ring_rotor
 from exudyn_rotor import (
     ClearanceStop,
     SqueezeFilmDamper,
+    Support,
+    add_rotor,
+    add_supports,
     stability,
+    steady_state,
 )
 
 FILM = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.01}
@@ -67,6 +72,24 @@ def test_stop_pushes_back_and_rubs():
     assert torque * speed + fx * vx + fy * vy < 0.0
     assert stop(friction=0.0).law_with_torque is None
     assert not np.any(stop().force([0.9e-4, 0.0], [1.0, 1.0], 100.0))
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_rotor_that_leans_on_stops_has_a_steady_state(friction):
+    """(K e + N)² + (μN)² = (W/2)² at each end, N = k (e − c), of a balanced rotor of 20 kg."""
+    rings = ring_rotor(0.1, 0.15, 20.0)
+    rotor = rings.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=300.0, translation="none", gravity=[0.0, -9.81, 0.0])
+    k, c, K = 1e7, 1e-5, 1e6
+    for name in ("left", "right"):
+        touched = stop(name, stiffness=k, clearance=c, friction=friction)
+        add_supports(body, [touched, Support(name, K, 1e3)])
+    mbs.Assemble()
+    found = np.hypot(*steady_state(body).interface_motion("left")[:2])
+    parts = np.poly1d([K + k, -k * c]), friction * k * np.poly1d([1.0, -c])
+    roots = (parts[0] ** 2 + parts[1] ** 2 - (98.1) ** 2).roots
+    assert found == pytest.approx(roots.real.max(), rel=1e-6)
 
 
 def test_linear_analyses_take_them():

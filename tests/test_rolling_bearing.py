@@ -12,6 +12,7 @@ from exudyn_rotor import (
     recommended_settings,
     spectra,
     stability,
+    steady_state,
 )
 
 BALLS = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
@@ -103,6 +104,55 @@ def test_a_loaded_rotor_sways_at_the_passing_frequency():
     strongest = found.frequencies[np.argmax(found.amplitudes[-1])]
     apart = 2.0 * np.pi / 0.14
     assert strongest == pytest.approx(pair[0].passing_frequency(300.0), abs=apart)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 5e-6])
+@pytest.mark.parametrize(
+    ("options", "angle"), [({"spin": 0.0}, 0.0), ({"spin": "free", "initial_angle": 0.6}, 0.6)]
+)
+def test_a_run_at_rest_starts_in_the_equilibrium_and_stays(clearance, options, angle):
+    """Each bearing carries half the weight, 98.1 N, of a balanced rotor without elastic modes."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor(), gravity=[0.0, -9.81, 0.0], **options)
+    pair = [bearing(name, clearance=clearance, damping=500.0) for name in ("left", "right")]
+    add_supports(body, pair)
+    mbs.Assemble()
+    state = steady_state(body).state()
+    body.start_from(state)
+    mbs.Assemble()
+
+    def place():
+        return mbs.GetMarkerOutput(body.marker("left"), exu.OutputVariableType.Displacement)[:2]
+
+    expected = pair[0].equilibrium(0.0, [0.0, -98.1], angle)
+    np.testing.assert_allclose(place(), expected, atol=1e-6 * np.abs(expected).max())
+    settings = recommended_settings(end_time=0.01, step=1e-3)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+    np.testing.assert_allclose(place(), expected, atol=1e-6 * np.abs(expected).max())
+
+
+def test_a_run_at_a_speed_starts_near_and_turns_its_cage():
+    """Held at the start angle, the cage gives the equilibrium of (2) there; the run then sways."""
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor(), spin=300.0, gravity=[0.0, -9.81, 0.0])
+    pair = [bearing(name, clearance=5e-6, damping=1500.0) for name in ("left", "right")]
+    add_supports(body, pair)
+    sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    steady = steady_state(body)
+    first, later = (pair[0].equilibrium(0.0, [0.0, -98.1], angle) for angle in (0.0, 0.6))
+    np.testing.assert_allclose(steady.interface_motion("left", 0.0)[:2], first, atol=1e-12)
+    body.start_from(steady.state())
+    settings = recommended_settings(end_time=0.005, step=1e-4)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e-4
+    mbs.SolveDynamic(settings)
+    away = np.abs(mbs.GetSensorStoredData(sensor)[:, 1:3] - first)
+    assert away[:2].max() < 1e-3 * np.abs(later - first).max()
+    assert away.max() > np.abs(later - first).max()
 
 
 def test_linear_analyses_take_it():

@@ -42,8 +42,8 @@ class RollingBearing(Bearing):
     """Radial bearing with balls or rollers.
 
     Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
-    passage of one element. A scene with it does not repeat with every revolution, so that it has
-    no steady state.
+    passage of one element. A scene with it does not repeat with every revolution:
+    :func:`steady_state` holds the cage where it starts.
 
     Parameters
     ----------

@@ -247,11 +247,11 @@ def _resolved(
     scene: LinearScene, probe: Probe, tolerance: float
 ) -> tuple[PeriodicSystem, np.ndarray, np.ndarray]:
     """Return equations, orders and harmonics of the steady motion, at as many angles as needed."""
-    samples = _FIRST_SAMPLES
+    samples, found = _FIRST_SAMPLES, None
     while samples <= _MOST_SAMPLES:
-        resolved = _about_steady_motion(scene, probe, samples, tolerance)
-        if resolved is not None:
-            return resolved
+        system, *found = _about_steady_motion(scene, probe, samples, tolerance, found)
+        if system is not None:
+            return system, *found
         samples *= 2
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
@@ -277,11 +277,16 @@ def _check_period(scene: LinearScene, probe: Probe) -> None:
 
 
 def _about_steady_motion(
-    scene: LinearScene, probe: Probe, samples: int, tolerance: float
-) -> tuple[PeriodicSystem, np.ndarray, np.ndarray] | None:
+    scene: LinearScene,
+    probe: Probe,
+    samples: int,
+    tolerance: float,
+    found: Sequence[np.ndarray] | None,
+) -> tuple[PeriodicSystem | None, np.ndarray, np.ndarray]:
     """Linearise about the steady motion, found by Newton's method on its harmonics.
 
-    Returned are the equations, the orders and the harmonics; None where more samples are needed.
+    Returned are the equations, None where more samples are needed, the orders and the harmonics;
+    it begins with those `found` at fewer samples.
     `tolerance` counts relative to the motion, but for a step of differences in the equations. The
     motion alone does not need resolved equations: Newton's method then takes more steps.
     """
@@ -290,13 +295,16 @@ def _about_steady_motion(
     orders = np.arange(-samples // 2 + 2, samples // 2 - 1)
     waves = np.exp(1j * np.outer(angles, orders))
     Y, middle = journal_start(scene, speed, orders), np.flatnonzero(orders == 0)[0]
+    if found is not None:
+        Y = np.zeros_like(Y)
+        Y[np.isin(orders, found[0])] = found[1]
     spin = OwnSpin.of(scene, [scene.interface_motion(name) for name in scene.interfaces])
     for iteration in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
         terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
         if equations and not all(resolved):
-            return None
+            return None, orders, Y
         system = PeriodicSystem(speed, *terms, scene.structural_damping, probe.rounding)
         if scene.about == "given":
             return system, orders, Y
@@ -330,7 +338,7 @@ def _about_steady_motion(
             if spin is not None and not equations:
                 spin.check_held(torque, _UNHELD * np.sqrt(scene.mass), speed)
             limit = tolerance * max(sizes.max(), counts)
-            return (system, orders, Y) if sizes[[0, 1, -2, -1]].max() <= limit else None
+            return system if sizes[[0, 1, -2, -1]].max() <= limit else None, orders, Y
     raise UnconvergedError(
         f"linear scene at {speed:g} rad/s: no steady motion found; is there a load that nothing "
         "holds, a resonance without damping, or a stop or a bearing with clearance that the rotor "

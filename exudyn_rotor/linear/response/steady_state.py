@@ -140,10 +140,15 @@ def steady_state(
         rotor, or a rotor whose prescribed motion is not at constant speed.
     UnconvergedError
         Where there is no steady motion: a load that nothing holds, a resonance without damping,
-        a load that does not repeat with every revolution, a support with a stop or friction.
+        a load that does not repeat with every revolution, a stop or a bearing with clearance
+        that the rotor leaves and hits.
 
     Notes
     -----
+    Elements of a rolling bearing do not come back with the rotor, so that there is no periodic
+    motion of a revolution. Their cage is held where it stands at the start: at rest the motion is
+    the equilibrium, at a speed a run from it sways as the cage turns (varying compliance).
+
     The spin is prescribed, θ = Ωt. A run with a free spin departs by what unbalance and supports
     exert as torque: nothing for a balanced rotor, and of second order in the eccentricity.
 

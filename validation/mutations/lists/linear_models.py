@@ -413,7 +413,21 @@ LINEAR_MODELS = [
     *mutations(
         "linear/models/journal_start.py",
         "test_journal_bearing.py::test_steady_state_is_the_equilibrium_of_the_journals",
-        ("journals begin in the centre", "if np.any(load) and speed", "if False and speed"),
+        ("journals begin in the centre", "elif np.any(load) and speed", "elif False and speed"),
+    ),
+    *mutations(
+        "multibody/support_connectors.py",
+        "test_rolling_bearing.py::test_a_run_at_a_speed_starts_near_and_turns_its_cage",
+        ("cages stay held", "        let(turning)", "        let(held)"),
+    ),
+    *mutations(
+        "linear/models/linear_scene.py",
+        "test_rolling_bearing.py::test_a_run_at_rest_starts_in_the_equilibrium_and_stays",
+        (
+            "cages held at another angle",
+            "spin_at_start(self.body)[0])",
+            "spin_at_start(self.body)[0] + 1.0)",
+        ),
     ),
     *mutations(
         "linear/models/probe.py",
