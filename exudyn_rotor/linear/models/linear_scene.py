@@ -299,6 +299,7 @@ def _about_steady_motion(
         Y = np.zeros_like(Y)
         Y[np.isin(orders, found[0])] = found[1]
     spin = OwnSpin.of(scene, [scene.interface_motion(name) for name in scene.interfaces])
+    change, share, before = np.zeros_like(Y), 1.0, np.inf
     for iteration in range(_MOST_ITERATIONS):
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
@@ -311,7 +312,7 @@ def _about_steady_motion(
         residual = waves.conj().T @ np.array([point[3] for point in points]) / samples
         metres = 1.0 / scene.metre(np.diag(system.M[0]))
         size = np.linalg.norm(residual / metres)
-        if iteration and size > _RISE * before and share > _LEAST_SHARE:
+        if size > _RISE * before and share > _LEAST_SHARE:
             change, share = 0.5 * change, 0.5 * share
             Y = Y - change
             continue
