@@ -39,6 +39,7 @@ from exudyn_rotor.theory.nodal import skew
 
 ABOUT = ("steady", "given")
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
+_MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
 _MOST_ITERATIONS = 40
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
 _LEAST_SHARE = 2e-3  # of a step
@@ -256,7 +257,8 @@ def _resolved(
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
         "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
-        "moves from node to node? linear_model(rotor, supports=…) takes bearings in equilibrium"
+        "moves from node to node? linear_model(rotor, supports=…) takes bearings in equilibrium; "
+        "a damped run from rest shows the motion"
     )
 
 
@@ -304,7 +306,7 @@ def _about_steady_motion(
         motion = [(waves @ (Y * (1j * orders[:, None] * speed) ** n)).real for n in range(3)]
         points = [linearised(probe, *point) for point in zip(angles, *motion, strict=True)]
         terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
-        if equations and not all(resolved):
+        if not all(resolved) and (equations or samples > _MOST_UNRESOLVED):
             return None, orders, Y
         system = PeriodicSystem(speed, *terms, scene.structural_damping, probe.rounding)
         if scene.about == "given":
