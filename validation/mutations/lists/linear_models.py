@@ -52,7 +52,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/linear_scene.py",
+        "linear/models/steady_motion.py",
         "test_steady_state.py",
         (
             "own spin is not kept",
