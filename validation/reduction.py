@@ -90,24 +90,24 @@ def disc_on_shaft() -> SolidRotor:
     """Return a disc of radius 0.12 m on a shaft of 0.5 m, with 20 g at its rim; 307 nodes."""
     shaft = Cylinder(Pnt(0, 0, 0), Z, 0.02, 0.5)
     solid = shaft + Cylinder(Pnt(0, 0, 0.18), Z, 0.12, 0.03)
-    solid.mat("steel")
-    solid.faces.Min(Z).name, solid.faces.Max(Z).name = ENDS
-    mesh = ngsolve.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.1, curvaturesafety=0.5))
-    rotor = SolidRotor.from_ngsolve(mesh, STEEL, "z").center_interfaces()
-    rotor = rotor.with_damping(stiffness=2e-5).add_point_mass([0.12, 0, 0.2], 0.02)
-    return rotor.with_prestress(rotor.prestress())
+    return _rotor(solid, Z, 0.1, "z", ([0.12, 0, 0.2], 0.02))
 
 
 def overhung_disc() -> SolidRotor:
     """Return an overhung disc about x, its axis 1 mm beside the middle of the shaft; 332 nodes."""
     shaft = Cylinder(Pnt(0, 0, 0), X, 0.02, 0.4)
     solid = shaft + Cylinder(Pnt(0.35, 0, 0), X, 0.1, 0.03)
-    solid.mat("steel")
-    solid.faces.Min(X).name, solid.faces.Max(X).name = ENDS
-    mesh = ngsolve.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.12, curvaturesafety=0.5))
     axis = SpinAxis([1.0, 0.0, 0.0], [0.0, 1e-3, 0.0])
+    return _rotor(solid, X, 0.12, axis, ([0.365, 0.1, 0], 0.03))
+
+
+def _rotor(solid, along, largest: float, axis: SpinAxis | str, mass: tuple) -> SolidRotor:
+    """Return a steel solid, meshed, damped, prestressed, with a mass at a place."""
+    solid.mat("steel")
+    solid.faces.Min(along).name, solid.faces.Max(along).name = ENDS
+    mesh = ngsolve.Mesh(OCCGeometry(solid).GenerateMesh(maxh=largest, curvaturesafety=0.5))
     rotor = SolidRotor.from_ngsolve(mesh, STEEL, axis).center_interfaces()
-    rotor = rotor.with_damping(stiffness=2e-5).add_point_mass([0.365, 0.1, 0], 0.03)
+    rotor = rotor.with_damping(stiffness=2e-5).add_point_mass(*mass)
     return rotor.with_prestress(rotor.prestress())
 
 

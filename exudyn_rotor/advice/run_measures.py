@@ -14,7 +14,6 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.multibody.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
-from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 
 _TOP = 0.2  # share of the flexible modes, from the top, that shows what lies beyond
@@ -286,7 +285,7 @@ class Measures:
 
         None without films.
         """
-        axes = self.body.plan.setup.placement.rotation @ axes_of(self.body.axis)
+        axes = self.body.standing_axes
         shares = []
         for added in self.body.supports:
             if not isinstance(added.support, Bearing):

@@ -54,6 +54,12 @@ class SceneSupport:
     evaluation: tuple[str, ...]
     base: Base | None = None
 
+    def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
+        """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
+        if not isinstance(self.support, MagneticBearing | TiltingPadBearing):
+            return np.zeros(0, dtype=int)
+        return np.asarray(mbs.systemData.GetObjectLTGODE2(self.objects[-1]), dtype=int)
+
     @property
     def uses_python(self) -> bool:
         """True when a time step calls Python for it."""

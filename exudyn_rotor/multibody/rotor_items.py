@@ -20,6 +20,7 @@ from exudyn_rotor.reduction.selection import Selection
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.rotating_axes import axes_of
 
 _INDICES = {
     "nodes": exudyn.NodeIndex,
@@ -100,6 +101,11 @@ class RotorItems:
     def axis(self) -> SpinAxis:
         """Spin axis, mesh coordinates."""
         return self.selection.source.axis
+
+    @property
+    def standing_axes(self) -> np.ndarray:
+        """(n1, n2, e) as columns (3, 3) in inertial axes, where the spin angle is zero."""
+        return self.plan.setup.placement.rotation @ axes_of(self.axis)
 
     @property
     def formulation(self) -> Formulation:

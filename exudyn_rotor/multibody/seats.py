@@ -52,7 +52,7 @@ class Seat:
         setup = body.plan.setup.placement
         on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
         place = setup.position + setup.rotation @ on_axis
-        axes = setup.rotation @ axes_of(body.axis)
+        axes = body.standing_axes
         if isinstance(base, Mapping):
             if name not in base:
                 raise ValueError(

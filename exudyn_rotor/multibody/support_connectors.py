@@ -24,7 +24,6 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.seats import Seat, point_marker, rigid_marker
-from exudyn_rotor.theory.rotating_axes import axes_of
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
@@ -99,7 +98,6 @@ def bearing_connector(
 @contextmanager
 def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
     """Hold the cages of all rolling bearings where they are at the spin angle `angle` [rad]."""
-    axes = body.plan.setup.placement.rotation @ axes_of(body.axis)
     turning = _spin_reader(body)
 
     def held(mbs: exudyn.MainSystem) -> tuple[float, float]:
@@ -109,7 +107,7 @@ def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
 
     def let(spin: SpinReader) -> None:
         for one in rolling:
-            function = _bearing_function(body, one.support, axes, spin)
+            function = _bearing_function(body, one.support, body.standing_axes, spin)
             body.mbs.SetObjectParameter(one.objects[0], *function)
 
     let(held)

@@ -24,7 +24,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.links import join_turning, stacked
-from exudyn_rotor.linear.models.points import with_pairs
+from exudyn_rotor.linear.models.points import ACROSS, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
@@ -34,7 +34,6 @@ from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame, turned_harmonics
 
-_ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
 _TURN = skew([0.0, 0.0, 1.0])
 
 
@@ -207,12 +206,12 @@ class ControlledRotor(ExtendedRotor):
             if isinstance(one, PadSupport):
                 continue
             count = len(one.damping) // 2
-            lifted = np.kron(np.eye(count), _ACROSS)
+            lifted = np.kron(np.eye(count), ACROSS)
             D, K = (lifted @ X @ lifted.T for X in (one.damping, one.stiffness))
             K[:3, :3] = 0.0  # of the plain rotor
             own = np.zeros((one.size, self.size))
             own[:, self.own_rows(index)] = np.eye(one.size)
-            own = {0: np.kron(np.eye(count - 2), _ACROSS) @ own}
+            own = {0: np.kron(np.eye(count - 2), ACROSS) @ own}
             ports = stacked([self._displacement(self._place(index)), self.sensed(index), own])
             turning = D @ np.kron(np.eye(count), _TURN)
             join_turning(sums, tuple(map(turned_harmonics, (D, K, turning))), ports)

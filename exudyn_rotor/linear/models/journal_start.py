@@ -17,7 +17,7 @@ from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import spin_at_start
-from exudyn_rotor.theory.rotating_axes import axes_of, into_rotor_frame
+from exudyn_rotor.theory.rotating_axes import into_rotor_frame
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
@@ -52,12 +52,12 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
 
 def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
     """Return the tilts of pads in equilibrium [rad] by the free coordinates."""
-    found, data = np.zeros(len(scene.rest)), scene.body.mbs.systemData
+    found = np.zeros(len(scene.rest))
     loads = dict(_loads(scene.body))
     for one in scene.body.supports:
         if isinstance(one.support, TiltingPadBearing) and np.any(loads.get(one.support, 0.0)):
             tilts = one.support.tilts(speed, loads[one.support])
-            found[data.GetObjectLTGODE2(one.objects[-1])] = np.nan_to_num(tilts)
+            found[one.own_coordinates(scene.body.mbs)] = np.nan_to_num(tilts)
     return found[scene.free]
 
 
@@ -94,12 +94,11 @@ def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
 
 
 def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray | None]:
-    source, setup = body.selection.source, body.plan.setup
+    source = body.selection.source
     e = source.axis.direction
     left, right = (source.interfaces[name].reference @ e for name in names)
     if left == right:
         return [None, None]
     share = (source.center_of_mass @ e - left) / (right - left)
-    axes = setup.placement.rotation @ axes_of(source.axis)
-    weight = source.invariants.mass * (axes.T @ setup.gravity)[:2]
+    weight = source.invariants.mass * (body.standing_axes.T @ body.plan.setup.gravity)[:2]
     return [(1.0 - share) * weight, share * weight]

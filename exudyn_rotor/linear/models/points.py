@@ -11,7 +11,7 @@ from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.theory.invariants import Invariants
 
 _CORNERS = 8
-_ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
+ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
 _LITTLE = 1e-3
 
 
@@ -57,7 +57,7 @@ def with_pairs(given: PointMotions, pairs: np.ndarray) -> PointMotions:
     return replace(
         given,
         points=np.vstack([given.points, np.zeros((count, 3))]),
-        motion=np.vstack([given.motion, _LITTLE * np.kron(np.eye(count), _ACROSS) @ pairs]),
+        motion=np.vstack([given.motion, _LITTLE * np.kron(np.eye(count), ACROSS) @ pairs]),
     )
 
 

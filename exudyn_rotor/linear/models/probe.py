@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import NamedTuple
 
 import exudyn
 import numpy as np
@@ -129,10 +130,20 @@ def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
         yield Probe(scene, speed, solver)
 
 
+class LinearPoint(NamedTuple):
+    """M, D, K (k, k) at one angle, the residual of y, and the forces of all but the rotor (k,)."""
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    residual: np.ndarray
+    forces: np.ndarray
+
+
 def linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return M, D, K, the residual of y, and the forces of all but the rotor, at one angle."""
+) -> LinearPoint:
+    """Return the scene linearised about y at one angle."""
     speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
     T1, T2 = speed * T1, speed**2 * T2
     x, v = T @ y, T @ y_t + T1 @ y
@@ -157,7 +168,7 @@ def linearised(
     faster = probe.velocity_step
     rest_D = -_differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
     carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
-    return (
+    return LinearPoint(
         T.T @ M @ T,
         T.T @ (2.0 * M @ T1 + rotor_D @ T + rest_D),
         T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T + rest_K + carried),

@@ -102,10 +102,10 @@ class SceneCoordinates:
     @cached_property
     def pairs(self) -> np.ndarray:
         """Where controllers' coordinates along (n1, n2) stand among the free ones, shape (p, 2)."""
-        data, found = self.body.mbs.systemData, []
+        found = []
         for one in self.body.supports:
             if isinstance(one.support, MagneticBearing):
-                found.extend(data.GetObjectLTGODE2(one.objects[1]))
+                found.extend(one.own_coordinates(self.body.mbs))
         places = [np.flatnonzero(self.free == number) for number in found]
         return np.concatenate([*places, np.zeros(0)]).astype(int).reshape(-1, 2)
 
@@ -115,11 +115,10 @@ class SceneCoordinates:
 
         A light pad moves as little as its journal.
         """
-        most, data = np.full(len(self.rest), np.inf), self.body.mbs.systemData
+        most = np.full(len(self.rest), np.inf)
         for one in self.body.supports:
-            if isinstance(one.support, TiltingPadBearing) and one.support.pad_inertia is not None:
-                tilts = data.GetObjectLTGODE2(one.objects[-1])
-                most[tilts] = 1.0 / one.support.film.radius
+            if isinstance(one.support, TiltingPadBearing):
+                most[one.own_coordinates(self.body.mbs)] = 1.0 / one.support.film.radius
         return np.array([most[self.free[column != 0.0]].min() for column in self.N.T])
 
     def metre(self, mass: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ import scipy.linalg
 
 from exudyn_rotor.linear.models.journal_start import journal_start
 from exudyn_rotor.linear.models.own_spin import OwnSpin
-from exudyn_rotor.linear.models.probe import Probe, linearised
+from exudyn_rotor.linear.models.probe import LinearPoint, Probe, linearised
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
@@ -141,7 +141,7 @@ class _Search:
             if system is None or self.scene.about == "given":
                 return system, Y
             metres = 1.0 / self.scene.metre(np.diag(system.M[0]))
-            residual = self.waves.conj().T @ np.array([point[3] for point in points])
+            residual = self.waves.conj().T @ np.array([point.residual for point in points])
             residual = residual / self.samples
             size = np.linalg.norm(residual / metres)
             if size > _RISE * before and share > _LEAST_SHARE:
@@ -176,13 +176,13 @@ class _Search:
         more = (len(self.orders) - len(found)) // 2
         return np.pad(found, ((more, more), (0, 0)))
 
-    def _points(self, Y: np.ndarray) -> list[tuple]:
+    def _points(self, Y: np.ndarray) -> list[LinearPoint]:
         """Return the scene linearised at all angles of the motion."""
         rates = 1j * self.orders[:, None] * self.probe.speed
         motion = [(self.waves @ (Y * rates**n)).real for n in range(3)]
         return [linearised(self.probe, *at) for at in zip(self.angles, *motion, strict=True)]
 
-    def _system(self, points: list[tuple]) -> PeriodicSystem | None:
+    def _system(self, points: list[LinearPoint]) -> PeriodicSystem | None:
         """Return the equations; None where they need more samples."""
         terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
         if not all(resolved) and (self.for_equations or self.samples > _MOST_UNRESOLVED):
@@ -191,14 +191,14 @@ class _Search:
         return PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
 
     def _own_spin(
-        self, system: PeriodicSystem, points: list[tuple] | None, K: np.ndarray, Y: np.ndarray
+        self, system: PeriodicSystem, points: list[LinearPoint] | None, K: np.ndarray, Y: np.ndarray
     ) -> tuple[float, np.ndarray]:
         """Return the drive's torque, and the change of harmonics that a unit of it takes back."""
         if self.spin is None:
             return 0.0, np.zeros_like(Y)
         least = np.inf
         if points is not None:
-            forces = np.mean([point[4] for point in points], axis=0)
+            forces = np.mean([point.forces for point in points], axis=0)
             least = self.spin.least_stiffness(system.K[0], forces, self.probe.rounding)
         middle = np.flatnonzero(self.orders == 0)[0]
         twist = _solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
@@ -226,7 +226,7 @@ def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return answer, load - K @ answer
 
 
-def _scaled(points: list[tuple]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+def _scaled(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
     """Yield samples of M, D, K (n, k, k), the scale of coordinates, and what counts as zero."""
     M, D, K = (np.array([point[i] for point in points]) for i in range(3))
     scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))

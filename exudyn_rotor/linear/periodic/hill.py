@@ -21,7 +21,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import resolution_of, resolved
-from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted, slopes
+from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted, slopes, spacing
 from exudyn_rotor.linear.periodic.inverse_iteration import settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
@@ -69,7 +69,7 @@ class HillSolution:
     @property
     def step(self) -> int:
         """Of the harmonics."""
-        return int(self.orders[1] - self.orders[0])
+        return spacing(self.orders)
 
 
 @dataclass(frozen=True, eq=False)

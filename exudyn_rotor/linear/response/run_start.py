@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.controlled_rotor import names_of_controllers
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
@@ -169,8 +168,8 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
 
     The latter are those (6, k) of its points along (n1, n2, e), by all coordinates.
     """
-    foundation, controllers = _foundation(body), [*_controllers(body), *_pads(body)]
-    names = names_of_controllers((one.support.interface, len(at)) for one, at in controllers)
+    foundation = _foundation(body)
+    names = names_of_controllers((one.support.interface, len(at)) for one, at in _with_own(body))
     if foundation is None:
         return names, {}
     given, own = foundation.foundation, body.selection.source.size
@@ -199,24 +198,14 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
     return bases[0] if bases else None
 
 
-def _controllers(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
-    """Return the magnetic bearings, and where their controllers' coordinates are in the scene."""
-    places = body.mbs.systemData.GetObjectLTGODE2
-    return [
-        (one, np.asarray(places(one.objects[1]), dtype=int))
-        for one in body.supports
-        if isinstance(one.support, MagneticBearing)
-    ]
+def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
+    """Return supports with own coordinates and where these are: controllers, then pads that tilt.
 
-
-def _pads(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
-    """Return the bearings with tilting pads, and where the tilts are in the scene."""
-    places = body.mbs.systemData.GetObjectLTGODE2
-    return [
-        (one, np.asarray(places(one.objects[-1]), dtype=int))
-        for one in body.supports
-        if isinstance(one.support, TiltingPadBearing)
-    ]
+    In the order of :class:`ControlledRotor`.
+    """
+    found = [(one, one.own_coordinates(body.mbs)) for one in body.supports]
+    found = [(one, places) for one, places in found if places.size]
+    return sorted(found, key=lambda each: isinstance(each[0].support, TiltingPadBearing))
 
 
 def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:
@@ -229,15 +218,15 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
         q[places], q_t[places] = T @ x[:first], T @ x_t[:first]
     c, s = np.cos(state.angle), np.sin(state.angle)
     R, R_t = np.array([[c, s], [-s, c]]), state.speed * np.array([[-s, c], [-c, -s]])
-    for _, places in _controllers(body):
-        of_one = slice(first, first + len(places))
-        pairs, rates = x[of_one].reshape(-1, 2), x_t[of_one].reshape(-1, 2)
-        q[places], q_t[places] = (pairs @ R).ravel(), (rates @ R + pairs @ R_t).ravel()
+    for one, places in _with_own(body):
+        own, rates = (X[first : first + len(places)] for X in (x, x_t))
         first += len(places)
-    for one, places in _pads(body):
-        of_one, radius = slice(first, first + len(places)), one.support.film.radius
-        q[places], q_t[places] = -x[of_one] / radius, -x_t[of_one] / radius
-        first += len(places)
+        if isinstance(one.support, TiltingPadBearing):
+            radius = one.support.film.radius
+            q[places], q_t[places] = -own / radius, -rates / radius
+        else:
+            pairs, rates = own.reshape(-1, 2), rates.reshape(-1, 2)
+            q[places], q_t[places] = (pairs @ R).ravel(), (rates @ R + pairs @ R_t).ravel()
     return replace(state, q=q, q_t=q_t)
 
 
