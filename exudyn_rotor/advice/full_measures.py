@@ -12,6 +12,7 @@ from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
+from exudyn_rotor.theory.invariants import Matrix
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import relief_factors, tilt_factors
 
@@ -34,9 +35,6 @@ class FullMeasures(Measures):
     def _bent(self, fields: np.ndarray) -> np.ndarray:
         return fields - self._rigid @ self._mean(fields)
 
-    def _squares(self, matrix, fields: np.ndarray) -> np.ndarray:
-        return np.einsum("is,is->s", fields, matrix @ fields)
-
     def tilt(self) -> float:
         """Return the largest rigid tilt out of the axis [rad]."""
         e, rotation = self.invariants.direction, self._mean(self.zeta.T)[3:]
@@ -44,7 +42,7 @@ class FullMeasures(Measures):
 
     def deflection(self) -> float:
         """Return the largest root mean square flexible displacement over the rotor's size."""
-        squares = self._squares(self.invariants.M, self._bent(self.zeta.T))
+        squares = _squares(self.invariants.M, self._bent(self.zeta.T))
         return float(np.sqrt(squares.max() / self.invariants.mass) / self.size)
 
     def adrift(self) -> float:
@@ -71,8 +69,8 @@ class FullMeasures(Measures):
     def _energies(self) -> tuple[np.ndarray, float]:
         inv, omega = self.invariants, self.record.speed
         c, rate = self.zeta.T, self.zeta_t.T
-        elastic = 0.5 * self._squares(inv.K, c)
-        kinetic = 0.5 * self._squares(inv.M, rate) + 0.5 * omega**2 * self._squares(inv.C, c)
+        elastic = 0.5 * _squares(inv.K, c)
+        kinetic = 0.5 * _squares(inv.M, rate) + 0.5 * omega**2 * _squares(inv.C, c)
         kinetic += omega * np.einsum("is,is->s", rate, inv.G @ c)
         return elastic[:, None], float(elastic.max() + (kinetic + self._drift).max())
 
@@ -96,16 +94,16 @@ class FullMeasures(Measures):
         carried = source.carried_prestress
         if carried is not None:
             relief = relief_factors(inv, relief_rotations(source)[0])
-            work = self._squares(carried.per_square, c) + self._by_factors(relief, c)
+            work = _squares(carried.per_square, c) + self._by_factors(relief, c)
             return work - self._by_factors(tilt_factors(inv), c)
         # K2_tilt does no work on fields without mean rotation
         network = estimated_stiffness(source)
-        return self._squares(inv.M if network is None else network, self._bent(c))
+        return _squares(inv.M if network is None else network, self._bent(c))
 
     def _by_factors(self, factors: tuple[np.ndarray, np.ndarray], c: np.ndarray) -> np.ndarray:
         """Return ``cᵀVᵀWVc``."""
         V, W = factors
-        return self._squares(W, V @ c)
+        return _squares(W, V @ c)
 
     @cached_property
     def frequency(self) -> float:
@@ -117,7 +115,7 @@ class FullMeasures(Measures):
         """Return the squares of translations and displacements (s, n) about their mean, by mass."""
         about, motion = rows - rows.mean(axis=0), self.body.motion
         lateral = self.invariants.mass * (about[:, motion.translations] ** 2).sum()
-        return float(lateral + self._squares(self.invariants.M, about[:, motion.modes].T).sum())
+        return float(lateral + _squares(self.invariants.M, about[:, motion.modes].T).sum())
 
     def yielding(self) -> float | None:
         """Return the largest von Mises stress over the yield stress; None where that is unknown."""
@@ -129,3 +127,8 @@ class FullMeasures(Measures):
         if carried.constant_stress is not None:
             stress = stress + carried.constant_stress
         return float(von_mises(stress).max() / carried.yield_stress)
+
+
+def _squares(matrix: Matrix, fields: np.ndarray) -> np.ndarray:
+    """Return ``uᵀ X u`` of fields (3n, s), shape (s,)."""
+    return np.einsum("is,is->s", fields, matrix @ fields)

@@ -16,6 +16,7 @@ import numpy as np
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.mode_choice import GROWTH, band, critical, ends, largest_share
 from exudyn_rotor.advice.request import PERIOD_ERROR, Request
+from exudyn_rotor.theory.rotating_axes import axial_skew
 
 _TRIAL = 1e-2  # ωh of the trial step at the end of the band; the error grows with its square
 _UNMOVED = 1e-9  # share of the largest response
@@ -119,7 +120,7 @@ def _of_frame(given: Candidate, speed: float, s: complex, step: float) -> np.nda
         mean, half = 0.5 * (forward + backward), 0.5j * (forward - backward)
         in_space = given.invariants.mass * np.array([[mean, half], [-half, mean]])
         first, second = _rates(rate, step)
-        turning = 2.0 * speed * first * np.array([[0.0, -1.0], [1.0, 0.0]])
+        turning = 2.0 * speed * first * axial_skew(3)[:2, :2]
         in_rotor = given.invariants.mass * (second * np.eye(2) + turning)
         place = slice(index * size, (index + 1) * size)
         change[place, place] = moved.T @ (in_space - in_rotor) @ moved

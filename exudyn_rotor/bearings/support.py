@@ -10,12 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.rotating_axes import FRAMES, turned_harmonics
+from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmonics
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
-_TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))  # ẽ of displacement and rotation
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
@@ -119,7 +117,7 @@ class Support:
         stiffness, damping = self.matrices(speed)
         if self.frame == "rotor":
             return {0: damping}, {0: stiffness}, {}
-        return tuple(turned_harmonics(X) for X in (damping, stiffness, damping @ _TURN))
+        return tuple(turned_harmonics(X) for X in (damping, stiffness, damping @ axial_skew(6)))
 
     def undamped(self) -> Support:
         """Return the support without damping and without the skew part of its stiffness."""

@@ -17,7 +17,6 @@ k₁ ≠ k₂, add a load of twice the spin speed, (k₁ − k₂)/2 · m; a run
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,9 +24,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.connection import Connection
-from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
-_TURN = np.kron(np.eye(2), skew([0.0, 0.0, 1.0]))
 _ACROSS = (0, 1, 3, 4)  # rows of the two offsets and the two tilts
 _SAME_PLACE, _SAME_AXIS = 1e-6, 1e-6  # m, rad
 
@@ -116,11 +114,10 @@ class FlexibleCoupling(Connection):
 
     def _deformation(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return ξ (6,) of (1) and its derivative by x (6, 12)."""
-        c, s = cos(x[5]), sin(x[5])
-        R = np.kron(np.eye(2), [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        R = np.kron(np.eye(2), axial_rotation(x[5]))
         apart = x[6:] - x[:6] + self._fixed
         by_motion = np.hstack([-R.T, R.T])
-        by_motion[:, 5] -= R.T @ _TURN @ apart
+        by_motion[:, 5] -= R.T @ axial_skew(6) @ apart
         return R.T @ apart - self._turning, by_motion
 
     def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray:

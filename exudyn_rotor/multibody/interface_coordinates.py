@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, sin
 
 import exudyn
 import numpy as np
@@ -22,10 +21,9 @@ from exudyn_rotor.multibody.full_body import FullRotorBody
 from exudyn_rotor.multibody.full_markers import interface_carrier
 from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.seats import Seat
-from exudyn_rotor.theory.rotating_axes import axes_of
+from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
 _RIGID = 6  # coordinates of the node of the frame
-_TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +69,15 @@ class InterfaceCoordinates:
         """Return motion (6,), rate (6,) and the derivative of the motion (6, size)."""
         q, q_t = np.asarray(q), np.asarray(q_t)
         theta = self.sign * q[self.spin]
-        c, s = cos(theta), sin(theta)
-        R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        R, skew = axial_rotation(theta), axial_skew(3)
         own = self.modes @ q[_RIGID:]
         arm, turned = R @ (self.point + own[:3]), R @ own[3:]
         x = np.concatenate([self.axes.T @ q[:3] + arm - self.point, turned])
         x[5] += theta - self.start
         J = np.zeros((6, self.size))
         J[:3, :3] = self.axes.T
-        J[:3, self.spin] = self.sign * (_TURN @ arm)
-        J[3:, self.spin] = self.sign * (_TURN @ turned)
+        J[:3, self.spin] = self.sign * (skew @ arm)
+        J[3:, self.spin] = self.sign * (skew @ turned)
         J[5, self.spin] += self.sign
         J[:3, _RIGID:], J[3:, _RIGID:] = R @ self.modes[:3], R @ self.modes[3:]
         return x, J @ q_t, J

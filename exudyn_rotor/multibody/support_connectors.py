@@ -24,6 +24,7 @@ from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.rotor_items import RotorItems
 from exudyn_rotor.multibody.seats import Seat, point_marker, rigid_marker
+from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
@@ -65,7 +66,7 @@ def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Call
         angle, speed = spin(mbs)
         support.check_range(speed)
         K, D = (X[:3, :3] for X in support.matrices(speed))
-        into = axes @ _rotation(angle) if turns else axes
+        into = axes @ axial_rotation(angle) if turns else axes
         x, x_t = np.dot(u, into), np.dot(v, into)
         if turns:
             x_t -= speed * np.array([-x[1], x[0], 0.0])
@@ -196,7 +197,7 @@ def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable |
         tilt = np.array([angles[0], angles[1], twist])
         if not turns:
             return [0.0, 0.0, 0.0, *(K @ tilt + D @ rate).tolist()]
-        R = _rotation(angle)
+        R = axial_rotation(angle)
         tilt, rate = tilt @ R, rate @ R
         rate -= speed * np.array([-tilt[1], tilt[0], 1.0])
         return [0.0, 0.0, 0.0, *(R @ (K @ tilt + D @ rate)).tolist()]
@@ -248,11 +249,6 @@ def _spin_reader(body: RotorItems) -> SpinReader:
         return sign * float(read(node, angles)[place]), sign * float(read(node, rates)[place])
 
     return spin
-
-
-def _rotation(angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _turned(axes: np.ndarray, matrix: np.ndarray) -> np.ndarray:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
+from math import cos, sin
 
 import numpy as np
 
 from exudyn_rotor.checks import read_only
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
 
 FRAMES = ("inertial", "rotor")
 
@@ -22,10 +24,22 @@ def axes_of(axis: SpinAxis) -> np.ndarray:
 
 
 @cache
+def axial_skew(size: int) -> np.ndarray:
+    """Return ``ẽ`` on whole triples along (n1, n2, e), shape (size, size)."""
+    return read_only(np.kron(np.eye(size // 3), skew([0.0, 0.0, 1.0])))
+
+
+def axial_rotation(angle: float) -> np.ndarray:
+    """Return ``R(θ)``, which turns rotor axes into inertial axes, (3, 3) along (n1, n2, e)."""
+    c, s = cos(angle), sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+@cache
 def turning_harmonics(size: int) -> dict[int, np.ndarray]:
     """Return R_n of ``R(θ) = Σ R_n exp(i n θ)``, of whole triples of rows, axes (n1, n2, e).
 
-    R turns rotor axes into inertial axes; ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
+    ``Rᵀ(θ) = R(−θ)`` has the term R_{−n} at n.
     """
     forward = 0.5 * np.array([[1.0, 1j, 0.0], [-1j, 1.0, 0.0], [0.0, 0.0, 0.0]])
     terms = {-1: forward.conj(), 0: np.diag([0.0, 0.0, 1.0]).astype(complex), 1: forward}

@@ -31,10 +31,7 @@ from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.rotating_axes import into_rotor_frame, turned_harmonics
-
-_TURN = skew([0.0, 0.0, 1.0])
+from exudyn_rotor.theory.rotating_axes import axial_skew, into_rotor_frame, turned_harmonics
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +175,7 @@ class ControlledRotor(ExtendedRotor):
         plain, own = self.plain.at(speed), self._inertia
         D, K = ({n: self._joined(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
         beside, own = slice(self.plain.size, self.plain.size + self._turning), own[: self._turning]
-        gyroscopic = np.kron(np.eye(len(own) // 2), _TURN[:2, :2])
+        gyroscopic = np.kron(np.eye(len(own) // 2), axial_skew(3)[:2, :2])
         D[0][beside, beside] += 2.0 * speed * own[:, None] * gyroscopic
         K[0][beside, beside] -= speed**2 * np.diag(own)
         for between in (self._between, self._films(speed)):
@@ -213,7 +210,7 @@ class ControlledRotor(ExtendedRotor):
             own[:, self.own_rows(index)] = np.eye(one.size)
             own = {0: np.kron(np.eye(count - 2), ACROSS) @ own}
             ports = stacked([self._displacement(self._place(index)), self.sensed(index), own])
-            turning = D @ np.kron(np.eye(count), _TURN)
+            turning = D @ axial_skew(len(D))
             join_turning(sums, tuple(map(turned_harmonics, (D, K, turning))), ports)
         return sums
 

@@ -18,10 +18,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.periodic.periodic_system import Terms
-from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.rotating_axes import turned_harmonics
+from exudyn_rotor.theory.rotating_axes import axial_skew, turned_harmonics
 
-_TURN = skew([0.0, 0.0, 1.0])
 _WHOLE = 1e-9  # distance of a multiple of the speed from a whole number
 _SAME = 1e-9  # relative slip of gears that is rounding
 
@@ -171,8 +169,8 @@ class Element:
     def parts(self, speed: float) -> tuple[Terms, Terms, Terms]:
         """Return Fourier terms of damping, stiffness, and stiffness per Ω, seen with Ω."""
         stiffness, damping = self.matrices(speed)
-        turn = np.kron(np.eye(len(stiffness) // 3), self.drift * _TURN)
-        return self._turned(damping), self._turned(stiffness), self._turned(damping @ turn)
+        turning = self.drift * damping @ axial_skew(len(damping))
+        return self._turned(damping), self._turned(stiffness), self._turned(turning)
 
     @property
     def drift(self) -> float:

@@ -14,7 +14,7 @@ from exudyn_rotor.multibody.rotor_body import RotorBody
 from exudyn_rotor.multibody.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
-from exudyn_rotor.theory.rotating_axes import axes_of
+from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class SceneCoordinates:
         motion, c = self.body.motion, self.count
         A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
         e = skew(motion.invariants.direction)
-        R, quarter = np.array(_rotation(theta)), np.array(_rotation(0.5 * np.pi))
+        R, quarter = axial_rotation(theta)[:2, :2], axial_skew(3)[:2, :2]
         blocks = []
         for full, turned, pair in (
             (1.0, A, R),
@@ -164,11 +164,6 @@ class SceneCoordinates:
         if spin is not None:
             q[spin], q_t[spin] = self.spin_sign * angle, self.spin_sign * speed
         return StartState(q, q_t, angle, speed)
-
-
-def _rotation(theta: float) -> list[list[float]]:
-    c, s = np.cos(theta), np.sin(theta)
-    return [[c, -s], [s, c]]
 
 
 def without_spin(body: RotorBody) -> np.ndarray:

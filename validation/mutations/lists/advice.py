@@ -228,11 +228,11 @@ ADVICE = [
             "work += self._by_factors(tilt",
             "work += 0.0 * self._by_factors(tilt",
         ),
-        ("kinetic energy of the spin", "+ 0.5 * omega**2 * self", "- 0.5 * omega**2 * self"),
+        ("kinetic energy of the spin", "+ 0.5 * omega**2 * _sq", "- 0.5 * omega**2 * _sq"),
         (
             "frequency without the frame",
-            "return float(lateral + self._squares",
-            "return float(0.0 * lateral + self._squares",
+            "return float(lateral + _squares",
+            "return float(0.0 * lateral + _squares",
         ),
     ),
     *mutations(

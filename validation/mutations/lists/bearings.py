@@ -7,7 +7,7 @@ BEARINGS = [
         "bearings/support.py",
         "test_stability.py::test_internal_damping_sets_in_at_the_closed_form_speed "
         "test_stability.py::test_a_symmetric_rotor_does_not_depend_on_the_frame",
-        ("circulatory part of a damper reversed", "damping @ _TURN", "-damping @ _TURN"),
+        ("circulatory part of a damper reversed", "damping @ axial_skew", "-damping @ axial_skew"),
         ("rotor's frame taken for the inertial one", '== "rotor"', '== "other"'),
     ),
     *mutations(
@@ -18,7 +18,7 @@ BEARINGS = [
             "both = {n: speed * X for n, X in carried.items()}",
             "both = {n: -speed * X for n, X in carried.items()}",
         ),
-        ("tilts not turned", "np.kron(np.eye(2), skew", "np.kron(np.diag([1.0, 0.0]), skew"),
+        ("tilts not turned", "axial_skew(6)", "np.diag([1, 1, 1, 0, 0, 0]) @ axial_skew(6)"),
     ),
     *mutations(
         "bearings/support.py",

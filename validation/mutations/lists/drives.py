@@ -72,7 +72,7 @@ DRIVES = [
             "return R.T @ apart - self._turning",
             "return R.T @ (apart - self._turning)",
         ),
-        ("no torque by turning axes", "-= R.T @ _TURN @ apart", "-= 0.0 * (R.T @ _TURN @ apart)"),
+        ("no torque by turning axes", "by_motion[:, 5] -= R.T", "by_motion[:, 5] -= 0.0 * R.T"),
         ("loss halved", "return float(rate @ (self._D", "return float(0.5 * rate @ (self._D"),
     ),
     *mutations(

@@ -336,8 +336,8 @@ MULTIBODY = [
         ("torsion spring against the ground", "(angles[2] - angle + np.pi)", "(angles[2] + np.pi)"),
         (
             "rotor's frame turned the wrong way",
-            "into = axes @ _rotation(angle) if",
-            "into = axes @ _rotation(-angle) if",
+            "into = axes @ axial_rotation(angle) if",
+            "into = axes @ axial_rotation(-angle) if",
         ),
     ),
     *mutations(
@@ -378,7 +378,7 @@ MULTIBODY = [
         "test_geared_rotors.py::test_axes_and_senses_change_nothing "
         "test_geared_rotors.py::test_energy_goes_into_drives_springs_and_losses",
         ("node's sense of the spin", "theta = self.sign * q[self.spin]", "theta = q[self.spin]"),
-        ("arm without the spin", "self.sign * (_TURN @ arm)", "0.0 * (_TURN @ arm)"),
+        ("arm without the spin", "self.sign * (skew @ arm)", "0.0 * (skew @ arm)"),
         ("modes do not turn", "R @ self.modes[:3], R @", "self.modes[:3], R @"),
     ),
     *mutations(

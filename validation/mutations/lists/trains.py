@@ -32,7 +32,7 @@ TRAINS = [
         "linear/models/links.py",
         _DISCS,
         ("links without reaction", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, -1.0], [0.0, 0.0]]"),
-        ("damping of supports turned back", "self.drift * _TURN", "-self.drift * _TURN"),
+        ("damping of supports turned back", "turning = self.drift", "turning = -self.drift"),
     ),
     *mutations(
         "linear/models/links.py",
