@@ -273,5 +273,9 @@ OBJECT = Kind()
 OBJECTS = Kind(EMPTY, spoiled=True)
 MAPPING = Kind(frozenset({"empty dict"}), spoiled=True)
 FUNCTION = Kind(frozenset({"function", "class"}))
-COEFFICIENT = Kind(SIGNED.good | FUNCTION.good | {"table"})
+COEFFICIENT = Kind(SIGNED.good | FUNCTION.good | {"table"}).but(
+    other_shape=[[1.0, 2.0, 3.0]], nan=[[math.nan]]
+)
 FILE = Kind(frozenset({"text", "digits", "numpy text", "path"})).but(null_in_path="a\0b")
+INTERFACES = NAMES.but(unknown=["nowhere"], number_among=["left", 3])
+POSITIVES = Kind(SERIES.good - {"zero", "range"}, spoiled=True).but(negative=[-2.0, -1.0])
