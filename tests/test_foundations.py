@@ -3,11 +3,9 @@
 from dataclasses import replace
 
 import exudyn as exu
-import ngsolve
 import numpy as np
 import pytest
 import scipy.linalg
-from netgen.occ import Box, OCCGeometry, Pnt, Y, Z
 from point_rotors import ring_rotor
 from test_supports_in_scenes import KINDS, SKEW, TO_X, TO_Y, distance, rings
 
@@ -323,109 +321,3 @@ def test_a_film_bearing_and_unbalance_on_a_foundation():
     )
     first = [each.motion[0, :, each.orders.tolist().index(1), :2] for each in (ours, theirs)]
     np.testing.assert_allclose(*first, rtol=0.0, atol=1e-6 * np.abs(first[0]).max())
-
-
-# ------------------------------------------------------------------ other descriptions
-
-
-def test_modes_of_a_block_are_the_block():
-    values, T = scipy.linalg.eigh(BLOCK.stiffness, BLOCK.mass)
-    mass = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-    shapes = {name: motion @ T * np.sqrt(mass) for name, motion in BLOCK.points.items()}
-    undamped = BLOCK.undamped().with_damping_ratio(0.02)
-    modes = Foundation.from_modes(np.sqrt(values), 0.02, shapes, masses=mass)
-    rotor, supports = rings(), [KINDS["3 x 3"], HELD]
-    found, expected = (
-        linear_model(rotor, supports=supports, foundation=each).at(SPEED)
-        for each in (modes, undamped)
-    )
-    assert distance(found, expected) < 1e-10
-
-
-def test_a_stiff_solid_is_a_rigid_block():
-    """A meshed box on mounts becomes the rigid one as its elasticity grows: errors with 1/E."""
-    solid = Box(Pnt(-0.1, -0.3, -0.2), Pnt(0.1, -0.1, 0.2))
-    for name, face in (("left", solid.faces.Min(Z)), ("right", solid.faces.Max(Z))):
-        face.name = name
-    solid.faces.Min(Y).name = "floor"
-    mesh = ngsolve.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.3))
-    places = {"left": [0.0, -0.2, -0.2], "right": [0.0, -0.2, 0.2], "floor": [0.0, -0.3, 0.0]}
-    springs = [4e6, 3e6, 2e6], 100.0
-    mass = 7850.0 * 0.2 * 0.2 * 0.4
-    across = mass / 12.0 * (0.2**2 + 0.4**2)
-    inertia = [across, across, mass / 12.0 * (2 * 0.2**2)]
-    mounts = [Mount(place, *springs) for place in places.values()]
-    block = Foundation.rigid(mass, inertia, [0.0, -0.2, 0.0], mounts, POINTS)
-    rotor, supports = rings(), [KINDS["3 x 3"], HELD]
-    expected = constant_exponents(linear_model(rotor, supports=supports, foundation=block).at(0.0))
-    errors = []
-    for modulus in (2e13, 2e14):
-        steel = {"youngsModulus": modulus, "poissonsRatio": 0.3, "density": 7850.0}
-        box = SolidRotor.from_ngsolve(mesh, steel, axis="z", check_units=False)
-        named = [Mount(name, *springs) for name in places]
-        elastic = Foundation.from_solid(box, POINTS, mounts=named, modes=0)
-        found = linear_model(rotor, supports=supports, foundation=elastic).at(0.0)
-        apart = np.abs(constant_exponents(found)[:, None] - expected).min(axis=0)
-        errors.append((apart / np.abs(expected).max()).max())
-    assert errors[1] < 1e-4
-    assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
-
-
-# ------------------------------------------------------------------ bad input
-
-
-def test_bad_foundations_are_refused():
-    unit, points = np.eye(2), {"left": np.ones((3, 2))}
-    for error, match, arguments in (
-        (ValueError, "mass: needs a symmetric", ([[1.0, 2.0], [0.0, 1.0]], unit, unit, points)),
-        (ValueError, "mass: needs a positive definite", (0.0 * unit, unit, unit, points)),
-        (ValueError, "stiffness: needs a symmetric", (unit, unit, [[1.0, 2.0], [0, 1]], points)),
-        (ValueError, "the ground holds every", (unit, unit, np.diag([1.0, 0.0]), points)),
-        (ValueError, "the ground holds every", (unit, unit, np.ones((2, 2)), points)),
-        (ValueError, "damping: needs a matrix ≥ 0", (unit, -unit, unit, points)),
-        (ValueError, "damping: needs", (unit, np.eye(3), unit, points)),
-        (ValueError, r"needs an array of shape \(6, 2\)", (unit, unit, unit, {"left": unit})),
-        (ValueError, "points: needs the motion", (unit, unit, unit, {})),
-        (ValueError, "places: 'top' is none", (unit, unit, unit, points, {"top": [0, 0, 0]})),
-        (ValueError, "participation: needs", (unit, unit, unit, points, {}, unit)),
-    ):  # fmt: skip
-        with pytest.raises(error, match=match):
-            Foundation(*arguments)
-    with pytest.raises(ValueError, match="frequencies: needs numbers > 0"):
-        Foundation.from_modes([-1.0], 0.01, {"left": [[1.0], [0.0], [0.0]]})
-    with pytest.raises(ValueError, match="damping_ratios: needs numbers from 0 to 1"):
-        Foundation.from_modes([1.0], 2.0, {"left": [[1.0], [0.0], [0.0]]})
-    with pytest.raises((TypeError, ValueError), match="masses: needs"):
-        Foundation.from_modes([1.0], 0.02, {"left": [[1.0], [0.0], [0.0]]}, masses=[[1.0], 2.0])
-    with pytest.raises(ValueError, match="stiffness: needs values ≥ 0"):
-        Mount("left", -1.0)
-    with pytest.raises(ValueError, match="'left' is no interface of the solid"):
-        Foundation.from_solid(replace(rings(), interfaces={}), POINTS)
-
-
-def test_a_support_without_its_point_is_refused_everywhere():
-    rotor, there = rings(), KINDS["number"]
-    alone = Foundation(np.eye(1), np.eye(1), np.eye(1), {"right": np.ones((3, 1))})
-    off = replace(BLOCK, places={"left": [0.0, 0.0, 0.2]})
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor)
-    for block, match in ((alone, "has no point for the support at 'left'"), (off, "0.35 m off")):
-        base = add_foundation(mbs, block)
-        before = mbs.systemData.NumberOfObjects()
-        with pytest.raises(ValueError, match=match):
-            linear_model(rotor, supports=there, foundation=block)
-        with pytest.raises(ValueError, match=match):
-            add_supports(body, there, base)
-        assert mbs.systemData.NumberOfObjects() == before
-    with pytest.raises(ValueError, match="in another mbs"):
-        add_supports(body, there, add_foundation(exu.SystemContainer().AddSystem(), BLOCK))
-    with pytest.raises(ValueError, match="gravity: needs a foundation with its participation"):
-        add_foundation(mbs, alone, gravity=[0.0, -9.81, 0.0])
-    model = linear_model(rotor, supports=there, foundation=BLOCK)
-    with pytest.raises(ValueError, match="a linear model has its own"):
-        linear_model(model, foundation=BLOCK)
-    turning = Support("left", 1e6, tilt_stiffness=np.diag([1.0, 1.0, 1e3]), frame="rotor")
-    with pytest.raises(ValueError, match="can stand on the ground only"):
-        linear_model(rotor, supports=turning, foundation=BLOCK)
-    with pytest.raises(ValueError, match="a foundation does not turn"):
-        unbalance_response(model, [1.0], Unbalance("left (foundation)", 1e-4))

@@ -2,12 +2,9 @@
 
 from dataclasses import replace
 
-import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg as la
-from exudyn.itemInterface import SensorObject
-from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
 from test_supports_in_scenes import SKEW, SPEED, distance, on_supports, rings
 
@@ -20,13 +17,9 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     Unbalance,
-    add_rotor,
-    add_supports,
     bearing_loads,
     campbell,
-    energy_balance,
     linear_model,
-    recommended_settings,
     select_modes,
     sensitivity,
     stability,
@@ -284,76 +277,6 @@ def test_magnets_under_weight_are_stiffer_in_one_direction(controller):
     found, expected = linear_model(mbs, body=body).at(SPEED), without_spin(rigid(), supports)
     assert expected.order == 2
     assert distance(found, without_spin(rigid(), [*supports, AXIAL])) < 1e-6
-
-
-# ------------------------------------------------------------------ runs
-
-
-def run(mbs, end_time, step=1e-4):
-    settings = recommended_settings(end_time=end_time, step=step)
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = step
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 1.0
-    assert mbs.SolveDynamic(settings)
-
-
-VELOCITY = exu.OutputVariableType.Velocity
-
-
-@pytest.mark.parametrize("sensor", [None, "right"])
-def test_a_foundation_carries_magnets_and_sensors(sensor):
-    """Rotor and free block keep their momentum; moving alike, no magnet pulls."""
-    size = InertiaCuboid(5000.0, [0.1, 0.5, 0.2])
-    for together in (False, True):
-        mbs = exu.SystemContainer().AddSystem()
-        start = [0.1, 0.02, 0.0]
-        body = add_rotor(mbs, rigid(), spin=SPEED, translation="in-plane", initial_velocity=start)
-        block = mbs.CreateRigidBody(
-            inertia=size, initialVelocity=start if together else [0.0, 0.0, 0.0]
-        )
-        supports = [bearing(sensor=sensor), bearing("right")]
-        add_supports(body, supports, {"left": block, "right": block})
-        mbs.Assemble()
-        run(mbs, 0.004)
-        across = body.coordinates()[1][:2]
-        other = mbs.GetObjectOutputBody(block, VELOCITY, [0.0, 0.0, 0.0])[:2]
-        momentum = (20.0 + 50.0 * together) * np.array(start)[:2]
-        np.testing.assert_allclose(20.0 * across + 50.0 * other, momentum, atol=1e-9)
-        assert (np.abs(across - other).max() < 1e-9) == together
-
-
-def test_work_of_the_magnets_is_the_energy_of_the_rotor():
-    """Force times velocity, over time, is the change of the kinetic energy: O(h²)."""
-    errors = []
-    for step in (1e-4, 5e-5):
-        mbs = exu.SystemContainer().AddSystem()
-        start = [0.1, 0.02, 0.0]
-        body = add_rotor(mbs, rigid(), spin=0.0, translation="in-plane", initial_velocity=start)
-        added = add_supports(body, [bearing(actuator=MAGNETS), bearing("right", PID, MAGNETS)])
-        body.start_recording()
-        forces = [
-            mbs.AddSensor(
-                SensorObject(
-                    objectNumber=one.objects[0],
-                    outputVariableType=exu.OutputVariableType.Force,
-                    storeInternal=True,
-                )
-            )
-            for one in added
-        ]
-        rates = [body.add_interface_sensor(one.support.interface, VELOCITY) for one in added]
-        mbs.Assemble()
-        run(mbs, 0.01, step)
-        stored = [[mbs.GetSensorStoredData(n)[1:] for n in each] for each in (forces, rates)]
-        work = sum(
-            np.trapezoid(np.sum(f[:, 1:] * v[:, 1:], axis=1), v[:, 0])
-            for f, v in zip(*stored, strict=True)
-        )
-        balance = energy_balance(body)
-        assert balance.time[0] == pytest.approx(stored[0][0][0, 0])
-        errors.append(abs((balance.kinetic[0] - balance.kinetic[-1]) / work - 1.0))
-        assert work > 0.9 * balance.kinetic[0]  # the connector's force is that on the base
-    assert errors[1] < 0.3 * errors[0] < 3e-5
 
 
 # ------------------------------------------------------------------ laws and refusals

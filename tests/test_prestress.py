@@ -5,7 +5,6 @@ import warnings
 import ngsolve as ngs
 import numpy as np
 import pytest
-import scipy.linalg as la
 import scipy.sparse as sp
 from models import ALUMINIUM, STEEL, block_beam, disc_rotor
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
@@ -296,40 +295,6 @@ def test_yielding_is_reported_with_its_place(disc):
 def test_impossible_arguments_are_refused(beam, given, message):
     with pytest.raises(ValueError, match=message):
         beam.prestress(**given)
-
-
-# ------------------------------------------------------------------ clamped nodes
-
-
-def test_clamped_modes_are_those_without_the_held_coordinates(beam):
-    held = beam.clamped("left")
-    assert held.grounded
-    assert held.rigid_motions == 0
-    nodes = np.setdiff1d(np.arange(beam.node_count), beam.interfaces["left"].nodes)
-    rows = (3 * nodes[:, None] + np.arange(3)).ravel()
-    K, M = (X.toarray()[np.ix_(rows, rows)] for X in (beam.stiffness, beam.mass))
-    expected = np.sqrt(la.eigh(K, M, eigvals_only=True, subset_by_index=[0, 4]))
-    modes = free_modes(held, 5)
-    np.testing.assert_allclose(modes.frequencies, expected, rtol=1e-9)
-    shapes = modes.matrix.reshape(-1, 3, 5)
-    moved = np.abs(shapes[beam.interfaces["left"].nodes]).max()
-    assert moved < 1e-9 * np.abs(shapes).max()
-
-
-def test_clamped_rows_have_no_geometric_stiffness(beam):
-    held = beam.clamped("left")
-    matrix = held.prestress(initial_displacement=True).matrix.tolil()
-    rows = (3 * beam.interfaces["left"].nodes[:, None] + np.arange(3)).ravel()
-    assert matrix[rows].nnz == 0
-    free = beam.prestress(clamped="left")
-    assert not free.balanced
-    np.testing.assert_allclose(free.displacement, held.prestress().displacement, rtol=1e-9)
-
-
-def test_clamping_needs_a_known_interface(beam):
-    for names, message in (("nose", "names: 'nose' is unknown"), ([], "names: needs one")):
-        with pytest.raises(ValueError, match=message):
-            beam.clamped(names)
 
 
 # ------------------------------------------------------------------ imported matrices, refusals

@@ -7,6 +7,7 @@ from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.linear_models import LINEAR_MODELS
+from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.pictures import PICTURES
 from validation.mutations.lists.prestress import PRESTRESS
@@ -29,6 +30,7 @@ ALL = (
     *FOUNDATIONS,
     *MULTIBODY,
     *LINEAR_MODELS,
+    *LINEAR_PERIODIC,
     *LINEAR,
     *TRAINS,
     *EVALUATION,

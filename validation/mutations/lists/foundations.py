@@ -124,7 +124,7 @@ FOUNDATIONS = [
     ),
     *mutations(
         "foundations/foundation.py",
-        "test_foundations.py::test_a_stiff_solid_is_a_rigid_block",
+        "test_foundation_kinds.py::test_a_stiff_solid_is_a_rigid_block",
         (
             "arms of a structure point the other way",
             "_of_rigid(place - solid.interfaces[name].reference)",
@@ -133,7 +133,7 @@ FOUNDATIONS = [
     ),
     *mutations(
         "foundations/foundation.py",
-        "test_foundations.py::test_modes_of_a_block_are_the_block",
+        "test_foundation_kinds.py::test_modes_of_a_block_are_the_block",
         ("damping ratios halved", "2.0 * zeta * omega * m", "zeta * omega * m"),
     ),
     *mutations(

@@ -8,7 +8,7 @@ _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_
 MULTIBODY = [
     *mutations(
         "multibody/magnetic_connectors.py",
-        "test_magnetic_bearing.py::test_a_foundation_carries_magnets_and_sensors "
+        "test_magnetic_runs.py::test_a_foundation_carries_magnets_and_sensors "
         "test_magnetic_bearing.py::test_scene_and_list_have_the_same_exponents "
         "test_magnetic_bearing.py::test_magnets_under_weight_are_stiffer_in_one_direction",
         ("sensors on the ground", "- read(base, _KINDS.Position)", "- seat.place"),
