@@ -6,14 +6,19 @@ for one another. Eigenproblems of one stack are shared out instead, each to one 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
-from threading import Lock
+from threading import Lock, local
+from typing import TypeVar
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
+
+Item, Result = TypeVar("Item"), TypeVar("Result")
+_HERE = local()  # of each thread
 
 _WORTH = 30_000  # entries of matrices from which on their eigenproblems are shared out
 
@@ -62,6 +67,39 @@ def one_thread() -> Iterator[int]:
         _LIMIT.leave()
 
 
+@cache
+def _helpers() -> ThreadPoolExecutor:
+    """Return threads that stay: to start one takes as long as a solution on a busy machine."""
+    return ThreadPoolExecutor(os.cpu_count(), initializer=setattr, initargs=(_HERE, "helps", True))
+
+
+if hasattr(os, "register_at_fork"):  # a forked process has none of the threads
+    os.register_at_fork(after_in_child=_helpers.cache_clear)
+
+
+def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """Return ``[function(item) for item in items]``, on as many threads as BLAS may use.
+
+    Each call has one thread of BLAS. It is quicker only where the function spends its time outside
+    of Python.
+    """
+    results, left = [None] * len(items), iter(range(len(items)))
+
+    def work() -> None:
+        for place in left:
+            results[place] = function(items[place])
+
+    with one_thread() as count:
+        more = 0 if hasattr(_HERE, "helps") else min(count, len(items)) - 1
+        helping = [_helpers().submit(work) for _ in range(more)]
+        try:
+            work()
+        finally:
+            for each in helping:
+                each.result()
+    return results
+
+
 def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return what :func:`numpy.linalg.eig` does, a stack (s, k, k) shared out among threads.
 
@@ -70,7 +108,6 @@ def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     with one_thread() as count:
         if matrices.ndim < 3 or matrices.size < _WORTH or count == 1:
             return np.linalg.eig(matrices)
-        with ThreadPoolExecutor(count) as executor:
-            found = executor.map(np.linalg.eig, np.array_split(matrices, count))
-            values, vectors = zip(*found, strict=True)
+        found = shared(np.linalg.eig, np.array_split(matrices, count))
+    values, vectors = zip(*found, strict=True)
     return np.concatenate(values), np.concatenate(vectors)

@@ -1,13 +1,14 @@
 """One thread of BLAS for small dense problems."""
 
 from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 
 import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
 from exudyn_rotor.sweep import sweep
-from exudyn_rotor.threads import eig, one_thread
+from exudyn_rotor.threads import eig, one_thread, shared
 
 
 def counts(_value: float = 0.0) -> set[int]:
@@ -53,3 +54,19 @@ def test_eigenproblems_are_shared_out_and_the_same_to_the_digit(monkeypatch):
         eig(matrices)
     eig(matrices[0])
     assert sorted(lengths) == [4, 4, 5, 5, 60]
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_shared_work_is_done_in_order_by_two_threads_at_once():
+    both = Barrier(2, timeout=20.0)
+
+    def done(number: int) -> tuple[int, set[int], list[str]]:
+        if number < 2:
+            both.wait()
+        return number, counts(), shared(str, [number, number])
+
+    expected = [(number, {1}, [str(number)] * 2) for number in range(5)]
+    assert shared(done, range(5)) == expected
+    assert counts() == {2}
+    with pytest.raises(ZeroDivisionError):
+        shared(lambda number: 1 / number, [1, 0, 2, 0])

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from ngsolve.la import SparseMatrixd
 
 from exudyn_rotor.solvers import pardiso
+from exudyn_rotor.threads import shared
 
 Solve = Callable[[np.ndarray], np.ndarray]
 
@@ -114,11 +115,14 @@ def _sparse(matrix: sp.csr_array) -> Solve:
     with ngsolve.TaskManager():
         assembled = SparseMatrixd.CreateFromCOO(rows, columns, lower.data, *lower.shape)
         inverse = assembled.Inverse(inverse="sparsecholesky")
-    threads = ngsolve.TaskManager if lower.shape[0] > _THREADED_SIZE else nullcontext
+    threaded = lower.shape[0] > _THREADED_SIZE
+    threads = ngsolve.TaskManager if threaded else nullcontext
 
     def solve(vector: np.ndarray) -> np.ndarray:
         if vector.ndim == 2:
-            return np.column_stack([solve(column) for column in vector.T] or [vector])
+            columns = vector.T
+            solved = list(map(solve, columns)) if threaded else shared(solve, columns)
+            return np.column_stack(solved or [vector])
         # new ones each time: several threads may share a factor
         right, solution = ngsolve.BaseVector(len(vector)), ngsolve.BaseVector(len(vector))
         right.FV().NumPy()[:] = vector

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
 from exudyn_rotor.solvers.factor import DENSE_SIZE
 from exudyn_rotor.solvers.rounding import rounding
@@ -17,8 +16,13 @@ Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498
 # share of ω² M φ that iteration may leave
 _RESIDUAL_LIMIT = 1e-6
-# vectors that iteration begins with; one and a half for each mode take the fewest solutions
-_LEAST_VECTORS = 20
+# columns that are solved for at once, and how many for each mode are kept at most
+_BLOCK, _ROOM = 2, 5
+_MOST_STEPS = 1000
+# a block more is added between two looks at what has converged, for so many columns
+_BLOCKS_APART = 80
+# length of what is new in columns, relative to them, that is rounding, and squares of one another
+_DEPENDENT, _ALIKE = 1e-14, 1e-13
 
 
 def is_small(size: int, count: int) -> bool:
@@ -51,20 +55,19 @@ def dense_modes(stiffness: np.ndarray, mass: np.ndarray, count: int, skip: int =
 
 
 def lanczos_modes(
-    stiffness: sp.csr_array,
     mass: sp.csr_array,
     inverse: Callable[[np.ndarray], np.ndarray],
     count: int,
     tolerance: float,
 ) -> Modes:
-    """Return the `count` lowest modes by Lanczos iteration on ``K⁻¹ M``.
+    """Return the `count` lowest modes by block Lanczos iteration on ``K⁻¹ M``.
 
     Parameters
     ----------
-    stiffness, mass : scipy.sparse.csr_array, shape (n, n)
+    mass : scipy.sparse.csr_array, shape (n, n)
     inverse : callable
-        The stiffness's inverse on the motions that are allowed: symmetric, positive
-        semi-definite; motions in its null space are left out.
+        The stiffness's inverse on the motions that are allowed, of loads (n, k): symmetric,
+        positive semi-definite; motions in its null space are left out.
     count : int
     tolerance : float
         Relative accuracy of the eigenvalues of ``K⁻¹ M``.
@@ -83,32 +86,102 @@ def lanczos_modes(
 
     Notes
     -----
-    The start vector is seeded, so that results repeat. Source of the transformation: Ericsson,
-    Ruhe, "The spectral transformation Lanczos method", Math. Comp. 35 (1980).
+    Blocks of two, as bending modes come in pairs, and two threads can solve for them. The start
+    vectors are seeded, so that results repeat. Sources: of the transformation, Ericsson, Ruhe, "The
+    spectral transformation Lanczos method", Math. Comp. 35 (1980); of the restarts, Wu, Simon,
+    "Thick-restart Lanczos method", SIAM J. Matrix Anal. Appl. 22 (2000).
     """
-    size = stiffness.shape[0]
-    start = np.random.default_rng(_SEED).standard_normal(size)
-    # ARPACK takes eigenvalues of K⁻¹M below ε^⅔ for zero, and then stops too early
-    load = mass @ start
-    answer = inverse(load)
-    scale = np.sqrt((start @ load) / max(answer @ (mass @ answer), np.finfo(float).tiny))
-    operator = spla.LinearOperator(
-        stiffness.shape, matvec=lambda force: scale * inverse(force), dtype=float
+    size = mass.shape[0]
+    start = np.random.default_rng(_SEED).standard_normal((size, _BLOCK))
+    # of thin matrices, threads would wait for one another between the solutions
+    with one_thread():
+        space = _Krylov(mass, inverse, min(size, _ROOM * (count + _BLOCK)), start)
+        for _ in range(_MOST_STEPS):
+            values, turn, errors = space.ritz_values()
+            converged = errors[:count] <= tolerance * values[:count]
+            if len(converged) == count and np.all(converged):
+                return 1.0 / values[:count], space.basis @ turn[:, :count]
+            if not space.extend(values, turn, count):
+                break
+    raise ValueError(
+        f"only {np.count_nonzero(converged)} of {count} modes converged to {tolerance:.0e}; "
+        "ask for more modes (a cluster may be cut) or give a larger tolerance"
     )
-    ncv = min(size, max(_LEAST_VECTORS, 3 * count // 2))
-    try:
-        # of its thin matrices, threads would wait for one another between the solutions
-        with one_thread():
-            values, modes = spla.eigsh(
-                stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance, ncv=ncv
-            )
-    except spla.ArpackNoConvergence as error:
-        raise ValueError(
-            f"only {len(error.eigenvalues)} of {count} modes converged to {tolerance:.0e}; "
-            "ask for more modes (a cluster may be cut) or give a larger tolerance"
-        ) from error
-    order = np.argsort(values)
-    return scale * values[order], modes[:, order]
+
+
+class _Krylov:
+    """Mass-orthonormal basis of a Krylov space of ``K⁻¹ M``, and what the next block adds."""
+
+    def __init__(
+        self,
+        mass: sp.csr_array,
+        inverse: Callable[[np.ndarray], np.ndarray],
+        room: int,
+        start: np.ndarray,
+    ) -> None:
+        self._mass, self._inverse = mass, inverse
+        self._basis, self._momenta = (np.empty((len(start), room), order="F") for _ in range(2))
+        self._projected = np.zeros((room, room))
+        self._count = 0
+        self._next(inverse(mass @ start))
+        self._add()
+
+    @property
+    def basis(self) -> np.ndarray:
+        """Shape (n, m)."""
+        return self._basis[:, : self._count]
+
+    def ritz_values(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the Ritz values, descending, their vectors in the basis and their residuals."""
+        values, turn = np.linalg.eigh(self._projected[: self._count, : self._count])
+        values, turn = values[::-1], turn[:, ::-1]
+        latest = turn[self._count - self._rest.shape[1] :]
+        return values, turn, np.linalg.norm(self._rest @ latest, axis=0)
+
+    def extend(self, values: np.ndarray, turn: np.ndarray, count: int) -> bool:
+        """Add some blocks, after a restart where there is no room left; False if there are none."""
+        if not self._has_room:
+            kept = (count + self._count) // 2
+            for array in (self._basis, self._momenta):
+                array[:, :kept] = array[:, : self._count] @ turn[:, :kept]
+            self._projected[:kept, :kept] = np.diag(values[:kept])
+            self._count = kept
+        grown = self._add()
+        for _ in range(self._count // _BLOCKS_APART):
+            if self._has_room:
+                self._add()
+        return grown
+
+    @property
+    def _has_room(self) -> bool:
+        return self._count + self._block.shape[1] <= self._basis.shape[1]
+
+    def _add(self) -> bool:
+        added = slice(self._count, self._count + self._block.shape[1])
+        if added.start == added.stop:
+            return False
+        self._basis[:, added], self._momenta[:, added] = self._block, self._momentum
+        self._count = added.stop
+        shares = self._next(self._inverse(self._momentum))
+        self._projected[: added.stop, added] = shares
+        self._projected[added, : added.stop] = shares.T
+        return True
+
+    def _next(self, columns: np.ndarray) -> np.ndarray:
+        """Take what is new in some columns as the next block; return their shares of the basis."""
+        shares = np.zeros((self._count, columns.shape[1]))
+        for _ in range(2):  # one Gram–Schmidt pass loses orthogonality
+            share = self._momenta[:, : self._count].T @ columns
+            columns, shares = columns - self.basis @ share, shares + share
+        # column by column, which is faster than two at once
+        weighted = np.stack([self._mass @ column for column in columns.T], axis=1)
+        squares, turn = np.linalg.eigh(columns.T @ weighted)
+        least = max(_DEPENDENT**2 * np.sum(shares**2), _ALIKE * squares[-1])
+        new = squares > least
+        lengths, turn = np.sqrt(squares[new]), turn[:, new]
+        self._block, self._momentum = (X @ (turn / lengths) for X in (columns, weighted))
+        self._rest = lengths[:, None] * turn.T
+        return shares
 
 
 def check_modes(

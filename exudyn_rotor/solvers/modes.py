@@ -32,4 +32,4 @@ def lowest_modes(
     """Return the `count` lowest modes; parameters as of :func:`davidson_modes`."""
     if inverse.by_blocks:
         return davidson_modes(stiffness, mass, inverse, count, tolerance, balanced)
-    return lanczos_modes(stiffness, mass, inverse.solve, count, tolerance)
+    return lanczos_modes(mass, inverse.solve, count, tolerance)

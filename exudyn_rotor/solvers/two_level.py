@@ -82,12 +82,13 @@ class TwoLevel:
     def start(self, count: int) -> np.ndarray:
         """Return the lowest modes (m, count) of the linear elements, and some random motions."""
         size = self._coarse_mass.shape[0]
-        matrices = self._coarse_stiffness, self._coarse_mass
         if lanczos.is_small(size, count):
-            matrices = (matrix.toarray() for matrix in matrices)
+            matrices = (X.toarray() for X in (self._coarse_stiffness, self._coarse_mass))
             modes = la.eigh(*matrices, subset_by_index=[0, min(count, size) - 1])[1]
         else:
-            modes = lanczos.lanczos_modes(*matrices, self._coarse_solve, count, _START_TOLERANCE)[1]
+            modes = lanczos.lanczos_modes(
+                self._coarse_mass, self._coarse_solve, count, _START_TOLERANCE
+            )[1]
         return self._interpolation @ modes
 
     def _cycle(self, load: np.ndarray) -> np.ndarray:

@@ -87,7 +87,7 @@ class Subspace:
             self.grow(column[:, None])
         self.rigid = self.basis.shape[1]
         wanted = min(2 * count + 8, full.size - 1)
-        _, modes = lanczos_modes(self._shifted, inv.M, self._factor.solve, wanted, 1e-6)
+        _, modes = lanczos_modes(inv.M, self._factor.solve, wanted, 1e-6)
         self.grow(modes)
         if loads:
             columns = _parts(loads)

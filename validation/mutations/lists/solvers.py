@@ -47,11 +47,22 @@ SOLVERS = [
     ),
     *mutations(
         "solvers/lanczos.py",
-        "test_level_by_default.py",
+        "test_lanczos.py",
         (
-            "eigenvalues of any size for ARPACK",
-            "return scale * values[order]",
-            "return values[order]",
+            "directions of unequal length in a block",
+            "(X @ (turn / lengths) for X in (columns, weighted))",
+            "(X @ turn for X in (columns, weighted))",
+        ),
+        ("rounding taken for a direction", "new = squares > least", "new = squares > -1.0"),
+        (
+            "Ritz vectors of a restart mixed up",
+            "array[:, : self._count] @ turn[:, :kept]",
+            "array[:, : self._count] @ turn[:, -kept:]",
+        ),
+        (
+            "shares of the first pass forgotten",
+            "basis @ share, shares + share",
+            "basis @ share, share",
         ),
     ),
     *mutations(
@@ -64,9 +75,9 @@ SOLVERS = [
             "wanted = slice(0, count)",
         ),
         (
-            "iteration for a generalised problem without mass",
-            "stiffness, count, mass, sigma",
-            "stiffness, count, None, sigma",
+            "iteration for a problem without mass",
+            "np.stack([self._mass @ column for column in columns.T], axis=1)",
+            "columns",
         ),
     ),
     *mutations(
