@@ -1,12 +1,10 @@
 """Oil films of finite length against closed forms, tables of coefficients, ROSS and finer grids.
 
-Two axial grooves beside the load. The tables are those of J. W. Lund and K. K. Thomsen (in *Topics
-in Fluid Film Bearing and Rotor Bearing System Design*, ASME 1978, table 1a: grooves of 20°), as the
-course 41524 of DTU holds it (I. F. Santos, 2023), and of T. Someya (*Journal-Bearing Databook*,
-1989, p. 14 and 17: grooves of 10°). ROSS 2.3.0 cuts negative pressures (``film_ross.json``, by
-``film_ross.py`` beside it). Its perturbation divides differences of dimensionless forces by the
-size of that force, for the force across the load (in its code k_yx and k_yy) by |(F_y, F_y)|
-instead of |(F_x, F_y)|: those two are 1/√2 of what they should be, and compared times √2.
+The tables and their sources are in ``film_tables.py``. ROSS 2.3.0 cuts negative pressures
+(``film_ross.json``, by ``film_ross.py`` beside it). Its perturbation divides differences of
+dimensionless forces by the size of that force, for the force across the load (in its code k_yx and
+k_yy) by |(F_y, F_y)| instead of |(F_x, F_y)|: those two are 1/√2 of what they should be, and
+compared times √2.
 
     python -m validation film
 """
@@ -16,52 +14,23 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from exudyn_rotor import OilFilm, grooved_pads
+from validation.references import film_tables
+from validation.references.film_tables import rows
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED, LOAD = 0.05, 1e-4, 0.02, 300.0, 1e3
 SIDES = [np.pi / 2, 3 * np.pi / 2]
 
-# S, ε, attitude [°], stiffness over W/c (11, 12, 21, 22; 1 along the load), damping over W/(c Ω)
-LUND = """
-6.430 0.071 81.89  1.55 14.41 -6.60 1.88 28.75 1.89 1.89 13.31
-3.937 0.114 77.32  1.57  9.27 -4.20 1.89 18.44 1.93 1.93  8.58
-2.634 0.165 72.36  1.61  6.74 -3.01 1.91 13.36 2.00 2.00  6.28
-2.030 0.207 68.75  1.65  5.67 -2.50 1.93 11.18 2.07 2.07  5.33
-1.656 0.244 65.85  1.69  5.06 -2.20 1.95  9.93 2.15 2.15  4.80
-0.917 0.372 57.45  2.12  4.01 -1.30 1.85  7.70 2.06 2.06  3.23
-0.580 0.477 51.01  2.67  3.70 -0.78 1.75  6.96 1.94 1.94  2.40
-0.378 0.570 45.43  3.33  3.64 -0.43 1.68  6.76 1.87 1.87  1.89
-0.244 0.655 40.25  4.21  3.74 -0.13 1.64  6.87 1.82 1.82  1.54
-0.151 0.734 35.20  5.48  3.98  0.15 1.61  7.26 1.79 1.79  1.27
-0.086 0.809 30.04  7.51  4.42  0.47 1.59  8.03 1.79 1.79  1.03
-0.042 0.879 24.41 11.45  5.23  0.92 1.60  9.48 1.80 1.80  0.82
-"""
-# S, ε, attitude [°], side flow over c R Ω L, torque over c W, stiffness, damping; L/D = 0.5
-SOMEYA = """
-4.43   0.10 80.4 0.0880 83.0   1.75 10.3 -9.66  2.70 20.6 2.08 2.08 11.4
-2.07   0.20 71.6 0.170  39.5   1.88 5.63 -4.41  2.56 11.2 2.22 2.22 6.43
-1.24   0.30 64.1 0.243  24.4   2.07 4.27 -2.56  2.34 8.50 2.32 2.32 4.73
-0.517  0.50 51.1 0.366  11.3   2.89 3.57 -0.924 2.03 6.81 2.10 2.10 2.60
-0.187  0.70 38.2 0.459  5.13   4.92 3.88 0.0235 1.83 7.32 2.16 2.16 1.70
-0.0926 0.80 31.2 0.496  3.13   7.35 4.46 0.527  1.78 8.17 2.05 2.05 1.24
-0.0315 0.90 22.7 0.524  1.56   13.8 5.76 1.24   1.72 10.6 2.03 2.03 0.846
-"""
 
-
-def film(length: float = RADIUS, width: float = 20.0, **options) -> OilFilm:
+def film(length: float = RADIUS, width: float = 20.0, preload: float = 0.0, **options) -> OilFilm:
     """Return a film with two grooves beside the load."""
-    pads = grooved_pads(CLEARANCE, SIDES, np.radians(width))
+    pads = grooved_pads(CLEARANCE, SIDES, np.radians(width), preload)
     return OilFilm(RADIUS, length, VISCOSITY, pads, **{"nodes": 240, **options})
-
-
-def rows(text: str) -> np.ndarray:
-    """Return the numbers of a table."""
-    return np.array([line.split() for line in text.strip().splitlines()], dtype=float)
 
 
 def carried(bearing: OilFilm, sommerfeld: float):
@@ -101,21 +70,32 @@ def closed_forms() -> list[str]:
     return lines
 
 
+def lund_cases() -> list[tuple[str, OilFilm, np.ndarray]]:
+    """Return Lund's tables: what each is of, the film, the rows."""
+    options = {"nodes": 240, "axial_nodes": 12}
+    long = 2.0 * RADIUS
+    return [
+        ("L/D = 0.5", film(**options), rows(film_tables.LUND)),
+        ("L/D = 1", film(long, **options), rows(film_tables.LUND_LONG)),
+        ("elliptical", film(long, preload=0.5, **options), rows(film_tables.LUND_ELLIPTICAL)),
+    ]
+
+
 def lund() -> list[str]:
-    """Return deviations from Lund's table, matrices in parts of their largest entry."""
-    bearing = film(axial_nodes=12)
-    lines = ["Lund, L/D = 0.5       S     ε: table   here   attitude: table  here    K       C"]
-    for s, ratio, attitude, *rest in rows(LUND):
-        state = carried(bearing, s)
-        found = coefficients(state)
-        worst = [
-            np.max(np.abs(a - b)) / np.max(b)
-            for a, b in zip(found, (rest[:4], rest[4:]), strict=True)
-        ]
-        lines.append(
-            f"{s:23.3f} {ratio:11.3f} {state.eccentricity_ratio:6.3f} {attitude:16.2f} "
-            f"{np.degrees(state.attitude):6.2f} {worst[0]:7.1%} {worst[1]:7.1%}"
-        )
+    """Return deviations from Lund's tables, matrices in parts of their largest entry."""
+    lines = ["Lund                  S     ε: table   here   attitude: table  here    K       C"]
+    for title, bearing, table in lund_cases():
+        for s, ratio, attitude, *rest in table:
+            state = carried(bearing, s)
+            worst = [
+                np.max(np.abs(a - b)) / np.max(b)
+                for a, b in zip(coefficients(state), (rest[:4], rest[4:]), strict=True)
+            ]
+            lines.append(
+                f"{title:12} {s:10.3f} {ratio:11.3f} "
+                f"{np.linalg.norm(state.position) / CLEARANCE:6.3f} {attitude:16.2f} "
+                f"{np.degrees(state.attitude):6.2f} {worst[0]:7.1%} {worst[1]:7.1%}"
+            )
     return lines
 
 
@@ -123,7 +103,7 @@ def turning(state, stiffness: np.ndarray) -> np.ndarray:
     """Return the stiffness over W/c of a bore that turns with the journal's line of centres.
 
     A step along that line is that of the bore at rest; one across turns film and force by its
-    angle about the bore's centre: K e_t = 1/ε across the load.
+    angle about the bore's centre: K e_t = 1/ε across the load. With that tan φ = K12/K11.
     """
     radial, across = polar_axes(state.attitude).T
     step = np.array([0.0, 1.0 / state.eccentricity_ratio])
@@ -137,42 +117,84 @@ def polar_axes(attitude: float) -> np.ndarray:
     return np.array([[c, -s], [s, c]])
 
 
-def reaching(state, angle: float):
-    """Return a state whose change of pressure reaches beyond the film's end by an angle [rad].
+def polar(matrix: np.ndarray, attitude: float) -> np.ndarray:
+    """Return a matrix (2, 2) along and across the line of centres."""
+    axes = polar_axes(attitude)
+    return axes.T @ np.reshape(matrix, (2, 2)) @ axes
 
-    Only :meth:`FilmState.coefficients` differ: there the change is zero where the film is broken.
+
+def someya_cases() -> list[tuple[str, OilFilm, np.ndarray]]:
+    """Return Someya's tables: what each is of, the film, the rows."""
+    options = {"width": 10.0, "nodes": 360, "axial_nodes": 8}
+    return [
+        ("L/D = 0.5", film(**options), rows(film_tables.SOMEYA)),
+        ("L/D = 1", film(2.0 * RADIUS, **options), rows(film_tables.SOMEYA_LONG)),
+    ]
+
+
+def compared(state, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return ours and Someya's (K, C), each (2, 2, 2) along and across the line of centres.
+
+    Over the row's largest entries. Ours is that of a bore which turns with the journal.
     """
-    grid, empty = state.film.grid, state.solution.empty
-    for _ in range(round(angle / grid.step.max())):
-        empty = empty & np.where(grid.at_left[:, None], empty[grid.left], False)
-    return replace(state, solution=replace(state.solution, empty=empty))
+    stiffness, damping = coefficients(state)
+    ours = [polar(m, state.attitude) for m in (turning(state, stiffness), damping)]
+    his = [polar(m, np.radians(row[2])) for m in (row[5:9], row[9:])]
+    largest = np.array([np.abs(m).max() for m in (row[5:9], row[9:])])[:, None, None]
+    return np.array(ours) / largest, np.array(his) / largest
+
+
+def own_stiffness(table: np.ndarray) -> np.ndarray:
+    """Return the radial stiffness ∂F_r/∂e over W/c that S, ε and attitude of the rows imply.
+
+    By splines of ln F_r over ln(1 − ε). From row to row the grooves turn against the line of
+    centres, which does not matter where the film ends before the groove: from ε = 0.5 on.
+    """
+    s, ratio, attitude = table[:, :3].T
+    force = np.cos(np.radians(attitude)) / s
+    way = -np.log(1.0 - ratio)
+    return CubicSpline(way, np.log(force))(way, 1) / (1.0 - ratio) * np.cos(np.radians(attitude))
+
+
+def approached(state, velocity: float) -> float:
+    """Return the radial damping over W/(c Ω) by one difference, `velocity` c Ω to the bore."""
+    outward = state.position / np.linalg.norm(state.position)
+    moved = state.film.force(
+        state.position, velocity * CLEARANCE * state.speed * outward, state.speed
+    )
+    return -float((moved - state.force) @ outward) / (velocity * LOAD)
 
 
 def someya() -> list[str]:
-    """Return Someya's rows beside ours, matrices in parts of their largest entry.
+    """Return Someya's rows beside ours, coefficients along (r) and across the line of centres.
 
-    His stiffness is that of a bore that turns with the journal (`turning`): so compared, and in
-    the form of ours, whose bore stands still. His damping along the line of centres is larger:
-    that of films whose change of pressure reaches beyond their end, by 0.5° to 1.5°.
+    `across` is the largest deviation of six of the eight coefficients, in parts of the largest
+    entry. The other two are those of the radial force by the radial place and velocity: K_rr as
+    printed, by the slope of his own rows and ours; C_rr over ours, and that of a difference with
+    an approach at 0.02 c Ω.
     """
-    bearing = film(width=10.0, axial_nodes=12, nodes=720)
     lines = [
-        "Someya, L/D = 0.5  S     ε: table here   attitude      flow          torque       "
-        "K, turning  at rest  C   by 0.5°  1°  1.5° beyond"
+        "Someya        S      ε: table here   attitude      flow          torque       across   "
+        "K_rr: table, his rows, ours   C_rr over ours  by a step"
     ]
-    for s, ratio, attitude, flow, torque, *rest in rows(SOMEYA):
-        state = carried(bearing, s)
-        stiffness, damping = coefficients(state)
-        unit = CLEARANCE * RADIUS * state.speed * bearing.length
-        farther = [coefficients(reaching(state, np.radians(a)))[1] for a in (0.5, 1.0, 1.5)]
-        compared = [(turning(state, stiffness), rest[:4]), (stiffness, rest[:4])]
-        compared += [(each, rest[4:]) for each in (damping, *farther)]
-        lines.append(
-            f"{s:21.4f} {ratio:6.2f} {state.eccentricity_ratio:6.3f} {attitude:6.1f} "
-            f"{np.degrees(state.attitude):5.1f} {flow:7.3f} {state.side_flow / unit:6.3f} "
-            f"{torque:7.2f} {state.torque / (CLEARANCE * LOAD):6.2f}    "
-            + " ".join(f"{np.max(np.abs(a - b)) / np.max(np.abs(b)):7.1%}" for a, b in compared)
-        )
+    for title, bearing, table in someya_cases():
+        for row, own in zip(table, own_stiffness(table), strict=True):
+            state = carried(bearing, row[0])
+            ours, his = compared(state, row)
+            across = np.abs(ours - his)
+            across[:, 0, 0] = 0.0
+            largest = np.abs(row[5:9]).max(), np.abs(row[9:]).max()
+            unit = CLEARANCE * RADIUS * state.speed * bearing.length
+            damping = his[1, 0, 0] * largest[1]
+            lines.append(
+                f"{title:9} {row[0]:8.4f} {row[1]:6.3f} {state.eccentricity_ratio:6.3f} "
+                f"{row[2]:6.1f} {np.degrees(state.attitude):5.1f} {row[3]:7.3f} "
+                f"{state.side_flow / unit:6.3f} {row[4]:7.2f} "
+                f"{state.torque / (CLEARANCE * LOAD):6.2f} {across.max():8.1%} "
+                f"{his[0, 0, 0] * largest[0]:9.3f} {own:7.3f} {ours[0, 0, 0] * largest[0]:7.3f} "
+                f"{damping / (ours[1, 0, 0] * largest[1]):12.3f} "
+                f"{damping / approached(state, 0.02):8.3f}"
+            )
     return lines
 
 
