@@ -59,19 +59,19 @@ from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds
 from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
-from exudyn_rotor.multibody.add_drive import add_drive
 from exudyn_rotor.multibody.add_rotor import add_rotor
-from exudyn_rotor.multibody.add_supports import add_supports
-from exudyn_rotor.multibody.base_motion import add_base_motion
-from exudyn_rotor.multibody.connect_rotors import connect_rotors
-from exudyn_rotor.multibody.connections import ConnectionWarning
-from exudyn_rotor.multibody.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
-from exudyn_rotor.multibody.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
-from exudyn_rotor.multibody.foundation_body import SceneFoundation, add_foundation
-from exudyn_rotor.multibody.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.drives.add_drive import add_drive
+from exudyn_rotor.multibody.drives.connect_rotors import connect_rotors
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.connections import ConnectionWarning
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.multibody.solver_settings import recommended_settings
-from exudyn_rotor.multibody.start_state import StartState
+from exudyn_rotor.multibody.supports.add_supports import add_supports
+from exudyn_rotor.multibody.supports.base_motion import add_base_motion
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, add_foundation
+from exudyn_rotor.multibody.twins.exudyn_call import MainSystemCreateFixedAxisFFRFReducedOrderObject
+from exudyn_rotor.multibody.twins.exudyn_interface import ObjectFixedAxisFFRFreducedOrderInterface
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
 from exudyn_rotor.pictures.shapes import mode_shapes, response_shapes
 from exudyn_rotor.pictures.spectra import Spectra, plot_orbit, spectra

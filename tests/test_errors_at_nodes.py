@@ -20,7 +20,7 @@ from exudyn_rotor import (
 from exudyn_rotor.advice.left_out_fields import left_out_at_nodes
 from exudyn_rotor.advice.residual import at_interfaces, place_loads, recorded_states
 from exudyn_rotor.advice.run_measures import Measures
-from exudyn_rotor.multibody.full_plan import make_full_plan
+from exudyn_rotor.multibody.full.full_plan import make_full_plan
 from exudyn_rotor.multibody.load_places import LoadPlace
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.nodal import rotations, translations

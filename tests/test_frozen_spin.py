@@ -11,7 +11,7 @@ from run_scenes import solve
 from scipy.integrate import solve_ivp
 
 from exudyn_rotor import Formulation, Motion, add_rotor, check_run, propose, select_modes
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.stiffening import stiffening
 
 SPEED = 10.0

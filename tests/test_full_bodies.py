@@ -21,7 +21,7 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
-from exudyn_rotor.multibody import full_memory
+from exudyn_rotor.multibody.full import full_memory
 from exudyn_rotor.solvers.memory import TooLittleMemoryError
 
 STEP, STEPS, NEWTON = 1e-4, 20, 1e-10

@@ -23,7 +23,7 @@ from exudyn_rotor import (
     check_run,
     propose,
 )
-from exudyn_rotor.multibody.full_record import recorded_states
+from exudyn_rotor.multibody.full.full_record import recorded_states
 from exudyn_rotor.solid.tensor import von_mises
 
 RUN_UP = PrescribedMotion.run_up(0.0, 300.0, 1e-2)

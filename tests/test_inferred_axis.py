@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from test_twin import turned
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.multibody.axis_of_body import axis_at_rest, axis_of_motion
+from exudyn_rotor.multibody.twins.axis_of_body import axis_at_rest, axis_of_motion
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 

@@ -18,7 +18,7 @@ from exudyn_rotor import (
     add_rotor,
     select_modes,
 )
-from exudyn_rotor.multibody.equations import Layout, user_function_object
+from exudyn_rotor.multibody.rotor.equations import Layout, user_function_object
 from exudyn_rotor.multibody.solver_settings import recommended_settings
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.kernel import Kernel, constant_part

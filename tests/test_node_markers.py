@@ -18,7 +18,7 @@ from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import SolidRotor, add_rotor, steady_state
-from exudyn_rotor.multibody.frame import FRAME_NODES
+from exudyn_rotor.multibody.rotor.frame import FRAME_NODES
 from exudyn_rotor.theory.nodal import rotations, translations
 
 KINDS = exu.OutputVariableType

@@ -19,7 +19,7 @@ from exudyn_rotor import (
     recommended_settings,
     unbalance_response,
 )
-from exudyn_rotor.multibody.start_state import spin_at_start
+from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 
 RADIUS, LENGTH, MASS = 0.1, 0.2, 8.0
 STIFFNESS, DAMPING = 2e4, 40.0  # N/m, N s/m, of each of the two bearings

@@ -18,7 +18,7 @@ from exudyn_rotor import (
     linear_model,
     recommended_settings,
 )
-from exudyn_rotor.multibody.frame import BodyFrame
+from exudyn_rotor.multibody.rotor.frame import BodyFrame
 
 KINDS = exu.OutputVariableType
 COORDINATE_AXES = [sign * unit for unit in np.eye(3) for sign in (1, -1)]

@@ -200,7 +200,7 @@ PLACES = {
     "linear/models/eccentricity.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
     ),
-    "multibody/sensors.py:_warn_of_static_stress": (
+    "multibody/rotor/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone",
     ),
     "strength/field.py:warn_without_static": (
@@ -245,10 +245,10 @@ PLACES = {
     "multibody/add_rotor.py:_warn_of_turned_axes": (
         axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about",
     ),
-    "multibody/scene_body.py:check_connections": (
+    "multibody/rotor/scene_body.py:check_connections": (
         asked_for_connections, ConnectionWarning, "does not tilt",
     ),
-    "multibody/assembly.py:_warn": (
+    "multibody/calls/assembly.py:_warn": (
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt",
     ),
     "advice/run_check.py:check_run": (
@@ -257,7 +257,7 @@ PLACES = {
 }  # fmt: skip
 # places that several kinds of bodies reach
 TRIGGERS = PLACES | {
-    "multibody/scene_body.py:check_connections, full": (
+    "multibody/rotor/scene_body.py:check_connections, full": (
         full_body_asked_for_connections, ConnectionWarning, "does not tilt",
     ),
 }  # fmt: skip

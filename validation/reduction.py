@@ -53,7 +53,7 @@ from exudyn_rotor import (
     propose,
     spinning_modes,
 )
-from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.theory.nodal import rotations, translations
 from validation.exudyn_3d.against_3d import Row, print_table

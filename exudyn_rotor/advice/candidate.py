@@ -16,8 +16,8 @@ from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.invariants import Invariants

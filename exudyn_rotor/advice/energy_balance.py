@@ -17,10 +17,10 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.locking import guiding_force
-from exudyn_rotor.multibody.record import Record
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.locking import guiding_force
+from exudyn_rotor.multibody.rotor.record import Record
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.energy import energy_of

@@ -21,9 +21,9 @@ import numpy as np
 
 from exudyn_rotor.advice.residual import place_loads, recorded_states
 from exudyn_rotor.advice.run_loads import instants, turned, weight
-from exudyn_rotor.multibody.full_plan import make_full_plan
-from exudyn_rotor.multibody.record import Record
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.full.full_plan import make_full_plan
+from exudyn_rotor.multibody.rotor.record import Record
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.tensor import von_mises

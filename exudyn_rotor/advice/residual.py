@@ -15,8 +15,8 @@ import numpy as np
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
 from exudyn_rotor.multibody.load_places import LoadPlace, load_places
-from exudyn_rotor.multibody.record import Record
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.record import Record
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.nodal import skew
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.multibody.record import Record
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.record import Record
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.axis import SpinAxis
 
 _MOST = 400

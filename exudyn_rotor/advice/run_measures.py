@@ -11,8 +11,8 @@ import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.multibody.record import Record, Solver, last_solver
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.record import Record, Solver, last_solver
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening, tilt_factors
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
-from exudyn_rotor.multibody.record import Record, newton_tolerance
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.record import Record, newton_tolerance
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.nodal import skew
 
 _SINGULAR = 0.1  # singular value of the node's axes below which they do not show a direction

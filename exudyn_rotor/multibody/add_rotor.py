@@ -11,25 +11,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import inputs
-from exudyn_rotor.multibody.add_full import add_full
-from exudyn_rotor.multibody.add_reduced import add_bare, add_with_marker_body
-from exudyn_rotor.multibody.assembly import check_at_assembly
-from exudyn_rotor.multibody.frame import CENTRE_OF_MASS, FRAME_NODES
-from exudyn_rotor.multibody.full_body import FullRotorBody
-from exudyn_rotor.multibody.full_memory import check_memory
-from exudyn_rotor.multibody.full_plan import make_full_plan
-from exudyn_rotor.multibody.locking import (
+from exudyn_rotor.multibody.calls.assembly import check_at_assembly
+from exudyn_rotor.multibody.calls.sparse_solver import needs_sparse_solver
+from exudyn_rotor.multibody.calls.static_check import watched
+from exudyn_rotor.multibody.full.add_full import add_full
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.full.full_memory import check_memory
+from exudyn_rotor.multibody.full.full_plan import make_full_plan
+from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor.multibody.rotor.add_reduced import add_bare, add_with_marker_body
+from exudyn_rotor.multibody.rotor.frame import CENTRE_OF_MASS, FRAME_NODES
+from exudyn_rotor.multibody.rotor.locking import (
     LOCKINGS,
 )
-from exudyn_rotor.multibody.marker_body import (
+from exudyn_rotor.multibody.rotor.marker_body import (
     marker_body_mesh,
 )
-from exudyn_rotor.multibody.node_markers import carry_markers, refuse_markers
-from exudyn_rotor.multibody.plan import Plan, make_plan
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.sparse_solver import needs_sparse_solver
-from exudyn_rotor.multibody.static_check import watched
+from exudyn_rotor.multibody.rotor.node_markers import carry_markers, refuse_markers
+from exudyn_rotor.multibody.rotor.plan import Plan, make_plan
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import NEGLIGIBLE
@@ -133,10 +133,10 @@ def add_rotor(
         Whether ``mbs.Assemble()`` moves a script's own markers on many mesh nodes of the rotor to
         one or three added nodes with the same mean motion: the same to round-off, at a cost that
         does not depend on the mesh; and whether forces at a rigid marker's own offset have their
-        lever for tilts. See :mod:`exudyn_rotor.multibody.condensed_markers`.
+        lever for tilts. See :mod:`exudyn_rotor.multibody.rotor.condensed_markers`.
     locking : {'auto', 'mass', 'constraints'}
         How coordinates of the marker body that the formulation does not have are held; see the
-        notes and :mod:`exudyn_rotor.multibody.locking`. ``'auto'`` takes constraints for
+        notes and :mod:`exudyn_rotor.multibody.rotor.locking`. ``'auto'`` takes constraints for
         time-varying prescribed motions and for in-plane translation in a plane skew to the
         inertial axes, masses else.
     frame_node : {'centre_of_mass', 'mesh_origin'}
@@ -211,7 +211,7 @@ def add_rotor(
     A solid rotor is added with the displacements of all its nodes, Ψ = I, and sparse matrices: the
     formulations of Sects. 2.2 to 2.5 in full. What the frame describes, 4, 3 or 1 rigid motions, is
     held out of the displacements by linear conditions within the same equations, and each interface
-    with a marker has its mean motion as coordinates (:mod:`exudyn_rotor.multibody.ties`). At a
+    with a marker has its mean motion as coordinates (:mod:`exudyn_rotor.multibody.full.ties`). At a
     constant speed a time step calls no Python and needs no new factor. Give
     ``recommended_settings(…, body=body)``: Exudyn's default linear solver is a dense one. Markers
     come by ``markers`` and ``body.add_marker``, not by mesh nodes of the flexible body; markers at

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import exudyn
 import numpy as np
 
-from exudyn_rotor.multibody.connect_rotors import SceneConnection
-from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.solid.interface import Interface, rotation_moments
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.nodal import skew

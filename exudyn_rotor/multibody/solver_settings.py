@@ -7,8 +7,8 @@ import math
 import exudyn
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.full_body import FullRotorBody
-from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _LOOSEST, _TIGHTEST = 1e-5, 1e-9
 _MOST_STEPS = 2**31  # Exudyn counts steps with 32 bits

@@ -38,7 +38,7 @@ from exudyn.utilities import (
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody import inputs
+from exudyn_rotor.multibody.rotor import inputs
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.nodal import tilde, translations
 

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from exudyn_rotor import SolidRotor, add_rotor
-from exudyn_rotor.multibody.rotor_items import RotorItems
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.spatial_body import SpatialBody, add_spatial_rotor
 from validation.exudyn_3d.against_3d import Row, print_table, with_orders
 from validation.exudyn_3d.scenes import (

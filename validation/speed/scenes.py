@@ -23,7 +23,7 @@ from exudyn_rotor.demo.scene import (
     add_3d_rotor_with_virtual_nodes,
     disc_on_shaft,
 )
-from exudyn_rotor.multibody import equations
+from exudyn_rotor.multibody.rotor import equations
 
 STEP = 1e-4  # s
 CALLS = ("massMatrixUserFunction", "forceUserFunction", "jacobianUserFunction")

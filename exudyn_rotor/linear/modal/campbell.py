@@ -26,7 +26,7 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.threads import one_thread

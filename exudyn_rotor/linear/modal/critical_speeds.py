@@ -22,7 +22,7 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_left_out_stiffening,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units

@@ -27,7 +27,7 @@ from exudyn_rotor.linear.models.linear_scene import LinearScene
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.nodal import skew
 

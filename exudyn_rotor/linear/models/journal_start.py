@@ -14,9 +14,9 @@ from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.more_markers import interface_motion
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.start_state import spin_at_start
+from exudyn_rotor.multibody.rotor.more_markers import interface_motion
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.theory.rotating_axes import into_rotor_frame
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred

@@ -21,8 +21,8 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.rotor_train import RotorTrain
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.damping import LOSS_LEFT_OUT

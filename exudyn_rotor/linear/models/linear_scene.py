@@ -28,10 +28,10 @@ from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nulls
 from exudyn_rotor.linear.models.steady_motion import check_period, equations_about, steady_motion
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.multibody.marker_body import around
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.start_state import spin_at_start
-from exudyn_rotor.multibody.support_connectors import held_cages
+from exudyn_rotor.multibody.rotor.marker_body import around
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import spin_at_start
+from exudyn_rotor.multibody.supports.support_connectors import held_cages
 from exudyn_rotor.theory.nodal import skew
 
 ABOUT = ("steady", "given")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import exudyn
 
 from exudyn_rotor import checks
-from exudyn_rotor.multibody.connect_rotors import SceneConnection
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 
 
 def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import Response
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.start_state import StartState, spin_at_start
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.units import Units
 

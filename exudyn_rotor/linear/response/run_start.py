@@ -21,11 +21,11 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
-from exudyn_rotor.multibody.add_supports import SceneSupport
-from exudyn_rotor.multibody.foundation_body import SceneFoundation
-from exudyn_rotor.multibody.full_body import reduced_body
-from exudyn_rotor.multibody.rotor_body import RotorBody
-from exudyn_rotor.multibody.start_state import StartState
+from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState
+from exudyn_rotor.multibody.supports.add_supports import SceneSupport
+from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, words

@@ -49,7 +49,7 @@ from exudyn_rotor.linear.response.refinement import refined
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 

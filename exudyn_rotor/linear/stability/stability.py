@@ -21,7 +21,7 @@ from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.stability.growth import GrowthAt, check_options, held_space
 from exudyn_rotor.linear.stability.stability_result import Stability
-from exudyn_rotor.multibody.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 
 

@@ -220,7 +220,7 @@ BEARINGS = [
         ),
     ),
     *mutations(
-        "multibody/tilting_pads.py",
+        "multibody/supports/tilting_pads.py",
         "test_tilting_pad.py::test_a_run_stays_in_the_equilibrium",
         ("pads of a scene go the other way", "= -radius * seat.axes", "= radius * seat.axes"),
     ),

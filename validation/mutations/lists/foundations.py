@@ -146,7 +146,7 @@ FOUNDATIONS = [
         ),
     ),
     *mutations(
-        "multibody/foundation_body.py",
+        "multibody/supports/foundation_body.py",
         _SCENE,
         (
             "scenes without the foundation's damping",
@@ -165,7 +165,7 @@ FOUNDATIONS = [
         ("slope of the drift halved", "- 2.0 * np.outer(t, drift[1])", "- np.outer(t, drift[1])"),
     ),
     *mutations(
-        "multibody/base_motion.py",
+        "multibody/supports/base_motion.py",
         "test_base_motion.py::test_loads_are_a_base_that_moves",
         (
             "bodies follow the ground twice",

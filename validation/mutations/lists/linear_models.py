@@ -189,7 +189,7 @@ LINEAR_MODELS = [
         ("journals begin in the centre", "elif np.any(load) and speed", "elif False and speed"),
     ),
     *mutations(
-        "multibody/support_connectors.py",
+        "multibody/supports/support_connectors.py",
         "test_rolling_bearing.py::test_a_run_at_a_speed_starts_near_and_turns_its_cage",
         ("cages stay held", "        let(turning)", "        let(held)"),
     ),

@@ -7,7 +7,7 @@ _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_
 
 MULTIBODY = [
     *mutations(
-        "multibody/magnetic_connectors.py",
+        "multibody/supports/magnetic_connectors.py",
         "test_magnetic_runs.py::test_a_foundation_carries_magnets_and_sensors "
         "test_magnetic_bearing.py::test_scene_and_list_have_the_same_exponents "
         "test_magnetic_bearing.py::test_magnets_under_weight_are_stiffer_in_one_direction",
@@ -16,7 +16,7 @@ MULTIBODY = [
         ("controller drives the rotor away", "force_of(-i, x)", "force_of(i, x)"),
     ),
     *mutations(
-        "multibody/ties.py",
+        "multibody/full/ties.py",
         "test_full_bodies.py",
         (
             "interfaces move the wrong way",
@@ -30,7 +30,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/add_full.py",
+        "multibody/full/add_full.py",
         "test_full_bodies.py",
         (
             "gravity on half of the mass",
@@ -40,7 +40,7 @@ MULTIBODY = [
         ("low-rank stiffening per Ω", "spin.speed**2 * values", "spin.speed * values"),
     ),
     *mutations(
-        "multibody/full_equations.py",
+        "multibody/full/full_equations.py",
         "test_full_bodies.py",
         (
             "coupling of spin and displacements dropped",
@@ -49,7 +49,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/full_markers.py",
+        "multibody/full/full_markers.py",
         "test_full_bodies.py::test_full_and_reduced_stand_on_the_same_supports",
         (
             "supports of a full body in axes of the mesh",
@@ -58,7 +58,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/full_record.py",
+        "multibody/full/full_record.py",
         "test_full_bodies.py::test_one_run_stores_displacement_and_stress_at_instants",
         (
             "instants stored a step late",
@@ -68,7 +68,7 @@ MULTIBODY = [
         ("runs not told apart", "if t < self.latest:", "if False:"),
     ),
     *mutations(
-        "multibody/node_markers.py",
+        "multibody/rotor/node_markers.py",
         "test_full_bodies.py::test_numbers_of_mesh_nodes_mean_nothing_to_the_marker_body",
         (
             "virtual nodes of a full body taken for those of the mesh",
@@ -77,7 +77,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/full_memory.py",
+        "multibody/full/full_memory.py",
         "test_full_bodies.py::test_too_little_memory_is_said_before_anything_is_added",
         ("memory of the factor not checked", "if needed > available:", "if False:"),
     ),
@@ -94,7 +94,7 @@ MULTIBODY = [
         ("weight left out", "if np.any(gravity):", "if False:"),
     ),
     *mutations(
-        "multibody/node_markers.py",
+        "multibody/rotor/node_markers.py",
         "test_mean_axis.py::test_force_and_sensor_at_the_node_are_on_exudyns_frame",
         (
             "frame of Exudyn's body taken for the mean axes",
@@ -103,7 +103,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/node_markers.py",
+        "multibody/rotor/node_markers.py",
         "test_node_markers.py::test_marker_and_sensors_have_the_mean_rigid_motion",
         ("lever of tilts reversed", "/ inv.mass - skew(arm)", "/ inv.mass + skew(arm)"),
         (
@@ -128,7 +128,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/frame.py",
+        "multibody/rotor/frame.py",
         "test_node_markers.py::test_place_of_the_node_changes_nothing_else",
         (
             "frame moved the wrong way to the node",
@@ -137,7 +137,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/marker_body.py",
+        "multibody/rotor/marker_body.py",
         "test_run_check.py::test_loads_at_the_node_and_weight_are_felt",
         (
             "weight in the origin of the frame",
@@ -146,7 +146,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/connections.py",
+        "multibody/rotor/connections.py",
         "test_connections.py",
         (
             "coordinates of a node off the centre of mass taken for right",
@@ -160,7 +160,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/frame.py",
+        "multibody/rotor/frame.py",
         _SCENES,
         (
             "origin of the mesh not turned",
@@ -179,7 +179,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/frame.py",
+        "multibody/rotor/frame.py",
         "test_spin_angles.py",
         (
             "second angle with the wrong sign of the mesh axis",
@@ -193,7 +193,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/more_markers.py",
+        "multibody/rotor/more_markers.py",
         "test_spin_angles.py",
         (
             "lever of an added marker with the wrong sign",
@@ -202,7 +202,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/equations.py",
+        "multibody/rotor/equations.py",
         "test_kernel.py::test_jacobian_for_the_solver_is_the_derivative_of_its_forces",
         (
             "Jacobian with its factors exchanged",
@@ -211,7 +211,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/equations.py",
+        "multibody/rotor/equations.py",
         "test_kernel.py::test_mass_matrix_for_the_solver",
         (
             "one triangle of the mass matrix left at its start",
@@ -220,7 +220,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/equations.py",
+        "multibody/rotor/equations.py",
         "test_body_solvers.py::test_solvers_agree",
         (
             "constant matrices without locks",
@@ -229,7 +229,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/locking.py",
+        "multibody/rotor/locking.py",
         "test_body_solvers.py::test_constraints_and_servo_give_the_same_prescribed_motion",
         (
             "servo without damping's lead",
@@ -238,7 +238,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/locking.py",
+        "multibody/rotor/locking.py",
         "test_body_solvers.py::test_static_solution_is_the_steady_state_in_the_rotating_frame",
         (
             "spin guide without its start",
@@ -247,12 +247,12 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/locking.py",
+        "multibody/rotor/locking.py",
         _SCENES,
         ("plane constraint along an axis of the scene", "row[0, :3] = normal", "row[0, 2] = 1.0"),
     ),
     *mutations(
-        "multibody/marker_body.py",
+        "multibody/rotor/marker_body.py",
         _MARKERS,
         (
             "nodes of a marker turn the wrong way",
@@ -261,7 +261,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/marker_body.py",
+        "multibody/rotor/marker_body.py",
         f"test_body_native.py::test_gravity_lets_the_rotor_fall {_SCENES}",
         (
             "momentum of the modes in mesh axes",
@@ -270,7 +270,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/record.py",
+        "multibody/rotor/record.py",
         "test_measures.py::test_recorded_speed_of_a_free_spin",
         (
             "spin of the first translation's rate",
@@ -279,7 +279,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/sensors.py",
+        "multibody/rotor/sensors.py",
         "test_body_solvers.py::test_work_of_the_drive_is_change_of_energy_plus_losses",
         (
             "external moment added to the drive",
@@ -293,7 +293,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/static_check.py",
+        "multibody/calls/static_check.py",
         "test_steady_state.py",
         (
             "static solution looked at from one angle only",
@@ -302,7 +302,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/assembly.py",
+        "multibody/calls/assembly.py",
         "test_connections.py",
         ("each item told at every assembly", "known.told.add(sentence)", "pass"),
         (
@@ -312,7 +312,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/swapped_body.py",
+        "multibody/twins/swapped_body.py",
         "test_mesh_axes.py::test_offset_of_a_marker_of_the_call_turns_with_the_mean_rotation",
         (
             "offset turns with the interface",
@@ -321,7 +321,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/support_connectors.py",
+        "multibody/supports/support_connectors.py",
         "test_supports_in_scenes.py::test_scene_and_linear_rotor_have_the_same_exponents",
         (
             "damper in the rotor's frame feels the spin",
@@ -341,7 +341,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/support_connectors.py",
+        "multibody/supports/support_connectors.py",
         "test_supports_in_scenes.py::test_axes_and_formulations_change_nothing",
         ("matrix not turned into the scene", "turned = axes @ matrix @ axes.T", "turned = matrix"),
         (
@@ -351,12 +351,12 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/support_connectors.py",
+        "multibody/supports/support_connectors.py",
         "test_bearing_energy.py::test_a_stop_brakes_a_free_spin_by_coulombs_friction",
         ("bearings drive a free spin", "0.0, 0.0, 0.0, -torque]", "0.0, 0.0, 0.0, torque]"),
     ),
     *mutations(
-        "multibody/support_connectors.py",
+        "multibody/supports/support_connectors.py",
         "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (
             "tilt of the base forgotten",
@@ -365,7 +365,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/seats.py",
+        "multibody/supports/seats.py",
         "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (
             "place in axes of the scene",
@@ -374,7 +374,7 @@ MULTIBODY = [
         ),
     ),
     *mutations(
-        "multibody/interface_coordinates.py",
+        "multibody/drives/interface_coordinates.py",
         "test_geared_rotors.py::test_axes_and_senses_change_nothing "
         "test_geared_rotors.py::test_energy_goes_into_drives_springs_and_losses",
         ("node's sense of the spin", "theta = self.sign * q[self.spin]", "theta = q[self.spin]"),
@@ -382,13 +382,13 @@ MULTIBODY = [
         ("modes do not turn", "R @ self.modes[:3], R @", "self.modes[:3], R @"),
     ),
     *mutations(
-        "multibody/connect_rotors.py",
+        "multibody/drives/connect_rotors.py",
         "test_geared_rotors.py::test_axes_and_senses_change_nothing",
         ("second rotor in its own axes", "np.concatenate([x, into @ y])", "np.concatenate([x, y])"),
         ("forces in axes of the second", "own, into @ others", "own, others"),
     ),
     *mutations(
-        "multibody/add_drive.py",
+        "multibody/drives/add_drive.py",
         "test_drives.py::test_axes_change_nothing "
         "test_drives.py::test_energy_is_what_the_drives_give",
         ("spin counted as the node does", "return -sign * law(sign * v, t)", "return -law(v, t)"),

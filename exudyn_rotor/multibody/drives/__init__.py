@@ -1,0 +1,1 @@
+"""Drives, couplings and gears in scenes."""

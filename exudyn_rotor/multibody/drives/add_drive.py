@@ -1,0 +1,222 @@
+"""Motors and drag on a rotor in a scene whose spin is free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    CoordinateSpringDamper,
+    MarkerNodeCoordinate,
+    NodePointGround,
+    RigidBodySpringDamper,
+)
+
+from exudyn_rotor import checks
+from exudyn_rotor.drives.drive import Drive
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
+from exudyn_rotor.multibody.supports.seats import Base, Seat, rigid_marker
+from exudyn_rotor.multibody.supports.support_connectors import PYTHON, SYMBOLIC, symbolic_function
+
+_KINDS = exudyn.OutputVariableType
+
+
+@dataclass(frozen=True, eq=False)
+class SceneDrive:
+    """A drive in a scene.
+
+    Attributes
+    ----------
+    body : RotorBody or FullRotorBody
+    drive : Drive
+    at : str or None
+        Its interface; None for the whole rotor.
+    object : ObjectIndex
+        Its connector.
+    evaluation : str
+        Who evaluates it in a time step.
+    """
+
+    body: RotorBody | FullRotorBody
+    drive: Drive
+    at: str | None
+    object: exudyn.ObjectIndex
+    evaluation: str
+
+    @property
+    def uses_python(self) -> bool:
+        """True when a time step calls Python for it."""
+        return self.evaluation == PYTHON
+
+    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
+        """Add a sensor of torque about e [N m] and power [W] on the rotor.
+
+        Parameters
+        ----------
+        **options
+            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other options.
+        """
+        law, sign = self.drive.law, self.body.locks.sign
+
+        def output(mbs, t, sensors, factors, configuration):
+            if self.at is None:
+                speed = sign * float(mbs.GetObjectOutput(self.object, _KINDS.Velocity))
+            else:
+                speed = float(mbs.GetObjectOutput(self.object, _KINDS.AngularVelocityLocal)[2])
+            torque = float(law(speed, t))
+            return [torque, torque * speed]
+
+        return add_function_sensor(self.body, output, options)
+
+    def __str__(self) -> str:
+        """Return kind, place and who evaluates it."""
+        where = "" if self.at is None else f" at {self.at}"
+        return f"{type(self.drive).__name__}{where} by {self.evaluation}"
+
+
+def add_drive(
+    body: RotorBody | FullRotorBody,
+    drive: Drive,
+    at: str | None = None,
+    base: Base | None = None,
+) -> SceneDrive:
+    """Put a motor or drag on a rotor in a scene, whose spin is free.
+
+    Call it before ``mbs.Assemble()``. Several drives add up.
+
+    Parameters
+    ----------
+    body : RotorBody or FullRotorBody
+        From :func:`exudyn_rotor.add_rotor` with ``spin='free'`` and its marker body.
+    drive : Drive
+        InductionMotor, DirectCurrentMotor, LimitedPower, TorqueCurve or Drag.
+    at : str, optional
+        Interface on which the torque acts, about the spin axis, by its mean rotation there. The
+        whole rotor by default: the torque acts on the spin and bends or twists nothing.
+    base : MarkerIndex or ObjectIndex, optional
+        What carries the stator and takes the reaction: a rigid body, or a marker at the place of
+        the interface; the ground by default. The speed is that against it.
+
+    Returns
+    -------
+    SceneDrive
+        With the number of its connector; ``add_sensor()`` records torque and power.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, a prescribed spin above all; nothing has been added then. A run that leaves
+        the range of a table stops with an error.
+
+    Examples
+    --------
+    A rotor of 0.01 kg m² reaches (1 − 1/e) of the no-load speed after J Ω_0/T_0 = 0.2 s:
+
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import (
+    ...     DirectCurrentMotor, SolidRotor, add_drive, add_rotor, recommended_settings
+    ... )
+    >>> rotor = SolidRotor.from_matrices(
+    ...     0.5 * np.eye(6), np.zeros((6, 6)), [[0.1, 0, 0], [-0.1, 0, 0]], "z", allow_parts=True
+    ... )
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(0), translation="none")
+    >>> added = add_drive(body, DirectCurrentMotor(stall_torque=5.0, no_load_speed=100.0))
+    >>> print(added)
+    DirectCurrentMotor by symbolic function
+    >>> mbs.Assemble()
+    >>> settings = recommended_settings(end_time=0.2, step=1e-3)
+    >>> settings.timeIntegration.verboseMode = 0
+    >>> settings.solution.file.write = False
+    >>> mbs.SolveDynamic(settings)
+    True
+    >>> float(body.coordinates()[1][0].round(2))
+    63.21
+    """
+    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
+    body.check_present()
+    checks.instance(drive, "drive", Drive, "DirectCurrentMotor, Drag and others are")
+    if not body.formulation.has_spin:
+        raise ValueError(
+            f"body: rotor {body.name!r} has a prescribed spin, which no torque changes; add it "
+            "with spin='free', or read its drive torque with body.add_drive_torque_sensor()"
+        )
+    if "marker_body" not in body.objects:
+        raise ValueError(
+            f"body: rotor {body.name!r} was added with marker_body=False; drives need the marker "
+            "body"
+        )
+    if at is None:
+        if base is not None:
+            raise ValueError("base: a drive on the whole rotor has none; give at='…', an interface")
+        made = _on_the_spin(body, drive)
+    else:
+        check_turning_interface(body, at, "at")
+        made = _on_an_interface(body, drive, at, Seat.of(body, at, base))
+    added = SceneDrive(body, drive, at, *made)
+    body.drives.append(added)
+    return added
+
+
+def check_turning_interface(body: RotorBody | FullRotorBody, name: str, argument: str) -> None:
+    """Refuse what is no interface of the rotor, or has no rotation.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    known = body.selection.source.interfaces
+    (name,) = checks.labels(checks.label(name, argument), argument, known)
+    if known[name].radius == 0.0:
+        raise ValueError(
+            f"{argument}: {name!r} is a single node, which has no rotation; make the interface of "
+            "three nodes or more"
+        )
+
+
+def _on_the_spin(body: RotorBody | FullRotorBody, drive: Drive) -> tuple[exudyn.ObjectIndex, str]:
+    mbs, law, sign = body.mbs, drive.law, body.locks.sign
+    ground = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
+    spin = MarkerNodeCoordinate(nodeNumber=body.nodes["rigid"], coordinate=body.locks.spin)
+    item = CoordinateSpringDamper(markerNumbers=[mbs.AddMarker(ground), mbs.AddMarker(spin)])
+
+    def force(mbs, t, item, u, v, stiffness, damping, offset):
+        return -sign * law(sign * v, t)
+
+    return _added(body, drive, item, force, "springForceUserFunction")
+
+
+def _on_an_interface(
+    body: RotorBody | FullRotorBody, drive: Drive, at: str, seat: Seat
+) -> tuple[exudyn.ObjectIndex, str]:
+    law, formula = drive.law, drive.is_formula
+    item = RigidBodySpringDamper(
+        markerNumbers=[seat.marker(body.mbs), rigid_marker(body, at)],
+        stiffness=np.zeros((6, 6)),
+        damping=np.zeros((6, 6)),
+    )
+
+    def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        values = [0.0, 0.0, 0.0, 0.0, 0.0, -law(omega[2], t)]
+        return exudyn.symbolic.Vector(values) if formula else values
+
+    return _added(body, drive, item, torque, "springForceTorqueUserFunction")
+
+
+def _added(
+    body: RotorBody | FullRotorBody, drive: Drive, item: Any, function: Any, name: str
+) -> tuple[exudyn.ObjectIndex, str]:
+    if drive.is_formula:
+        function = symbolic_function(body.mbs, function, item, name)
+    setattr(item, name, function)
+    return body.mbs.AddObject(item), SYMBOLIC if drive.is_formula else PYTHON

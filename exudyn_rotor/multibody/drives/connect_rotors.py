@@ -1,0 +1,251 @@
+"""Gears and couplings between rotors in a scene, by one object on the coordinates of both.
+
+Its forces are those of the connection, taken to the coordinates by the derivative of the motion of
+both interfaces: action and reaction are exact, and the Jacobian has what couples the rotors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+
+from exudyn_rotor import checks
+from exudyn_rotor.drives.connection import Connection
+from exudyn_rotor.multibody.drives.add_drive import check_turning_interface
+from exudyn_rotor.multibody.drives.interface_coordinates import InterfaceCoordinates
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
+from exudyn_rotor.multibody.supports.seats import Seat
+from exudyn_rotor.multibody.supports.support_connectors import PYTHON
+from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion, start_values
+
+_KINDS = exudyn.OutputVariableType
+_SHAFTS = (ConstantSpeed, PrescribedMotion)
+Body = RotorBody | FullRotorBody
+State = Callable[[float, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+
+@dataclass(frozen=True, eq=False)
+class SceneConnection:
+    """A gear mesh or coupling in a scene.
+
+    Attributes
+    ----------
+    connection : Connection
+    body : RotorBody or FullRotorBody
+        The first rotor.
+    at : str
+        Its interface.
+    object : ObjectIndex
+    nodes : tuple of NodeIndex
+        Nodes whose coordinates it acts on.
+    """
+
+    connection: Connection
+    body: Body
+    at: str
+    object: exudyn.ObjectIndex
+    nodes: tuple[exudyn.NodeIndex, ...]
+    state: State
+
+    @property
+    def uses_python(self) -> bool:
+        """True: a time step calls Python for it."""
+        return True
+
+    def add_sensor(self, **options: Any) -> exudyn.SensorIndex:
+        """Add a sensor of what is transmitted, elastic energy [J] and power lost [W].
+
+        Transmitted is the force of a mesh [N], the torque of a coupling on the second rotor [N m].
+
+        Parameters
+        ----------
+        **options
+            Of ``SensorUserFunction``: name, storeInternal, writeToFile, fileName.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For other options.
+        """
+        law = self.connection.law
+
+        def output(mbs, t, sensors, factors, configuration):
+            q, q_t = (
+                np.hstack([mbs.GetNodeOutput(node, kind, configuration) for node in self.nodes])
+                for kind in (_KINDS.Coordinates, _KINDS.Coordinates_t)
+            )
+            x, x_t, _ = self.state(t, q, q_t)
+            return [law.transmitted(x, x_t), law.energy(x), law.loss(x, x_t)]
+
+        return add_function_sensor(self.body, output, options)
+
+    def __str__(self) -> str:
+        """Return kind, place and who evaluates it."""
+        return f"{type(self.connection).__name__} at {self.at} by {PYTHON}"
+
+
+def connect_rotors(
+    connection: Connection,
+    body: Body,
+    at: str,
+    other: Body | ConstantSpeed | PrescribedMotion,
+    other_at: str | None = None,
+) -> SceneConnection:
+    """Put a gear mesh or a coupling between two rotors in a scene, or a rotor and a shaft.
+
+    Call it before ``mbs.Assemble()``. Teeth mesh, and couplings are relaxed, where both rotors
+    start: spin angles count from there.
+
+    Parameters
+    ----------
+    connection : GearMesh, FlexibleCoupling or CardanJoint
+        Its axes are those of `body` as it is mounted.
+    body : RotorBody or FullRotorBody
+        The first rotor, with its marker body; spin free or prescribed.
+    at : str
+        Its interface.
+    other : RotorBody, FullRotorBody, ConstantSpeed or PrescribedMotion
+        The second rotor, in the same system; or the angle of a shaft whose axis stands still where
+        the connection needs it.
+    other_at : str, optional
+        Interface of the second rotor.
+
+    Returns
+    -------
+    SceneConnection
+        With the number of its object; ``add_sensor()`` records force or torque and energy.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, and for rotors that are not mounted as the connection needs them; nothing has
+        been added then.
+
+    Examples
+    --------
+    A pinion at 30 rad/s drives a wheel of twice its base radius:
+
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import (
+    ...     GearMesh, SolidRotor, add_rotor, connect_rotors, recommended_settings
+    ... )
+    >>> square = 0.05 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
+    >>> wheel = SolidRotor.from_matrices(
+    ...     np.eye(12), np.zeros((12, 12)), square, "z", interfaces={"gear": range(4)},
+    ...     allow_parts=True,
+    ... ).reduce(0)
+    >>> mesh = GearMesh(radii=[0.03, 0.06], stiffness=1e7, damping=2e3)
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> pinion = add_rotor(mbs, wheel, name="pinion", spin=30.0, translation="none")
+    >>> driven = add_rotor(
+    ...     mbs, wheel, name="driven", translation="none", position=[mesh.center_distance, 0, 0],
+    ...     initial_speed=-15.0,
+    ... )
+    >>> print(connect_rotors(mesh, pinion, "gear", driven, "gear"))
+    GearMesh at gear by Python function
+    >>> mbs.Assemble()
+    >>> settings = recommended_settings(end_time=0.05, step=1e-3)
+    >>> settings.timeIntegration.verboseMode = 0
+    >>> settings.solution.file.write = False
+    >>> mbs.SolveDynamic(settings)
+    True
+    >>> float(driven.coordinates()[1][0].round(6))
+    -15.0
+    """
+    checks.instance(connection, "connection", Connection, "GearMesh is one")
+    first = _checked_end(body, at, "body", "at")
+    if isinstance(other, _SHAFTS):
+        if other_at is not None:
+            raise ValueError("other_at: a shaft has no interface; leave it out")
+        start_values(other, "spin")
+        ends = [(body, at, first)]
+    else:
+        second = _checked_end(other, other_at, "other", "other_at")
+        if other.mbs is not body.mbs or other is body:
+            raise ValueError("other: needs another rotor of the same system")
+        connection.law.check_places(
+            first.axes.T @ (second.place - first.place), first.axes.T @ second.axes[:, 2]
+        )
+        ends = [(body, at, first), (other, other_at, second)]
+    parts = [InterfaceCoordinates.of(*end) for end in ends]
+    state = _state(parts, other, first, connection.law.second_axis)
+    item = _item(connection, parts, state)
+    nodes = tuple(node for part in parts for node in part.nodes)
+    added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state)
+    for rotor, *_ in ends:
+        rotor.drives.append(added)
+    return added
+
+
+def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
+    checks.instance(body, argument, (RotorBody, FullRotorBody), "add_rotor returns one")
+    body.check_present()
+    if "marker_body" not in body.objects:
+        raise ValueError(
+            f"{argument}: rotor {body.name!r} was added with marker_body=False; gears and "
+            "couplings need the marker body"
+        )
+    check_turning_interface(body, at, place)
+    return Seat.of(body, at, None)
+
+
+def _state(
+    parts: list[InterfaceCoordinates],
+    other: Body | ConstantSpeed | PrescribedMotion,
+    first: Seat,
+    axis: np.ndarray,
+) -> State:
+    """Return motion (12,), rate (12,) and derivative of both ends, in axes of the first."""
+    count = parts[0].size
+    J = np.zeros((12, sum(part.size for part in parts)))
+    if len(parts) == 1:
+        angle = other.value(0.0)
+
+        def of_rotor_and_shaft(t, q, q_t):
+            x, x_t = np.zeros(12), np.zeros(12)
+            x[:6], x_t[:6], J[:6] = parts[0].motion(q, q_t)
+            x[9:], x_t[9:] = (other.value(t) - angle) * axis, other.rate(t) * axis
+            return x, x_t, J
+
+        return of_rotor_and_shaft
+    into = np.kron(np.eye(2), first.axes.T @ parts[1].axes)
+
+    def of_rotors(t, q, q_t):
+        x, x_t, own = parts[0].motion(q[:count], q_t[:count])
+        y, y_t, others = parts[1].motion(q[count:], q_t[count:])
+        J[:6, :count], J[6:, count:] = own, into @ others
+        return np.concatenate([x, into @ y]), np.concatenate([x_t, into @ y_t]), J
+
+    return of_rotors
+
+
+def _item(
+    connection: Connection, parts: list[InterfaceCoordinates], state: State
+) -> ObjectGenericODE2:
+    law = connection.law
+
+    def force(mbs, t, item, q, q_t):
+        x, x_t, J = state(t, q, q_t)
+        return (law.forces(x, x_t) @ J).tolist()
+
+    def jacobian(mbs, t, item, q, q_t, factor_q, factor_v):
+        x, x_t, J = state(t, q, q_t)
+        K, D = law.tangent(x, x_t)
+        return J.T @ (factor_q * K + factor_v * D) @ J
+
+    size = sum(part.size for part in parts)
+    return ObjectGenericODE2(
+        nodeNumbers=[node for part in parts for node in part.nodes],
+        massMatrix=np.zeros((size, size)),
+        forceUserFunction=force,
+        jacobianUserFunction=jacobian,
+        visualization=VObjectGenericODE2(show=False),
+    )

@@ -1,0 +1,1 @@
+"""Full bodies: all nodes of a mesh as coordinates."""

@@ -1,0 +1,142 @@
+"""Planning a full body: a solid rotor with all its nodal displacements, checked before adding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor.multibody.rotor.plan import Plan, laid_out
+from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.solid.damping import sparse_damping
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.formulation import Formulation
+from exudyn_rotor.theory.full_motion import (
+    Conditions,
+    FullMotion,
+    conditions,
+    full_stiffening,
+)
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.stiffening import NO_PRESTRESS
+
+_ROUNDING = 1e-12  # of the accelerations that balance a load, for one of 1 rad/s²
+_BROKEN = 1e-9  # share of a displacement that a condition may find in it
+
+
+@dataclass(frozen=True, eq=False)
+class NodalFields:
+    """What stands for the modes in a full body: the displacements of all nodes.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        Frame origin, mesh coordinates [m].
+    invariants : Invariants
+        Sparse, about the origin, without what the conditions take up.
+    source : SolidRotor
+    conditions : Conditions
+    """
+
+    origin: np.ndarray
+    invariants: Invariants
+    source: SolidRotor
+    conditions: Conditions
+
+
+@dataclass(frozen=True, eq=False)
+class FullPlan(Plan):
+    """A full body, laid out; as :class:`Plan`, with nodal displacements [m] for modes."""
+
+    selection: NodalFields
+    motion: FullMotion
+    node_motion: FullMotion
+
+
+def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
+    """Check what needs the model, and lay out the equations.
+
+    `rotor` carries its prestress where ``setup.stiffening`` is 'full'.
+    """
+    _check_possible(rotor, setup.formulation)
+    if setup.mass_damping or setup.stiffness_damping:
+        rotor = rotor.with_damping(mass=setup.mass_damping, stiffness=setup.stiffness_damping)
+    origin = rotor.center_of_mass
+    if not setup.formulation.translation_count:
+        origin = rotor.axis.project(origin)
+    carried, turns = rotor.carried_prestress, None
+    whole = _invariants(rotor, origin)
+    if setup.stiffening == "full":
+        if carried is None:
+            raise ValueError(NO_PRESTRESS)
+        turns = relief_rotations(rotor)
+        turns = np.where(np.abs(turns) > _ROUNDING, turns, 0.0)
+        whole = replace(whole, K2=carried.per_square, B=carried.euler, K4=carried.per_fourth_power)
+    second = full_stiffening(whole, setup.stiffening, turns)
+    held = conditions(whole, setup.formulation, rotor.grounded, setup.negligible)
+    inv = replace(held.invariants, K2=None, B=None, K4=None)
+    fields = NodalFields(checks.read_only(origin), inv, rotor, held)
+
+    def motion(
+        formulation: Formulation, plane: np.ndarray | None, gravity: np.ndarray | None, sign: int
+    ) -> FullMotion:
+        return FullMotion(
+            inv if sign > 0 else inv.reversed(),
+            formulation,
+            second if sign > 0 else second.reversed(),
+            orientation=setup.placement.rotation,
+            plane=plane,
+            gravity=gravity,
+        )
+
+    return laid_out(
+        FullPlan,
+        setup,
+        fields,
+        motion,
+        modal_start=_start(setup.modal_coordinates, "modal_coordinates", held),
+        modal_start_rate=_start(setup.modal_velocities, "modal_velocities", held),
+    )
+
+
+def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
+    basis = sp.eye_array(3 * rotor.node_count, format="csr")
+    matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
+    return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+
+
+def _check_possible(rotor: SolidRotor, formulation: Formulation) -> None:
+    if rotor.grounded and (formulation.translation_count or formulation.has_spin):
+        raise ValueError(
+            "the stiffness matrix holds this rotor in its own frame (grounded), and a frame "
+            "without mass cannot move freely: use translation='none' and a prescribed spin"
+        )
+    across = rotor.nodes - rotor.axis.project(rotor.nodes)
+    if formulation.has_spin and not np.any(rotor.mass[::3, ::3] @ across):
+        raise ValueError(
+            "the rotor has no moment of inertia about its axis, so its spin cannot be free: "
+            "prescribe the spin, or give the rotor mass off the axis"
+        )
+
+
+def _start(values: ArrayLike | None, name: str, held: Conditions) -> np.ndarray:
+    """Return the nodal start values (3n,), which keep the conditions."""
+    size = held.invariants.size
+    if values is None:
+        return np.zeros(size)
+    described = f"{name} (of a full body: the displacements of all nodes, or their rates)"
+    shape = (size // 3, 3) if np.ndim(values) == 2 else (size,)
+    start = checks.array(values, described, shape=shape).ravel()
+    moved = np.abs(held.rows @ start)
+    allowed = _BROKEN * np.abs(held.rows) @ np.abs(start)
+    if np.any(moved > allowed):
+        raise ValueError(
+            f"{name}: the displacements hold a mean motion of {moved.max():.3g} that the frame "
+            "describes already (mean translation, or mean rotation about the axis); subtract it, "
+            "and give it by position, initial_velocity, initial_angle or initial_speed"
+        )
+    return start

@@ -1,0 +1,177 @@
+"""Mean motions of a full body as coordinates, and the conditions of its frame.
+
+A marker on many nodes couples all their coordinates in a dense matrix. So the mean motion of an
+interface has coordinates of its own, z, without mass, tied to the nodal displacements c by
+``z = R c``; connectors and loads act on z. What holds the frame's own motions out of c are rows of
+the same kind, ``0 = R c``.
+
+Both are equations of the host's own, sparse and constant:
+
+    M c̈ + … − Rᵀλ = 0,    f_z + λ = 0,    z̈ − R c̈ = 0,    λ = μ̈ + 2γμ̇ + γ²μ
+
+with the same operator ``∂²/∂t² + 2γ ∂/∂t + γ²`` on ``z − R c``. That is exact: a state that starts
+with ``z = R c`` keeps it, and any λ has its μ. In mass, damping and stiffness matrix stands one
+symmetric matrix T, times 1, 2γ and γ²; M + T is regular, so that there are no algebraic equations,
+and every solver serves: implicit, explicit (γ h small) and static.
+
+Rows over all nodes make the factor of a sparse solver full, unless its ordering sets them aside and
+its pivoting leaves them to the end. The ordering does so with rows that fill more than half of the
+columns, so they are mixed with each other by an orthogonal matrix without zeros; the pivoting does
+so with rows that are small beside the mass matrix, so all are (21,000 coordinates: 2 s instead of
+more than 130 s without the one, and of more than 60 s without the other).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import exudyn
+import numpy as np
+import scipy.sparse as sp
+from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
+
+from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
+from exudyn_rotor.theory.invariants import Invariants
+
+_SCALE = 1e-3  # of rows over mass matrix
+RATE = 100.0  # γ [rad/s]: how fast z comes back to R c after rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """Rows of mean motions over the nodal displacements of a rotor.
+
+    Attributes
+    ----------
+    local : scipy.sparse.csr_array, shape (a, 3n)
+        Over few nodes; the first coordinates z.
+    whole : ndarray, shape (b, 3n)
+        Over all nodes; the other coordinates z.
+    held : ndarray, shape (c, 3n)
+        Over all nodes, of motions that are zero.
+    stiffness : ndarray, shape (a + b, a + b), optional
+        Acts on z; none by default.
+    """
+
+    local: sp.csr_array
+    whole: np.ndarray
+    held: np.ndarray
+    stiffness: np.ndarray | None = None
+    rows: sp.csr_array = field(init=False)
+
+    def __post_init__(self) -> None:
+        rows = sp.vstack([self.local, sp.csr_array(self.whole)], format="csr")
+        object.__setattr__(self, "rows", rows)
+
+    @property
+    def count(self) -> int:
+        """Number of coordinates z."""
+        return self.rows.shape[0]
+
+    def matrix(self, invariants: Invariants) -> sp.csr_array:
+        """Return T on (c, z, μ), symmetric, in the size of the mass matrix."""
+        width, z = self.rows.shape[1], self.count
+        held = sp.csr_array(self.held)
+        select = sp.eye_array(z, format="csr")
+        block = sp.vstack(
+            [
+                sp.hstack([-self.rows, select]),
+                sp.hstack([-held, sp.csr_array((len(self.held), z))]),
+            ],
+            format="csr",
+        )
+        block = self._mix() @ sp.diags_array(self._scale(invariants)) @ block
+        square = (width + z, width + z)
+        rest = (block.shape[0], block.shape[0])
+        return sp.csr_array(
+            sp.block_array([[sp.csr_array(square), block.T], [block, sp.csr_array(rest)]])
+        )
+
+    def _scale(self, invariants: Invariants) -> np.ndarray:
+        """Return the factor of each row that makes it small beside the mass matrix [kg]."""
+        sums = np.r_[np.asarray(abs(self.rows).sum(axis=1)).ravel(), np.abs(self.held).sum(axis=1)]
+        return _SCALE * invariants.mass / np.where(sums > 0.0, sums, 1.0)
+
+    def _mix(self) -> sp.csr_array:
+        """Return the orthogonal matrix that mixes the rows over all nodes."""
+        local, count = self.local.shape[0], len(self.whole) + len(self.held)
+        v = np.arange(1.0, count + 1.0)
+        mixing = np.eye(count) - np.outer(v, v) * (2.0 / max(v @ v, 1.0))
+        return sp.csr_array(sp.block_diag([sp.eye_array(local), sp.csr_array(mixing)]))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldNode:
+    """The node of the nodal displacements.
+
+    Attributes
+    ----------
+    number : exudyn.NodeIndex
+    size, first : int
+        Number of its coordinates, and the first of the displacements, which are the last.
+    """
+
+    number: exudyn.NodeIndex
+    size: int
+    first: int
+
+
+def add_ties(
+    mbs: exudyn.MainSystem,
+    fields: FieldNode,
+    ties: Ties,
+    invariants: Invariants,
+    start: tuple[np.ndarray, np.ndarray],
+) -> tuple[exudyn.NodeIndex | None, exudyn.ObjectIndex]:
+    """Add the coordinates z and the ties; return the node of z, None if there are none.
+
+    `start` holds displacements and velocities (3n,) at the start.
+    """
+    nodes, z_node = [fields.number], None
+    if ties.count:
+        z_node = mbs.AddNode(generic_node(*(ties.rows @ values for values in start)))
+        nodes.append(z_node)
+    T = ties.matrix(invariants)
+    width, z = fields.size, ties.count
+    multipliers = T.shape[0] - (width - fields.first) - z
+    nodes.append(mbs.AddNode(generic_node(*np.zeros((2, multipliers)))))
+    size = fields.first + T.shape[0]
+    T = _shifted(T, fields.first, size)
+    stiffness = RATE**2 * T
+    if ties.stiffness is not None:
+        stiffness = stiffness + _shifted(sp.csr_array(ties.stiffness), width, size)
+    item = ObjectGenericODE2(
+        nodeNumbers=nodes,
+        massMatrix=container(T),
+        dampingMatrix=container(2.0 * RATE * T),
+        stiffnessMatrix=container(stiffness),
+        jacobianUserFunction=no_jacobian(size),
+        visualization=VObjectGenericODE2(show=False),
+    )
+    return z_node, mbs.AddObject(item)
+
+
+def container(matrix: sp.sparray) -> exudyn.MatrixContainer:
+    """Return a sparse matrix for Exudyn."""
+    entries = sp.coo_array(matrix)
+    table = np.column_stack([*entries.coords, entries.data]).astype(float)
+    filled = exudyn.MatrixContainer()
+    filled.SetWithSparseMatrixCSR(*matrix.shape, table, False)
+    return filled
+
+
+def no_jacobian(size: int):
+    """Return the Jacobian function of an object without user forces.
+
+    Without it Exudyn differentiates the object numerically, with all its matrices; it is called
+    where a Jacobian is made anew, not in every step.
+    """
+    zero = container(sp.csr_array((size, size)))
+    return lambda mbs, t, item, q, q_t, factor_q, factor_v: zero
+
+
+def _shifted(matrix: sp.csr_array, first: int, size: int) -> sp.csr_array:
+    """Return the matrix at the place (first, first) of one of `size`."""
+    entries = sp.coo_array(matrix)
+    rows, columns = entries.coords
+    return sp.csr_array((entries.data, (rows + first, columns + first)), shape=(size, size))

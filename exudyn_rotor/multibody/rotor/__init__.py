@@ -1,0 +1,1 @@
+"""Rotors in a scene: their coordinates, nodes, markers and sensors."""

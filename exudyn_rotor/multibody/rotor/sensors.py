@@ -1,0 +1,279 @@
+"""Sensors of a rotor body: native ones by mesh node and interface, spin, torque and energy."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import SensorMarker, SensorSuperElement, SensorUserFunction
+
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.rotor.locking import guiding_force
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.energy import energy_of
+from exudyn_rotor.theory.formulation import ConstantSpeed
+
+_KINDS = exudyn.OutputVariableType
+_AT_MESH_NODE = (
+    _KINDS.Position,
+    _KINDS.Displacement,
+    _KINDS.DisplacementLocal,
+    _KINDS.Velocity,
+    _KINDS.VelocityLocal,
+    _KINDS.Acceleration,
+)
+_AT_MARKER = {
+    "position": (_KINDS.Position, _KINDS.Displacement, _KINDS.Velocity),
+    "rigid": (
+        _KINDS.Position,
+        _KINDS.Displacement,
+        _KINDS.Velocity,
+        _KINDS.Rotation,
+        _KINDS.RotationMatrix,
+        _KINDS.AngularVelocity,
+        _KINDS.AngularVelocityLocal,
+        _KINDS.HomogeneousTransformation,
+    ),
+}
+
+
+def add_node_sensor(
+    body: RotorItems, node: int, output: exudyn.OutputVariableType, **options: Any
+) -> exudyn.SensorIndex:
+    """Add a ``SensorSuperElement`` at mesh node `node`, stored internally by default.
+
+    Exudyn takes stress (``StressLocal``), here and in its contour plots, from the modal coordinates
+    alone. The static centrifugal stress that the modes do not show is missing, which can be nearly
+    all of the stress; :class:`exudyn_rotor.StressField` adds it.
+
+    Warns
+    -----
+    UserWarning
+        For stress of a rotor that was reduced with a prestress and spins.
+    """
+    marker_body = _marker_body(body)
+    count = body.mesh_node_count
+    if checks.count(node, "node", least=-1) not in range(count):
+        raise ValueError(
+            f"node: rotor {body.name!r} has mesh nodes 0 … {count - 1}, not {node}"
+            + ("" if count else "; it was reduced without shapes (keep_shapes=False)")
+        )
+    with_stress = body.mesh_stress
+    _check_output(
+        output,
+        (*_AT_MESH_NODE, _KINDS.StressLocal) if with_stress else _AT_MESH_NODE,
+        "at a mesh node" + ("" if with_stress else ", of a rotor reduced without stress"),
+    )
+    settings = _settings(body, options)
+    _warn_of_static_stress(body, output)
+    return body.mbs.AddSensor(
+        SensorSuperElement(
+            bodyNumber=marker_body, meshNodeNumber=int(node), outputVariableType=output, **settings
+        )
+    )
+
+
+def settings_at_mesh_node(
+    body: RotorItems, output: exudyn.OutputVariableType, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the settings of a sensor at a mesh node of a full body; stress is none of them."""
+    _check_output(output, _AT_MESH_NODE, "at a mesh node of a full body (stress: body.stress())")
+    return _settings(body, options)
+
+
+def _warn_of_static_stress(body: RotorItems, output: exudyn.OutputVariableType) -> None:
+    """Warn where a native stress sensor leaves out a static stress that the rotor was given."""
+    spin = body.formulation.spin
+    at_rest = isinstance(spin, ConstantSpeed) and spin.speed == 0.0
+    # K2 is what a body keeps of a prestress
+    if output != _KINDS.StressLocal or at_rest or body.selection.invariants.K2 is None:
+        return
+    warnings.warn(
+        f"rotor {body.name!r}: Exudyn's stress sensor shows the stress of the modes alone, without "
+        "the static centrifugal stress that they do not hold; record the modal coordinates and use "
+        "StressField.of(reduced, body) with stress_history",
+        UserWarning,
+        stacklevel=4,
+    )
+
+
+def add_interface_sensor(
+    body: RotorItems, interface: str, output: exudyn.OutputVariableType, **options: Any
+) -> exudyn.SensorIndex:
+    """Add a ``SensorMarker`` at an interface, stored internally by default."""
+    marker = body.marker(interface)
+    kind = body.plan.setup.markers[interface].kind
+    _check_output(output, _AT_MARKER[kind], f"at a {kind} marker")
+    settings = _settings(body, options)
+    return body.mbs.AddSensor(
+        SensorMarker(markerNumber=marker, outputVariableType=output, **settings)
+    )
+
+
+def add_spin_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
+    """Add a sensor of θ [rad] and ω [rad/s]."""
+    if "rigid" in body.nodes:
+        node, index = body.nodes["rigid"], body.locks.spin
+    elif body.formulation.has_spin:
+        node, index = body.nodes["coordinates"], body.formulation.translation_count
+    else:
+        raise ValueError(
+            f"rotor {body.name!r}: without the marker body a prescribed spin has no node"
+        )
+
+    sign = float(body.layout.signs[index])
+
+    def spin(mbs, t, sensors, factors, configuration):
+        angle = mbs.GetNodeOutput(node, _KINDS.Coordinates, configuration)[index]
+        speed = mbs.GetNodeOutput(node, _KINDS.Coordinates_t, configuration)[index]
+        return [sign * float(angle), sign * float(speed)]
+
+    return add_function_sensor(body, spin, options)
+
+
+def add_drive_torque_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
+    """Add a sensor of the drive torque about e [N m].
+
+    The torque is the rotor's own share (the row of θ in (84–86)) minus the moment of all external
+    forces, which the locked coordinate of the marker body collects. In static solutions it is right
+    for a constant spin; not for θ(t) held by a constraint, because Exudyn's static solver returns
+    multipliers with the opposite sign. Explicit solvers have no accelerations at the first
+    instant, so the first value is wrong with them.
+    """
+    _marker_body(body)
+    if body.formulation.has_spin:
+        raise ValueError(
+            f"rotor {body.name!r} spins freely and has no drive; a prescribed spin has one"
+        )
+    external = _external_moment(body)
+
+    def torque(mbs, t, sensors, factors, configuration):
+        q, q_t, q_tt = body.coordinates(configuration)
+        modes = slice(body.motion.formulation.translation_count, None)
+        needed = body.motion.drive_torque(t, q, q_t, q_tt[modes])
+        return [needed - external(t, configuration) - _deflected_weight(body, t, q[modes])]
+
+    return add_function_sensor(body, torque, options)
+
+
+def _deflected_weight(body: RotorItems, t: float, zeta: np.ndarray) -> float:
+    """Return the moment about e of gravity by the deflection Sζ, which Exudyn's load leaves out."""
+    if body.gravity_load is None:
+        return 0.0
+    motion = body.motion
+    axis = SpinAxis(motion.invariants.direction)
+    gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
+    turn = motion.orientation @ axis.rotation(motion.formulation.spin.value(t))
+    return float(turn @ axis.skew @ (motion.invariants.S @ zeta) @ gravity)
+
+
+def _external_moment(body: RotorItems):
+    """Return a function that reads the external moment about e from the locked spin."""
+    place, node, mbs = body.layout, body.nodes["rigid"], body.mbs
+    guide = guiding_force(body.locks, place)
+    constraint = body.constraints.get("spin")
+    spin, sign = body.locks.spin, body.locks.sign
+
+    def moment(t, configuration) -> float:
+        kinds = (_KINDS.Coordinates, _KINDS.Coordinates_t, _KINDS.Coordinates_tt)
+        angle, rate, acceleration = (
+            float(mbs.GetNodeOutput(node, kind, configuration)[spin]) for kind in kinds
+        )
+        reaction = (
+            place.lock_mass[spin] * acceleration
+            + place.lock_damping[spin] * rate
+            + place.lock_stiffness[spin] * angle
+        )
+        if guide is not None:
+            reaction -= guide(t)[spin]
+        if constraint is not None:
+            reaction += float(np.ravel(mbs.GetObjectOutput(constraint, _KINDS.Force))[0])
+        return sign * reaction
+
+    return moment
+
+
+def add_energy_sensor(body: RotorItems, **options: Any) -> exudyn.SensorIndex:
+    """Add a sensor of the rotor's kinetic and elastic energy and the potential of its weight [J].
+
+    Their sum changes by the work of all other loads and of a prescribed motion, less what damping
+    takes.
+    """
+
+    def energy(mbs, t, sensors, factors, configuration):
+        q, q_t, _ = body.coordinates(configuration)
+        gravity = body.plan.setup.gravity
+        if body.gravity_load is not None:  # a script may change it
+            gravity = mbs.GetLoadParameter(body.gravity_load, "loadVector")
+        energy = energy_of(body.motion, t, q, q_t, gravity)
+        return [energy.kinetic, energy.elastic, energy.weight]
+
+    return add_function_sensor(body, energy, options)
+
+
+def _marker_body(body: RotorItems) -> exudyn.ObjectIndex:
+    if "marker_body" not in body.objects:
+        raise ValueError(
+            f"rotor {body.name!r} was added with marker_body=False; this sensor needs one"
+        )
+    return body.objects["marker_body"]
+
+
+def add_function_sensor(
+    body: RotorItems, function: Callable, options: Mapping[str, Any]
+) -> exudyn.SensorIndex:
+    settings = _settings(body, options, shown=False)
+    return body.mbs.AddSensor(SensorUserFunction(sensorUserFunction=function, **settings))
+
+
+def _check_output(
+    output: exudyn.OutputVariableType, known: tuple[exudyn.OutputVariableType, ...], where: str
+) -> None:
+    """Refuse what Exudyn would refuse as late as in ``mbs.Assemble()``."""
+    names = ", ".join(kind.name for kind in known)
+    checks.instance(
+        output, "output", _KINDS, f"{where} there are, of exudyn.OutputVariableType: {names}"
+    )
+    if output not in known:
+        raise ValueError(f"output: {output.name} is not available {where}; there are: {names}")
+
+
+def _settings(
+    body: RotorItems, options: Mapping[str, Any], *, shown: bool = True
+) -> dict[str, Any]:
+    """Return the settings of a sensor, stored internally by default; those `shown` are drawn."""
+    body.check_present()
+    known = ("name", "storeInternal", "writeToFile", "fileName", *(["visualization"] * shown))
+    for option in options:
+        if option not in known:
+            raise TypeError(f"{option}: is no option of this sensor; it takes {', '.join(known)}")
+    settings = {"storeInternal": True, "writeToFile": False} | dict(options)
+    for option in ("storeInternal", "writeToFile"):
+        checks.flag(settings[option], option)
+    if "fileName" in settings:
+        settings["fileName"] = os.fspath(checks.path(settings["fileName"], "fileName"))
+    if "name" in settings:
+        name = checks.label(settings["name"], "name")
+        if int(body.mbs.GetSensorNumber(name)) != -1:
+            raise ValueError(f"name: this system already has a sensor {name!r}; choose another")
+    if "visualization" in settings:
+        settings["visualization"] = _visualization(settings["visualization"])
+    return settings
+
+
+def _visualization(value: Any) -> dict[str, bool]:
+    """Return Exudyn's visualization of a sensor: whether it is drawn, as dictionary or V object."""
+    needed = "visualization: needs {'show': True} or {'show': False}, got " + checks.shown(value)
+    try:
+        entries = dict(value)
+    # foreign objects
+    except Exception as error:
+        raise TypeError(needed) from error
+    if set(entries) - {"show"}:
+        raise ValueError(needed)
+    return {name: checks.flag(shown, f"visualization: {name}") for name, shown in entries.items()}

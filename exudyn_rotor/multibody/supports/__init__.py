@@ -1,0 +1,1 @@
+"""Supports, bearings and foundations in scenes."""

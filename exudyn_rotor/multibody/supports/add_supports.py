@@ -1,0 +1,230 @@
+"""Supports and bearings between a rotor in a scene and the ground or a foundation.
+
+The same objects as in linear analyses, with the same meaning: an interface's mean displacement,
+axes (n1, n2, e) of :attr:`SpinAxis.plane` as the rotor is mounted, frame 'inertial' or 'rotor'.
+The spring is relaxed where the interface stands at rest with its centre on the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.support import Support, acts
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.supports.magnetic_connectors import add_magnetic
+from exudyn_rotor.multibody.supports.seats import Base, Seat
+from exudyn_rotor.multibody.supports.support_connectors import (
+    PYTHON,
+    bearing_connector,
+    displacement_connector,
+    tilt_connector,
+)
+from exudyn_rotor.multibody.supports.tilting_pads import add_pads
+
+
+@dataclass(frozen=True, eq=False)
+class SceneSupport:
+    """A support in a scene.
+
+    Attributes
+    ----------
+    support : Support or bearing
+    objects : tuple of ObjectIndex
+        Its connectors: for displacements, for tilts, where it acts on them; of a magnetic bearing
+        that of the magnets and the controller; of tilting pads their films and, last, the pads,
+        whose coordinates are the tilts [rad].
+    evaluation : tuple of str
+        Who evaluates each of them in a time step.
+    base : SceneFoundation, MarkerIndex, ObjectIndex or None
+        What carries it; None for the ground.
+    """
+
+    support: Given
+    objects: tuple[exudyn.ObjectIndex, ...]
+    evaluation: tuple[str, ...]
+    base: Base | None = None
+
+    def own_coordinates(self, mbs: exudyn.MainSystem) -> np.ndarray:
+        """Return where coordinates of its own are in an assembled system, shape (p,); else none."""
+        if not isinstance(self.support, MagneticBearing | TiltingPadBearing):
+            return np.zeros(0, dtype=int)
+        return np.asarray(mbs.systemData.GetObjectLTGODE2(self.objects[-1]), dtype=int)
+
+    @property
+    def uses_python(self) -> bool:
+        """True when a time step calls Python for it."""
+        return PYTHON in self.evaluation
+
+    def __str__(self) -> str:
+        """Return interface and who evaluates it."""
+        return f"{self.support.interface} by {', '.join(self.evaluation) or 'nothing'}"
+
+
+def add_supports(
+    body: RotorBody | FullRotorBody,
+    supports: Sequence[Given] | Given,
+    base: Base | Mapping[str, Base] | None = None,
+) -> tuple[SceneSupport, ...]:
+    """Put a rotor in a scene on the supports that linear analyses take.
+
+    Call it before ``mbs.Assemble()``. Tables over the speed and supports in the rotor's frame
+    follow the rotor's spin at every instant, prescribed or free.
+
+    Parameters
+    ----------
+    body : RotorBody or FullRotorBody
+        From :func:`exudyn_rotor.add_rotor`, with its marker body.
+    supports : sequence of Support or bearings
+        A bearing acts by its law at the rotor's place, velocity and spin; a support, too, where it
+        depends on the spin.
+    base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
+        What carries them: a foundation, by its point of the interface's name; a marker at the place
+        of the interface; a rigid body, which gets such a marker; the ground by default. Forces act
+        along the inertial axes, also where the base tilts.
+
+    Returns
+    -------
+    tuple of SceneSupport
+        One for each support, with the numbers of its connectors.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input; nothing has been added then. A run that leaves the range of a table stops
+        with an error.
+
+    Notes
+    -----
+    About the spin axis, a damper that stands still brakes the whole spin; a spring, and a damper in
+    the rotor's frame, act on the interface's rotation against the frame, so that they need a
+    prescribed spin. Supports in the rotor's frame stand on something that turns with the frame and
+    is driven there: its reaction does not act on a free spin.
+
+    The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
+    torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
+    its drive lacks it.
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, add_rotor, add_supports
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> body = add_rotor(mbs, rotor.reduce(1), spin=50.0)
+    >>> springs = [Support("left", 2e4 * np.eye(3)), Support("right", [[2e4, 1e3], [-1e3, 2e4]])]
+    >>> print(*add_supports(body, springs), sep=" and ")
+    left by Exudyn and right by symbolic function
+    """
+    checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
+    body.check_present()
+    supports = given_supports(supports)
+    if "marker_body" not in body.objects:
+        raise ValueError(
+            f"body: rotor {body.name!r} was added with marker_body=False; supports need the marker "
+            "body"
+        )
+    check_interfaces(supports, body.selection.source.interfaces)
+    for support in supports:
+        if isinstance(support, Bearing):
+            _check_law(body, _with_law(support))
+        elif isinstance(support, Support):
+            _check_about_the_axis(body, support)
+    seats = [Seat.of(body, support.interface, base) for support in supports]
+    sensed = [_seat_of_sensor(body, support, base) for support in supports]
+    added = tuple(
+        _added(body, support, *places)
+        for support, *places in zip(supports, seats, sensed, strict=True)
+    )
+    body.supports.extend(added)
+    return added
+
+
+def _with_law(bearing: Bearing) -> Bearing:
+    """Return a bearing whose law scenes take: of tilting pads with inertia, that of one film."""
+    if isinstance(bearing, TiltingPadBearing) and bearing.pad_inertia is not None:
+        return bearing.pad_bearings[0]
+    return bearing
+
+
+def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
+    """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
+    turns = bearing.law and bearing.law_with_torque is not None
+    interface = body.selection.source.interfaces[bearing.interface]
+    if turns and body.formulation.has_spin and interface.radius == 0.0:
+        raise ValueError(
+            f"support at {bearing.interface!r}: its torque would not brake the free spin, since "
+            "the interface is a single node, which has no rotation; make the interface of three "
+            "nodes or more, or prescribe the spin"
+        )
+
+
+def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> None:
+    """Refuse what acts against the rotation of a frame whose spin is free."""
+    if not body.formulation.has_spin:
+        return
+    stiffness, damping = support.matrices(body.plan.setup.placement.speed)
+    acting = {"tilt_stiffness": stiffness}
+    if support.frame == "rotor":
+        acting["tilt_damping"] = damping
+    for name, matrix in acting.items():
+        if np.any(matrix[5]) or np.any(matrix[:, 5]):
+            raise ValueError(
+                f"support at {support.interface!r}: {name} about the spin axis needs a prescribed "
+                f"spin, and that of rotor {body.name!r} is free; use a matrix with zeros there, or "
+                "a torsional spring on the frame's node"
+            )
+
+
+def _seat_of_sensor(
+    body: RotorBody | FullRotorBody, support: Given, base: Base | Mapping[str, Base] | None
+) -> Seat | None:
+    """Return where the sensors of a magnetic bearing are; the bearing's base carries them."""
+    if not isinstance(support, MagneticBearing):
+        return None
+    given = base.get(support.interface) if isinstance(base, Mapping) else base
+    apart = support.sensor_interface != support.interface
+    if apart and isinstance(given, exudyn.MarkerIndex):
+        raise ValueError(
+            f"base: the magnetic bearing at {support.interface!r} has its sensors at "
+            f"{support.sensor!r}, where a marker has no place; give the rigid body itself"
+        )
+    return Seat.of(body, support.sensor_interface, given)
+
+
+def _added(
+    body: RotorBody | FullRotorBody, support: Given, seat: Seat, sensed: Seat | None
+) -> SceneSupport:
+    mbs, parts = body.mbs, []
+    if isinstance(support, MagneticBearing):
+        items = add_magnetic(body, support, seat, seat.marker(mbs), sensed.marker(mbs))
+        return SceneSupport(support, items, (PYTHON, PYTHON), seat.base)
+    if isinstance(support, TiltingPadBearing):
+        return SceneSupport(support, *add_pads(body, support, seat), seat.base)
+    if isinstance(support, Bearing):
+        item = bearing_connector(body, support, seat, seat.marker(mbs))
+        return SceneSupport(support, (item,), (PYTHON,), seat.base)
+    across = support.stiffness, support.damping
+    tilts = support.tilt_stiffness, support.tilt_damping
+    if not any(map(acts, (*across, *tilts))):
+        return SceneSupport(support, (), (), seat.base)
+    base = seat.marker(mbs)
+    if any(map(acts, across)):
+        parts.append(displacement_connector(body, support, seat, base))
+    if any(map(acts, tilts)):
+        parts.append(tilt_connector(body, support, seat, base))
+    objects, evaluation = zip(*parts, strict=True)
+    return SceneSupport(support, objects, evaluation, seat.base)

@@ -1,0 +1,243 @@
+"""A linear foundation in a scene: native matrices on the coordinates of one node.
+
+Its markers are those of a massless ``ObjectFFRFreducedOrder`` beside the equations, whose frame
+constraints hold at the ground: three virtual nodes for every point move as its motion says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    CoordinateConstraint,
+    MarkerNodeCoordinate,
+    MarkerSuperElementRigid,
+    NodePointGround,
+    NodeRigidBodyRxyz,
+    ObjectFFRFreducedOrder,
+    ObjectGenericODE2,
+    SensorMarker,
+    VCoordinateConstraint,
+    VNodeRigidBodyRxyz,
+    VObjectFFRFreducedOrder,
+    VObjectGenericODE2,
+)
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.multibody.rotor.inputs import main_system
+from exudyn_rotor.multibody.rotor.marker_body import add_weight, append_nodes, virtual_nodes
+from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
+from exudyn_rotor.theory.axis import SpinAxis
+
+_ARM = 0.1  # m, of the virtual nodes of a point; any does
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneFoundation:
+    """A foundation in a scene, from :func:`add_foundation`; a base for ``add_supports``.
+
+    Attributes
+    ----------
+    mbs : exudyn.MainSystem
+    foundation : Foundation
+        In inertial axes.
+    node : NodeIndex
+        Of its coordinates.
+    objects : mapping of str to ObjectIndex
+        ``'physics'`` (the equations) and ``'marker_body'`` (markers).
+    gravity_load : LoadIndex or None
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> from exudyn_rotor import Foundation, add_foundation
+    >>> frame = Foundation.from_modes(
+    ...     [300.0, 450.0], 0.02, {"left": [[0, 1], [1, 0], [0, 0]]},
+    ...     places={"left": [0.0, 0.0, -0.1]}, masses=20.0,
+    ... )
+    >>> base = add_foundation(exudyn.SystemContainer().AddSystem(), frame)
+    >>> base
+    SceneFoundation(Foundation(2 coordinates, 47.75 to 71.62 Hz, points: left))
+    >>> sensor = base.add_sensor("left")
+    """
+
+    mbs: exudyn.MainSystem
+    foundation: Foundation
+    node: exudyn.NodeIndex
+    objects: Mapping[str, exudyn.ObjectIndex]
+    gravity_load: exudyn.LoadIndex | None = None
+    _markers: dict[str, exudyn.MarkerIndex] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        main_system(self.mbs)
+        checks.instance(self.foundation, "foundation", Foundation)
+        checks.instance(self.node, "node", exudyn.NodeIndex)
+        objects = checks.mapping(self.objects, "objects", "ObjectIndex", ("physics", "marker_body"))
+        for name, number in objects.items():
+            checks.instance(number, f"objects: {name!r}", exudyn.ObjectIndex)
+        object.__setattr__(self, "objects", checks.read_only_mapping(objects))
+        if self.gravity_load is not None:
+            checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
+
+    def __repr__(self) -> str:
+        """Return a short summary."""
+        return f"SceneFoundation({self.foundation!r})"
+
+    def marker(self, name: str) -> exudyn.MarkerIndex:
+        """Return a rigid marker at a point whose place is known, axes x, y, z.
+
+        Raises
+        ------
+        ValueError
+            For an unknown point, and one without a place.
+        """
+        checks.choice(name, "name", self.foundation.points)
+        if name not in self.foundation.places:
+            raise ValueError(f"name: the place of the point {name!r} is not known; give places=…")
+        if name not in self._markers:
+            place = self.foundation.places[name]
+            self._markers[name] = foundation_marker(self, name, place, np.eye(3))
+        return self._markers[name]
+
+    def add_sensor(
+        self, name: str, output: exudyn.OutputVariableType = exudyn.OutputVariableType.Displacement
+    ) -> exudyn.SensorIndex:
+        """Add a sensor at a point, which stores its values along x, y, z."""
+        checks.instance(output, "output", exudyn.OutputVariableType)
+        return self.mbs.AddSensor(
+            SensorMarker(
+                markerNumber=self.marker(name), outputVariableType=output, storeInternal=True
+            )
+        )
+
+
+def foundation_marker(
+    base: SceneFoundation, name: str, place: np.ndarray, axes: np.ndarray
+) -> exudyn.MarkerIndex:
+    """Add a rigid marker of a point at its place [m], with these axes as columns."""
+    motion = base.foundation.motion(name, place)
+    return virtual_marker(base.mbs, base.objects["marker_body"], place, motion, axes)
+
+
+def virtual_marker(
+    mbs: exudyn.MainSystem,
+    number: exudyn.ObjectIndex,
+    place: np.ndarray,
+    motion: np.ndarray,
+    axes: np.ndarray,
+) -> exudyn.MarkerIndex:
+    """Add a rigid marker of a flexible body at a place [m] with the motion (6, k)."""
+    nodes = virtual_nodes(place, _ARM, motion, SpinAxis(axes[:, 2]))
+    frame = np.eye(4)
+    frame[:3, :3] = axes
+    return mbs.AddMarker(
+        MarkerSuperElementRigid(
+            bodyNumber=number,
+            meshNodeNumbers=append_nodes(mbs, number, *nodes),
+            weightingFactors=[1.0 / 3.0] * 3,
+            localHT=frame,
+            visualization={"show": False, "showMarkerNodes": False},
+        )
+    )
+
+
+def add_foundation(
+    mbs: exudyn.MainSystem,
+    foundation: Foundation,
+    *,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    rotation: ArrayLike | None = None,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+) -> SceneFoundation:
+    """Add a foundation to a scene, on which supports can stand: ``add_supports(…, base=…)``.
+
+    Its equations are native matrices, so a step calls no Python. Its frame is held by constraints;
+    explicit solvers need ``eliminateConstraints``.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    foundation : Foundation
+    position, rotation : array_like, optional
+        Those of the rotor in :func:`add_rotor`: the foundation is described in its mesh axes.
+    gravity : array_like, shape (3,), optional
+        Inertial axes [m/s²]; it sags under it, by its participation.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input; nothing has been added then.
+
+    Examples
+    --------
+    >>> import exudyn
+    >>> from exudyn_rotor import Foundation, Mount, add_foundation
+    >>> block = Foundation.rigid(50.0, [4.0, 5.0, 1.0], [0.0, -0.2, 0.0],
+    ...     [Mount([x, -0.3, z], 1e6) for x in (-0.2, 0.2) for z in (-0.4, 0.4)],
+    ...     {"left": [0.0, 0.0, -0.3], "right": [0.0, 0.0, 0.3]})
+    >>> mbs = exudyn.SystemContainer().AddSystem()
+    >>> add_foundation(mbs, block)
+    SceneFoundation(Foundation(6 coordinates, 38.18 to 75.07 Hz, points: left, right))
+    """
+    main_system(mbs)
+    checks.instance(foundation, "foundation", Foundation)
+    place = checks.vector(position, "position", "m")
+    turn = np.eye(3) if rotation is None else checks.rotation(rotation)
+    g = checks.vector(gravity, "gravity", "m/s²")
+    if np.any(g) and foundation.participation is None:
+        raise ValueError("gravity: needs a foundation with its participation")
+    placed = foundation.turned(turn, place)
+    start = np.zeros(placed.size)
+    coordinates = mbs.AddNode(generic_node(start, start))
+    frame = mbs.AddNode(
+        NodeRigidBodyRxyz(
+            referenceCoordinates=np.zeros(6), visualization=VNodeRigidBodyRxyz(show=False)
+        )
+    )
+    physics = mbs.AddObject(
+        ObjectGenericODE2(
+            nodeNumbers=[coordinates],
+            massMatrix=placed.mass,
+            dampingMatrix=placed.damping,
+            stiffnessMatrix=placed.stiffness,
+            visualization=VObjectGenericODE2(show=False),
+        )
+    )
+    body = mbs.AddObject(massless_body([frame, coordinates], placed.size, placed.participation))
+    hold(mbs, frame)
+    load = add_weight(mbs, body, g)
+    objects = {"physics": physics, "marker_body": body}
+    return SceneFoundation(mbs, placed, coordinates, objects, load)
+
+
+def massless_body(nodes: list, size: int, S: np.ndarray | None = None) -> ObjectFFRFreducedOrder:
+    """Return the massless body of the markers; the participation S (3, k) serves gravity alone."""
+    empty = exudyn.MatrixContainer()
+    empty.SetWithDenseMatrix(np.zeros((size, size)), useDenseMatrix=False)
+    return ObjectFFRFreducedOrder(
+        nodeNumbers=nodes,
+        massMatrixReduced=empty,
+        stiffnessMatrixReduced=empty,
+        computeFFRFterms=False,
+        modeBasis=np.zeros((3, size)),
+        referencePositions=np.zeros(3),
+        mPhitTPsi=np.zeros((3, size)) if S is None else S,
+        visualization=VObjectFFRFreducedOrder(show=False),
+    )
+
+
+def hold(
+    mbs: exudyn.MainSystem, frame: exudyn.NodeIndex, coordinates: Sequence[int] = range(6)
+) -> None:
+    """Hold coordinates of a frame's node: translations, then rotations."""
+    origin = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
+    ground = mbs.AddMarker(origin)
+    for coordinate in coordinates:
+        marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=frame, coordinate=coordinate))
+        hidden = VCoordinateConstraint(show=False)
+        mbs.AddObject(CoordinateConstraint(markerNumbers=[ground, marker], visualization=hidden))

@@ -1,0 +1,280 @@
+"""The connectors of a support in a scene: who evaluates its law, and how.
+
+Displacements go through a ``CartesianSpringDamper``, tilts through a ``RigidBodySpringDamper``.
+Exudyn evaluates constant coefficients itself: diagonal matrices by numbers, others by a symbolic
+function. What depends on the rotor's angle or speed is a Python function, which reads them from the
+node of the frame. Native tilt damping would act on Exudyn's angular velocity of the marker. Of a
+spinning rotor with the tilt φ, on a base with the tilt β, it is not the rate of their difference ψ:
+``ω = ψ̇ − Ω e × ψ − Ω e × φ`` in axes of the base, the last term because Exudyn gives the marker's
+local angular velocity in axes of the frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+import exudyn
+import numpy as np
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
+from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
+
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.support import Support, varies
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
+from exudyn_rotor.theory.rotating_axes import axial_rotation
+
+NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
+_ROUNDING = 1e-13  # of the largest entry of a turned matrix
+_FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
+_KINDS = exudyn.OutputVariableType
+_BRAKING = "springForceTorqueUserFunction"
+Numbers = Sequence[float]
+SpinReader = Callable[[exudyn.MainSystem], tuple[float, float]]
+
+
+# ------------------------------------------------------------------ displacements
+
+
+def displacement_connector(
+    body: RotorItems, support: Support, seat: Seat, base: exudyn.MarkerIndex
+) -> tuple[exudyn.ObjectIndex, str]:
+    mbs = body.mbs
+    item = CartesianSpringDamper(markerNumbers=[base, point_marker(body, support.interface)])
+    if _follows_the_spin(support, ("stiffness", "damping")):
+        item.springForceUserFunction = _varying_force(body, support, seat.axes)
+        return mbs.AddObject(item), PYTHON
+    K, D = (_turned(seat.axes, X[:3, :3]) for X in support.matrices(0.0))
+    if not np.any(K - np.diag(np.diag(K))) and not np.any(D - np.diag(np.diag(D))):
+        item.stiffness, item.damping = np.diag(K), np.diag(D)
+        return mbs.AddObject(item), NATIVE
+
+    def force(mbs, t, item, u, v, stiffness, damping, offset):
+        return exudyn.symbolic.Vector(_sum(_times(K, u), _times(D, v)))
+
+    item.springForceUserFunction = symbolic_function(mbs, force, item, "springForceUserFunction")
+    return mbs.AddObject(item), SYMBOLIC
+
+
+def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Callable:
+    spin = _spin_reader(body)
+    turns = support.frame == "rotor"
+
+    def force(mbs, t, item, u, v, stiffness, damping, offset):
+        angle, speed = spin(mbs)
+        support.check_range(speed)
+        K, D = (X[:3, :3] for X in support.matrices(speed))
+        into = axes @ axial_rotation(angle) if turns else axes
+        x, x_t = np.dot(u, into), np.dot(v, into)
+        if turns:
+            x_t -= speed * np.array([-x[1], x[0], 0.0])
+        return (into @ (K @ x + D @ x_t)).tolist()
+
+    return force
+
+
+def bearing_connector(
+    body: RotorItems, bearing: Bearing, seat: Seat, base: exudyn.MarkerIndex
+) -> exudyn.ObjectIndex:
+    """Add the connector of a bearing with a law of its own.
+
+    Its torque acts on a spin that is free; a prescribed one does not feel it.
+    """
+    name, force = _bearing_function(body, bearing, seat.axes, _spin_reader(body))
+    if name == _BRAKING:
+        item = RigidBodySpringDamper(
+            markerNumbers=[base, rigid_marker(body, bearing.interface)],
+            stiffness=np.zeros((6, 6)),
+            damping=np.zeros((6, 6)),
+        )
+    else:
+        marker = point_marker(body, bearing.interface)
+        item = CartesianSpringDamper(markerNumbers=[base, marker])
+    setattr(item, name, force)
+    return body.mbs.AddObject(item)
+
+
+@contextmanager
+def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
+    """Hold the cages of all rolling bearings where they are at the spin angle `angle` [rad]."""
+    turning = _spin_reader(body)
+
+    def held(mbs: exudyn.MainSystem) -> tuple[float, float]:
+        return angle, turning(mbs)[1]
+
+    rolling = [one for one in body.supports if isinstance(one.support, RollingBearing)]
+
+    def let(spin: SpinReader) -> None:
+        for one in rolling:
+            function = _bearing_function(body, one.support, body.standing_axes, spin)
+            body.mbs.SetObjectParameter(one.objects[0], *function)
+
+    let(held)
+    try:
+        yield
+    finally:
+        let(turning)
+
+
+def _bearing_function(
+    body: RotorItems, bearing: Bearing, axes: np.ndarray, spin: SpinReader
+) -> tuple[str, Callable]:
+    """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
+    if body.formulation.has_spin and bearing.law_with_torque is not None:
+        return _BRAKING, _braking_function(bearing, spin)
+    law = bearing.law
+    (a, d), (b, e), (c, f) = axes[:, :2].tolist()
+
+    def force(mbs, t, item, u, v, stiffness, damping, offset):
+        x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
+        vx, vy = a * v[0] + b * v[1] + c * v[2], d * v[0] + e * v[1] + f * v[2]
+        fx, fy = law(x, y, vx, vy, *spin(mbs))
+        return [-a * fx - d * fy, -b * fx - e * fy, -c * fx - f * fy]
+
+    return "springForceUserFunction", force
+
+
+def _braking_function(bearing: Bearing, spin: SpinReader) -> Callable:
+    """Return force and torque, in the axes of the connector's base."""
+    law = bearing.law_with_torque
+
+    def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
+        return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
+
+    return force
+
+
+# ------------------------------------------------------------------ tilts
+
+
+def tilt_connector(
+    body: RotorItems, support: Support, seat: Seat, base: exudyn.MarkerIndex
+) -> tuple[exudyn.ObjectIndex, str]:
+    mbs = body.mbs
+    item = RigidBodySpringDamper(
+        markerNumbers=[base, rigid_marker(body, support.interface)],
+        stiffness=np.zeros((6, 6)),
+        damping=np.zeros((6, 6)),
+    )
+    K, D = (X[3:, 3:] for X in support.matrices(_start_speed(body)))
+    about_axis = np.any(K[2]) or np.any(K[:, 2])
+    follows = _follows_the_spin(support, ("tilt_stiffness", "tilt_damping"))
+    if about_axis or follows or (np.any(D) and seat.base is not None):
+        tilt_of_base = None if seat.base is None else _tilt_reader(base, seat.axes)
+        item.springForceTorqueUserFunction = _varying_torque(body, support, tilt_of_base)
+        return mbs.AddObject(item), PYTHON
+    if not np.any(D):
+        item.stiffness = np.kron(np.diag([0.0, 1.0]), K)
+        return mbs.AddObject(item), NATIVE
+
+    def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        rate = _tilt_rate(angles, omega)
+        values = _sum(_times(K, angles), _times(D, rate))
+        return exudyn.symbolic.Vector([0.0, 0.0, 0.0, *values])
+
+    item.springForceTorqueUserFunction = symbolic_function(
+        mbs, torque, item, "springForceTorqueUserFunction"
+    )
+    return mbs.AddObject(item), SYMBOLIC
+
+
+def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable | None) -> Callable:
+    spin = _spin_reader(body)
+    turns = support.frame == "rotor"
+
+    def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        angle, speed = spin(mbs)
+        support.check_range(speed)
+        K, D = (X[3:, 3:] for X in support.matrices(speed))
+        rate = np.array(_tilt_rate(angles, omega))
+        if tilt_of_base is not None:
+            a, b = tilt_of_base(mbs)
+            rate += omega[2] * np.array([-b, a, 0.0])
+        twist = (angles[2] - angle + np.pi) % (2.0 * np.pi) - np.pi
+        tilt = np.array([angles[0], angles[1], twist])
+        if not turns:
+            return [0.0, 0.0, 0.0, *(K @ tilt + D @ rate).tolist()]
+        R = axial_rotation(angle)
+        tilt, rate = tilt @ R, rate @ R
+        rate -= speed * np.array([-tilt[1], tilt[0], 1.0])
+        return [0.0, 0.0, 0.0, *(R @ (K @ tilt + D @ rate)).tolist()]
+
+    return torque
+
+
+def _tilt_reader(base: exudyn.MarkerIndex, axes: np.ndarray) -> Callable:
+    """Return a function that reads the tilts of the base's marker about n1 and n2."""
+
+    def tilts(mbs: exudyn.MainSystem) -> tuple[float, float]:
+        turned = np.reshape(mbs.GetMarkerOutput(base, _KINDS.RotationMatrix), (3, 3))
+        n1, n2, _ = axes.T
+        return -float(n2 @ turned[:, 2]), float(n1 @ turned[:, 2])
+
+    return tilts
+
+
+def _tilt_rate(tilt: Numbers, omega: Numbers) -> list:
+    """Return ψ̇ from ψ and Exudyn's angular velocity ω on a base that stands still.
+
+    Of numbers or of symbols; a base that tilts by β adds ``Ω e × β``.
+    """
+    return [
+        omega[0] - 2.0 * omega[2] * tilt[1],
+        omega[1] + 2.0 * omega[2] * tilt[0],
+        omega[2],
+    ]
+
+
+# ------------------------------------------------------------------ shared
+
+
+def _follows_the_spin(support: Support, names: Sequence[str]) -> bool:
+    return support.frame == "rotor" or any(varies(getattr(support, name)) for name in names)
+
+
+def _start_speed(body: RotorItems) -> float:
+    return body.plan.setup.placement.speed
+
+
+def _spin_reader(body: RotorItems) -> SpinReader:
+    """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
+    node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
+    angles, rates = _KINDS.Coordinates, _KINDS.Coordinates_t
+
+    def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
+        read = mbs.GetNodeOutput
+        return sign * float(read(node, angles)[place]), sign * float(read(node, rates)[place])
+
+    return spin
+
+
+def _turned(axes: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix in inertial axes, its rounding cut off."""
+    turned = axes @ matrix @ axes.T
+    turned[np.abs(turned) <= _ROUNDING * np.abs(turned).max()] = 0.0
+    return turned
+
+
+def _times(matrix: np.ndarray, vector: Numbers) -> list:
+    """Return a matrix times numbers or symbols, without its zeros."""
+    return [
+        sum((float(row[i]) * vector[i] for i in np.flatnonzero(row)), start=0.0 * vector[0])
+        for row in matrix
+    ]
+
+
+def _sum(first: list, second: list) -> list:
+    return [a + b for a, b in zip(first, second, strict=True)]
+
+
+def symbolic_function(
+    mbs: exudyn.MainSystem, function: Callable, item: object, name: str
+) -> object:
+    """Return a function as Exudyn's symbolic one, kept alive by the system."""
+    kind = type(item).__name__
+    made = CreateSymbolicUserFunction(mbs, function, name, itemTypeName=kind)
+    mbs.sys.setdefault(_FUNCTIONS, []).append(made)
+    return made

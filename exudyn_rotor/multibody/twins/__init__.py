@@ -1,0 +1,1 @@
+"""The twins of Exudyn's own calls."""

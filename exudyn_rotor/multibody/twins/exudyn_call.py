@@ -1,0 +1,190 @@
+"""``mbs.CreateFixedAxisFFRFReducedOrderObject``: the twin of Exudyn's own call.
+
+Argument names, defaults and returned keys are those of
+``mbs.CreateFFRFReducedOrderObject``; changing the name of the call swaps the formulation.
+"""
+
+from __future__ import annotations
+
+import exudyn
+import numpy as np
+from exudyn.FEM import FEMinterface
+from exudyn.misc.extensionRegistry import extends, install
+from numpy.typing import ArrayLike
+
+import exudyn_rotor.multibody.calls.copying  # noqa: F401 (its GetDictionary)
+from exudyn_rotor import checks
+from exudyn_rotor.multibody.rotor import inputs
+from exudyn_rotor.multibody.rotor.node_markers import carry_markers
+from exudyn_rotor.multibody.twins.later_stress import StressConversion, accept_stress_modes
+from exudyn_rotor.multibody.twins.swapped_body import (
+    Additions,
+    State,
+    add_swapped_body,
+    numbers,
+    solid_rotor,
+)
+from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+from exudyn_rotor.solid.carried_prestress import Prestress
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
+
+
+@extends(exudyn.MainSystem)
+def MainSystemCreateFixedAxisFFRFReducedOrderObject(
+    mbs: exudyn.MainSystem,
+    name: str | None,
+    femInterface: FEMinterface,
+    referencePosition: ArrayLike = (0.0, 0.0, 0.0),
+    initialVelocity: ArrayLike = (0.0, 0.0, 0.0),
+    referenceRotationMatrix: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    initialAngularVelocity: ArrayLike = (0.0, 0.0, 0.0),
+    massProportionalDamping: float = 0.0,
+    stiffnessProportionalDamping: float = 0.0,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    color: ArrayLike = exudyn.graphics.color.defaultFFRF,
+    superElementRigidMarkersOffsets: ArrayLike | None = None,
+    showMarkers: bool = True,
+    verbose: bool = False,
+    axis: SpinAxis | str | ArrayLike | None = None,
+    translation: str | PrescribedMotion = "auto",
+    spin: str | float | ConstantSpeed | PrescribedMotion = "free",
+    spin_coupling: str = "full",
+    stiffening: str = "auto",
+    locking: str = "auto",
+    markers: str = "rigid",
+    condense_markers: bool = True,
+    prestress: Prestress | None = None,
+) -> dict:
+    """Create a flexible rotor that spins about one fixed axis.
+
+    The twin of CreateFFRFReducedOrderObject; the arguments after verbose are its own.
+
+    Args:
+        mbs: the MainSystem to which the rotor is added
+        name: name of the rotor; markers are called name + ':' + boundaryName, nodes
+            'NodeRigidBody:' + name and 'NodeGeneric:' + name; None: nodes and objects have no name,
+            and markers are called boundaryName
+        femInterface: FEMinterface with mesh, mass and stiffness matrix and a mode basis; its named
+            node sets become markers
+        referencePosition: position of the mesh origin (3D vector)
+        initialVelocity: initial velocity of the mesh origin (3D vector)
+        referenceRotationMatrix: rotation from mesh axes to global axes
+        initialAngularVelocity: initial angular velocity (3D vector, global); must lie along the
+            spin axis
+        massProportionalDamping: Rayleigh factor of the component modes' mass matrix
+        stiffnessProportionalDamping: Rayleigh factor of the component modes' stiffness matrix
+        gravity: gravity (3D vector, global)
+        color: RGBA color if no contour is drawn
+        superElementRigidMarkersOffsets: local offset per marker, N x 3, mesh axes; it turns with
+            the mean rotation of the body, as there. The whole lever of a rigid interface, by its
+            own rotation, has rotorBody.add_marker(interface, offset)
+        showMarkers: if True, the markers are drawn
+        verbose: if True, a report of the new body is printed
+        axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);
+            None takes the direction of initialAngularVelocity, its largest component positive,
+            through the mesh origin, if a principal axis of inertia is within 10 degrees; or at rest
+            the line through the centres of the boundaries, if these and the body are round about it
+        translation: 'free', 'in-plane', 'none', a PrescribedMotion, or 'auto': 'free', since
+            supports and loads are not known yet, but 'none' for a rotor that its own stiffness
+            matrix holds
+        spin: 'free', a constant speed in rad/s, or a PrescribedMotion
+        spin_coupling: 'full', or 'frozen' for a free spin whose inertia is that of the undeformed
+            rotor, at half the Python calls of a step; see exudyn_rotor.add_rotor
+        stiffening: centrifugal stiffening, 'tilt' or 'none' (the paper's equations); 'full' needs
+            prestress; 'auto' is 'full' with prestress, else 'tilt'
+        locking: 'auto', 'mass' or 'constraints'; see exudyn_rotor.multibody.rotor.locking
+        markers: kind of the markers, 'rigid' or 'position'; the latter serves springs and forces
+            at a fraction of the cost
+        condense_markers: whether mbs.Assemble() moves the script's own markers on many mesh nodes
+            to few added nodes with the same mean motion: the same to round-off, and much faster
+        prestress: static stress for stiffening='full', since a FEMinterface holds no elements to
+            compute it on: SolidRotor.prestress() of a rotor from NGSolve with the same mesh, or
+            Prestress.from_matrix() with the geometric stiffness of another program
+
+    Returns:
+        :dict: marker number of every boundary under its marker name, and under
+            'FFRFReducedOrderObjectDict' the entries 'nRigidBody', 'nGenericODE2',
+            'oFFRFreducedOrder', 'loadGravity' and 'rotorBody'
+
+    Note:
+        Markers and sensors that a script adds at the node 'nRigidBody' are in the mesh origin and
+        move and tilt with the rotor, as on Exudyn's body with these modes. The node's own
+        coordinates are the spin and the translation of the centre of mass; mbs.GetNodeOutput() and
+        markers of single coordinates see these, and body.check_connections() tells what such
+        markers lack. It has mesh axes but for
+        skew spin axes, for which a warning says what is turned. In local output
+        (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.
+
+        Craig-Bampton modes of FEMinterface hold the frame of Exudyn's own body at the first
+        boundary, and what tilts the rotor against it softens falsely with the square of the speed;
+        a warning says how much. use_mean_axis_modes(fem) gives both bodies the same modes.
+
+    Example:
+        >>> import exudyn
+        >>> import exudyn_rotor  # adds the method to MainSystem
+        >>> import numpy as np
+        >>> import scipy.sparse as sp
+        >>> from exudyn.FEM import FEMinterface
+        >>> fem = FEMinterface()
+        >>> fem.nodes = {"Position": np.array([[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]])}
+        >>> fem.massMatrix, fem.stiffnessMatrix = sp.eye(6).tocsr(), 1e6 * sp.eye(6).tocsr()
+        >>> fem.nodeSets = [{"Name": "top", "NodeNumbers": [0], "NodeWeights": [1.0]}]
+        >>> fem.modeBasis = {"matrix": np.eye(6), "type": "NormalModes"}
+        >>> mbs = exudyn.SystemContainer().AddSystem()
+        >>> rotor = mbs.CreateFixedAxisFFRFReducedOrderObject(
+        ...     name="rotor", femInterface=fem, axis="z", translation="none", spin=100.0
+        ... )
+        >>> force = mbs.CreateForce(itemNumber=rotor["rotor:top"], loadVector=[0.0, 0.0, 5.0])
+        >>> rotor["FFRFReducedOrderObjectDict"]["rotorBody"]
+        RotorBody('rotor', Sect. 2.5, stiffening 'tilt', 6 modes, markers: top)
+    """
+    inputs.main_system(mbs)
+    checks.instance(femInterface, "femInterface", FEMinterface)
+    checks.flag(showMarkers, "showMarkers")
+    checks.flag(verbose, "verbose")
+    checks.choice(markers, "markers", inputs.MARKER_KINDS)
+    more = Additions.checked(
+        *(translation, spin, spin_coupling, stiffening, locking),
+        *(markers, condense_markers, prestress),
+    )
+    start = State.checked(
+        position=("referencePosition", referencePosition),
+        rotation=("referenceRotationMatrix", referenceRotationMatrix),
+        velocity=initialVelocity,
+        omega=initialAngularVelocity,
+        mass_damping=massProportionalDamping,
+        stiffness_damping=stiffnessProportionalDamping,
+        gravity=gravity,
+        color=color,
+    )
+    rotor = solid_rotor(femInterface, axis, start)
+    offsets = _offsets(list(rotor.interfaces), superElementRigidMarkersOffsets)
+    reduced = rotor.reduce(femInterface, prestress=prestress)
+    modes = femInterface.modeBasis["matrix"]
+    warn_of_held_frame(rotor, modes, stacklevel=2)
+    conversion = StressConversion(modes, reduced, femInterface.postProcessingModes)
+    body = add_swapped_body(mbs, name, reduced, start, more, offsets, showMarkers)
+    accept_stress_modes(body, conversion)
+    carry_markers(body, frame_shares(rotor, reduced, modes))
+    if verbose:
+        exudyn.Print(body.report())
+    return {"FFRFReducedOrderObjectDict": numbers(body)} | {
+        inputs.marker_name(body.name, interface): marker
+        for interface, marker in body.markers.items()
+    }
+
+
+def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
+    if offsets is None:
+        return {}
+    table = checks.array(offsets, "superElementRigidMarkersOffsets", "m")
+    if table.shape != (len(interfaces), 3):
+        raise ValueError(
+            f"superElementRigidMarkersOffsets: needs {len(interfaces)} × 3 finite numbers for the "
+            f"interfaces {', '.join(interfaces) or 'none'}, got {checks.shown(offsets)}"
+        )
+    return dict(zip(interfaces, table, strict=True))
+
+
+install()
