@@ -131,7 +131,7 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
             stiffness.toarray(), mass.toarray(), count, skip=rigid_count
         )
     else:
-        inverse = inertia_relief(rotor)
+        inverse = inertia_relief(rotor, rigid)
         values, modes = lowest_modes(stiffness, mass, inverse, count, tolerance)
     precision = relative_rounding(stiffness, rigid)
     lanczos.check_modes(stiffness, mass, values, modes, precision=precision)

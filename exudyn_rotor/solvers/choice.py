@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solvers import pardiso
-from exudyn_rotor.solvers.fill import Fill, estimated_fill
+from exudyn_rotor.solvers.fill import estimated_fill
 from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
 SOLVERS = ("auto", "direct", "iterative")
@@ -25,8 +25,8 @@ _ITERATIVE_PER_COORDINATE = 5200.0
 # solutions, and per entry of the matrix by iteration; only their ratios count
 _PER_OPERATION, _PER_FACTOR_ENTRY, _PER_MATRIX_ENTRY = 7e-11, 1.6e-7, 2e-6
 _WORTH_IT = 2.0
-# how much quicker Pardiso is, where it is installed
-_PARDISO = 2.5
+# of Pardiso: per operation that it counts itself, and per byte of the factor in 120 solutions
+_PARDISO_PER_OPERATION, _PARDISO_PER_BYTE = 4e-11, 7e-9
 
 
 class Elements(Protocol):
@@ -87,8 +87,15 @@ def coordinates(nodes: np.ndarray) -> np.ndarray:
     return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()
 
 
-def is_iterative(way: Way, stiffness: sp.csr_array) -> bool:
+def is_iterative(way: Way, stiffness: sp.csr_array, ordered: pardiso.Ordered | None = None) -> bool:
     """Return whether iteration is asked for, or the better way.
+
+    Parameters
+    ----------
+    way : Way
+    stiffness : scipy.sparse.csr_array, shape (m, m)
+    ordered : pardiso.Ordered, optional
+        The same matrix, if Pardiso is to make its factor; else the factor's size is estimated.
 
     Raises
     ------
@@ -108,14 +115,11 @@ def is_iterative(way: Way, stiffness: sp.csr_array) -> bool:
     available = available_memory()
     if way.nodes is None or (size < _QUICK and available > _QUICK_MEMORY):
         return False
-    fill = estimated_fill(stiffness, way.nodes)
-    direct = _direct_bytes(stiffness, fill)
-    if way.solver == "auto" and way.interpolation is not None:
-        seconds = _PER_OPERATION * fill.operations + _PER_FACTOR_ENTRY * fill.entries
-        worth_it = _WORTH_IT * (_PARDISO if pardiso.is_installed() else 1.0)
-        if direct > available or seconds > worth_it * _PER_MATRIX_ENTRY * entries:
-            _check_iterative(size, entries, available)
-            return True
+    direct, seconds = _costs(way, stiffness, ordered)
+    slow = direct > available or seconds > _WORTH_IT * _PER_MATRIX_ENTRY * entries
+    if slow and way.solver == "auto" and way.interpolation is not None:
+        _check_iterative(size, entries, available)
+        return True
     if direct > available:
         raise TooLittleMemoryError(
             f"the factor of a stiffness matrix with {size} coordinates needs up to "
@@ -125,13 +129,23 @@ def is_iterative(way: Way, stiffness: sp.csr_array) -> bool:
     return False
 
 
-def fits_directly(way: Way, stiffness: sp.csr_array) -> bool:
-    """Return whether the factor of a stiffness fits into the memory that is available."""
-    return _direct_bytes(stiffness, estimated_fill(stiffness, way.nodes)) < available_memory()
+def fits_directly(
+    way: Way, stiffness: sp.csr_array, ordered: pardiso.Ordered | None = None
+) -> bool:
+    """Return whether a factor fits into the memory; parameters of :func:`is_iterative`."""
+    return _costs(way, stiffness, ordered)[0] < available_memory()
 
 
-def _direct_bytes(stiffness: sp.csr_array, fill: Fill) -> float:
-    return 8.0 * fill.entries + _DIRECT_PER_ENTRY * stiffness.nnz
+def _costs(
+    way: Way, stiffness: sp.csr_array, ordered: pardiso.Ordered | None
+) -> tuple[float, float]:
+    """Return the bytes of a factor, and the seconds of 20 modes with it."""
+    if ordered is not None:
+        seconds = _PARDISO_PER_OPERATION * ordered.operations + _PARDISO_PER_BYTE * ordered.needed
+        return ordered.needed, seconds
+    fill = estimated_fill(stiffness, way.nodes)
+    seconds = _PER_OPERATION * fill.operations + _PER_FACTOR_ENTRY * fill.entries
+    return 8.0 * fill.entries + _DIRECT_PER_ENTRY * stiffness.nnz, seconds
 
 
 def _check_iterative(size: int, entries: int, available: float) -> None:

@@ -41,13 +41,18 @@ class ConstrainedInverse:
         self._factor_small_system(constraints @ self._flexibility)
 
     def solve(self, load: np.ndarray) -> np.ndarray:
-        """Return the displacement (3n,) of a load (3n,) with ``C u = 0``."""
+        """Return the displacement of a load, both (3n,) or (3n, k), with ``C u = 0``."""
         elastic, resultant = self._relief.solve(load), self._relief.rigid.T @ load
         return elastic + self._correction(self._constraints @ elastic, resultant)
 
     @property
+    def iterative(self) -> bool:
+        """Whether there is no factor; modes are to be found by :meth:`precondition`."""
+        return self._relief.iterative
+
+    @property
     def by_blocks(self) -> bool:
-        """Whether modes are to be found by :meth:`precondition`, many at once."""
+        """Whether :meth:`solve` is much quicker for many loads at once."""
         return self._relief.by_blocks
 
     def precondition(self, load: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Lowest modes of ``K φ = ω² M φ`` by block Davidson iteration, with or without a factor of K."""
+"""Lowest modes of ``K φ = ω² M φ`` by block Davidson iteration, without a factor of K."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def davidson_modes(
     tolerance: float,
     balanced: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Modes:
-    """Return the `count` lowest modes by Davidson iteration with an approximate or exact ``K⁻¹``.
+    """Return the `count` lowest modes by Davidson iteration with an approximate ``K⁻¹``.
 
     Parameters
     ----------

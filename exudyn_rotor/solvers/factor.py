@@ -34,16 +34,17 @@ class SparseCholesky:
     """Factorisation of a symmetric positive definite matrix.
 
     Large matrices go to Pardiso where it is installed, else to NGSolve's ``sparsecholesky``
-    (fill-reducing, threaded), small ones to LAPACK. NGSolve's variant is an LDLᵀ that accepts
-    negative pivots in silence, so the factors are probed once: the residual of a random right-hand
-    side shows a singular matrix, and a negative Ritz value of ``A⁻¹`` in a small Krylov space
-    proves an indefinite one (it lies inside the spectrum). A negative eigenvalue in the middle of
-    the spectrum of ``A`` can pass.
+    (fill-reducing, threaded), small ones to LAPACK. The residual of a random right-hand side shows
+    a singular matrix. NGSolve's variant is an LDLᵀ that accepts negative pivots in silence: a
+    negative Ritz value of ``A⁻¹`` in a small Krylov space proves an indefinite matrix (it lies
+    inside the spectrum). A negative eigenvalue in the middle of the spectrum of ``A`` can pass.
 
     Parameters
     ----------
     matrix : scipy.sparse array, shape (n, n)
-        Symmetric positive definite; only the lower triangle is factorised.
+        Symmetric positive definite; only one triangle is factorised.
+    ordered : pardiso.Ordered, optional
+        The matrix as :func:`ordered` returns it.
 
     Attributes
     ----------
@@ -56,14 +57,14 @@ class SparseCholesky:
         If a diagonal entry is not positive or the probe fails.
     """
 
-    def __init__(self, matrix: sp.sparray) -> None:
+    def __init__(self, matrix: sp.sparray, ordered: pardiso.Ordered | None = None) -> None:
         self.shape = matrix.shape
         matrix = sp.csr_array(matrix)
         if not np.all(matrix.diagonal() > 0.0):
             raise NotPositiveDefiniteError("the matrix has a diagonal entry that is not positive")
-        self.by_blocks = self.shape[0] > pardiso.SMALLEST and pardiso.is_installed()
+        self.by_blocks = pardiso.is_used(self.shape[0])
         if self.by_blocks:
-            self._solve = _by_pardiso(matrix)
+            self._solve = _by_pardiso(pardiso.Ordered(matrix) if ordered is None else ordered)
         else:
             self._solve = _dense(matrix) if self.shape[0] <= DENSE_SIZE else _sparse(matrix)
         if self.shape[0]:
@@ -82,6 +83,8 @@ class SparseCholesky:
             raise NotPositiveDefiniteError(
                 f"the matrix is singular: a solve leaves the relative residual {residual:.1e}"
             )
+        if self.by_blocks:  # without negative pivots
+            return
         lowest = _ritz_values(self._solve, start)[0]
         if lowest <= 0.0:
             raise NotPositiveDefiniteError(
@@ -99,9 +102,9 @@ def _dense(matrix: sp.csr_array) -> Solve:
     return lambda right: la.cho_solve(factor, right)
 
 
-def _by_pardiso(matrix: sp.csr_array) -> Solve:
+def _by_pardiso(ordered: pardiso.Ordered) -> Solve:
     try:
-        return pardiso.factor(matrix)
+        return ordered.factor()
     except pardiso.PivotError as error:
         raise NotPositiveDefiniteError(
             f"the matrix has a pivot that is not positive ({error})"

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from exudyn_rotor.solvers import conjugate_gradients
+from exudyn_rotor.solvers import conjugate_gradients, pardiso
 from exudyn_rotor.solvers.choice import (
     DIRECT,
     Model,
@@ -31,7 +31,6 @@ _STRAIN_LIMIT = 1e-8
 # share of an error that a step of conjugate gradients leaves, from which a factor is quicker: 0.35
 # for compact solids, 0.7 for Poisson's ratio 0.49 or flat elements, 0.96 for thin blades
 _SLOW = 0.75
-_SEED = 9
 
 
 class ElasticBody(Model, Protocol):
@@ -106,8 +105,9 @@ class InertiaRelief:
     For a load ``f`` it gives the ``u`` with ``K u = f − M R Rᵀ f`` and ``RᵀM u = 0``: the load is
     balanced by the inertia forces of the rigid acceleration, and the answer has no rigid part.
     This is exact with one factorisation: as many coordinates as there are free rigid motions are
-    pinned; a balanced load causes no reactions there, so where the pins are does not matter. Or
-    conjugate gradients find it, which a balanced load never leads into a rigid motion.
+    held by springs; a balanced load causes no reactions there, so where the springs are and how
+    stiff does not matter. Or conjugate gradients find it, which a balanced load never leads into
+    a rigid motion.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class InertiaRelief:
     Raises
     ------
     ValueError
-        If the stiffness is singular even with the rigid motions pinned.
+        If the stiffness is singular even with the rigid motions held.
     TooLittleMemoryError
         If neither way fits into the memory that is available.
     """
@@ -136,14 +136,15 @@ class InertiaRelief:
     ) -> None:
         self.rigid = rigid
         self._momentum = mass @ rigid
-        self.iterative = is_iterative(way, stiffness)
+        held, ordered = _held(stiffness, rigid), None
+        if way.solver != "iterative" and pardiso.is_used(stiffness.shape[0]):
+            ordered = pardiso.Ordered(held)
+        self.iterative = is_iterative(way, stiffness, ordered)
         try:
             if self.iterative:
-                self._prepare_iteration(stiffness, mass, way)
+                self._prepare_iteration(stiffness, mass, way, ordered)
             if not self.iterative:
-                self._kept = np.delete(np.arange(stiffness.shape[0]), _pins(rigid))
-                kept = stiffness if rigid.shape[1] == 0 else stiffness[self._kept][:, self._kept]
-                self._factor = SparseCholesky(kept)
+                self._factor = SparseCholesky(held, ordered)
         except NotPositiveDefiniteError as error:
             raise ValueError(
                 f"the stiffness leaves more motions free than the {rigid.shape[1]} rigid ones "
@@ -164,28 +165,29 @@ class InertiaRelief:
             )
             displacement = solved.reshape(load.shape)
         else:
-            displacement = np.zeros_like(balanced)
-            displacement[self._kept] = self._factor.solve(balanced[self._kept])
+            displacement = self._factor.solve(balanced)
         return self._elastic(displacement)
 
     @property
     def by_blocks(self) -> bool:
-        """Whether modes are to be found by :meth:`precondition`, many at once."""
-        return self.iterative or self._factor.by_blocks
+        """Whether :meth:`solve` is much quicker for many loads at once."""
+        return not self.iterative and self._factor.by_blocks
 
     def precondition(self, load: np.ndarray) -> np.ndarray:
         """Return roughly what :meth:`solve` does, for shape (m, k); symmetric and definite."""
-        if not self.iterative:
-            return self.solve(load)
         return self._elastic(self._two_level(self._balanced(load)))
 
     def start(self, count: int) -> np.ndarray:
-        """Return `count` motions (m, count) to begin with, near the lowest modes where known."""
-        if not self.iterative:
-            return np.random.default_rng(_SEED).standard_normal((len(self.rigid), count))
+        """Return `count` motions (m, count) to begin with, near the lowest modes."""
         return self._two_level.start(count)
 
-    def _prepare_iteration(self, stiffness: sp.csr_array, mass: sp.csr_array, way: Way) -> None:
+    def _prepare_iteration(
+        self,
+        stiffness: sp.csr_array,
+        mass: sp.csr_array,
+        way: Way,
+        ordered: pardiso.Ordered | None,
+    ) -> None:
         self._two_level = TwoLevel(stiffness, mass, self.rigid, way.interpolation, _coarse_solve)
         # not the matrix itself, whose end is the end of what inertia_relief knows
         arrays = stiffness.data, stiffness.indices, stiffness.indptr
@@ -194,7 +196,7 @@ class InertiaRelief:
         if way.solver == "auto":
             load = self._balanced(mass @ _quadratic(way.nodes))
             rate = conjugate_gradients.rate(self._stiffness, self.precondition, load)
-            if rate > _SLOW and fits_directly(way, stiffness):
+            if rate > _SLOW and fits_directly(way, stiffness, ordered):
                 self.iterative, self._two_level = False, None
 
     def _balanced(self, load: np.ndarray) -> np.ndarray:
@@ -215,10 +217,17 @@ def _coarse_solve(stiffness: sp.csr_array, mass: sp.csr_array, rigid: np.ndarray
     return InertiaRelief(stiffness, mass, rigid).solve
 
 
-def _pins(rigid: np.ndarray) -> np.ndarray:
-    """Return coordinates that hold the rigid motions and nothing else, as far apart as can be."""
+def _held(stiffness: sp.csr_array, rigid: np.ndarray) -> sp.csr_array:
+    """Return the stiffness with springs to the ground that hold the rigid motions."""
     if rigid.shape[1] == 0:
-        return np.zeros(0, dtype=np.int64)
+        return stiffness
+    places, diagonal = _places(rigid), stiffness.diagonal()
+    springs = np.where(diagonal[places] > 0.0, diagonal[places], diagonal.max())
+    return stiffness + sp.csr_array((springs, (places, places)), shape=stiffness.shape)
+
+
+def _places(rigid: np.ndarray) -> np.ndarray:
+    """Return coordinates that hold the rigid motions and nothing else, as far apart as can be."""
     # column pivoting picks the rows of R that form the best conditioned square matrix
     _, order = la.qr(rigid.T, mode="r", pivoting=True)
     return order[: rigid.shape[1]]
@@ -259,8 +268,10 @@ def _known_relief(rotor: ElasticBody) -> InertiaRelief | None:
     return earlier[2] if same and earlier[1] == (rotor.rigid_motions, rotor.solver) else None
 
 
-def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
+def inertia_relief(rotor: ElasticBody, rigid: np.ndarray | None = None) -> InertiaRelief:
     """Return the elastic inverse of a rotor; factorised once as long as its matrices live.
+
+    `rigid` are its :func:`free_motions_of`, where they are computed already.
 
     Raises
     ------
@@ -273,7 +284,8 @@ def inertia_relief(rotor: ElasticBody) -> InertiaRelief:
     if known is not None:
         return known
     stiffness, mass = rotor.stiffness, rotor.mass
-    relief = InertiaRelief(stiffness, mass, free_motions_of(rotor), way_of(rotor))
+    rigid = free_motions_of(rotor) if rigid is None else rigid
+    relief = InertiaRelief(stiffness, mass, rigid, way_of(rotor))
     if id(stiffness) not in _known:
         weakref.finalize(stiffness, _known.pop, id(stiffness), None)
     _known[id(stiffness)] = weakref.ref(mass), (rotor.rigid_motions, rotor.solver), relief

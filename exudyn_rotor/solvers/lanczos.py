@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 
 import numpy as np
 import scipy.linalg as la
@@ -16,13 +17,17 @@ Modes = tuple[np.ndarray, np.ndarray]
 _SEED = 4830498
 # share of ω² M φ that iteration may leave
 _RESIDUAL_LIMIT = 1e-6
-# columns that are solved for at once, and how many for each mode are kept at most
-_BLOCK, _ROOM = 2, 5
+# columns that are kept for each mode at most
+_ROOM = 5
+# columns that are thin, whose products with the mass are faster one by one
+_THIN = 2
 _MOST_STEPS = 1000
-# a block more is added between two looks at what has converged, for so many columns
-_BLOCKS_APART = 80
+# a block more is added between two looks at what has converged, for so many blocks
+_BLOCKS_APART = 40
 # length of what is new in columns, relative to them, that is rounding, and squares of one another
 _DEPENDENT, _ALIKE = 1e-14, 1e-13
+# squares of lengths above this share of the largest lose no more than three digits
+_EVEN = 1e-3
 
 
 def is_small(size: int, count: int) -> bool:
@@ -59,6 +64,7 @@ def lanczos_modes(
     inverse: Callable[[np.ndarray], np.ndarray],
     count: int,
     tolerance: float,
+    width: int = 2,
 ) -> Modes:
     """Return the `count` lowest modes by block Lanczos iteration on ``K⁻¹ M``.
 
@@ -70,7 +76,9 @@ def lanczos_modes(
         positive semi-definite; motions in its null space are left out.
     count : int
     tolerance : float
-        Relative accuracy of the eigenvalues of ``K⁻¹ M``.
+        Residual of the eigenvalues of ``K⁻¹ M``, relative to them.
+    width : int, optional
+        Columns that are solved for at once.
 
     Returns
     -------
@@ -87,20 +95,24 @@ def lanczos_modes(
     Notes
     -----
     Blocks of two, as bending modes come in pairs, and two threads can solve for them. The start
-    vectors are seeded, so that results repeat. Sources: of the transformation, Ericsson, Ruhe, "The
-    spectral transformation Lanczos method", Math. Comp. 35 (1980); of the restarts, Wu, Simon,
-    "Thick-restart Lanczos method", SIAM J. Matrix Anal. Appl. 22 (2000).
+    vectors are seeded, so that results repeat. With ``K⁻¹MQ = QT + R`` a Ritz vector ``φ = Qs`` of
+    the value ``θ`` leaves ``Rs``; returned are ``K⁻¹Mφ/θ = φ + Rs/θ``, one inverse iteration
+    further, which leave smooth forces ``MRs/θ²`` instead of ``KRs/θ``. Sources: of the
+    transformation, Ericsson, Ruhe, "The spectral transformation Lanczos method", Math. Comp. 35
+    (1980); of the restarts, Wu, Simon, "Thick-restart Lanczos method", SIAM J. Matrix Anal. Appl.
+    22 (2000); of blocks, Grimes, Lewis, Simon, "A shifted block Lanczos algorithm for solving
+    sparse symmetric generalized eigenproblems", SIAM J. Matrix Anal. Appl. 15 (1994).
     """
     size = mass.shape[0]
-    start = np.random.default_rng(_SEED).standard_normal((size, _BLOCK))
+    start = np.random.default_rng(_SEED).standard_normal((size, min(width, size)))
     # of thin matrices, threads would wait for one another between the solutions
-    with one_thread():
-        space = _Krylov(mass, inverse, min(size, _ROOM * (count + _BLOCK)), start)
+    with one_thread() if width <= _THIN else nullcontext():
+        space = _Krylov(mass, inverse, min(size, _ROOM * (count + width)), start)
         for _ in range(_MOST_STEPS):
             values, turn, errors = space.ritz_values()
             converged = errors[:count] <= tolerance * values[:count]
             if len(converged) == count and np.all(converged):
-                return 1.0 / values[:count], space.basis @ turn[:, :count]
+                return 1.0 / values[:count], space.modes(values[:count], turn[:, :count])
             if not space.extend(values, turn, count):
                 break
     raise ValueError(
@@ -135,8 +147,15 @@ class _Krylov:
         """Return the Ritz values, descending, their vectors in the basis and their residuals."""
         values, turn = np.linalg.eigh(self._projected[: self._count, : self._count])
         values, turn = values[::-1], turn[:, ::-1]
-        latest = turn[self._count - self._rest.shape[1] :]
-        return values, turn, np.linalg.norm(self._rest @ latest, axis=0)
+        return values, turn, np.linalg.norm(self._left(turn), axis=0)
+
+    def modes(self, values: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        """Return the Ritz vectors of some values after an inverse iteration."""
+        return self.basis @ turn + self._block @ (self._left(turn) / values)
+
+    def _left(self, turn: np.ndarray) -> np.ndarray:
+        """Return the residuals of Ritz vectors in the next block."""
+        return self._rest @ turn[self._count - self._rest.shape[1] :]
 
     def extend(self, values: np.ndarray, turn: np.ndarray, count: int) -> bool:
         """Add some blocks, after a restart where there is no room left; False if there are none."""
@@ -146,11 +165,13 @@ class _Krylov:
                 array[:, :kept] = array[:, : self._count] @ turn[:, :kept]
             self._projected[:kept, :kept] = np.diag(values[:kept])
             self._count = kept
-        grown = self._add()
-        for _ in range(self._count // _BLOCKS_APART):
+        width = self._block.shape[1]
+        if not self._add():
+            return False
+        for _ in range(self._count // (_BLOCKS_APART * width)):
             if self._has_room:
                 self._add()
-        return grown
+        return True
 
     @property
     def _has_room(self) -> bool:
@@ -173,15 +194,24 @@ class _Krylov:
         for _ in range(2):  # one Gram–Schmidt pass loses orthogonality
             share = self._momenta[:, : self._count].T @ columns
             columns, shares = columns - self.basis @ share, shares + share
-        # column by column, which is faster than two at once
-        weighted = np.stack([self._mass @ column for column in columns.T], axis=1)
-        squares, turn = np.linalg.eigh(columns.T @ weighted)
-        least = max(_DEPENDENT**2 * np.sum(shares**2), _ALIKE * squares[-1])
-        new = squares > least
-        lengths, turn = np.sqrt(squares[new]), turn[:, new]
-        self._block, self._momentum = (X @ (turn / lengths) for X in (columns, weighted))
-        self._rest = lengths[:, None] * turn.T
+        weighted = _product(self._mass, columns)
+        self._rest = np.eye(columns.shape[1])
+        for _ in range(2):  # columns that are nearly alike are not orthogonal after the first
+            squares, turn = np.linalg.eigh(columns.T @ weighted)
+            new = squares > max(_DEPENDENT**2 * np.sum(shares**2), _ALIKE * squares[-1])
+            lengths, turn = np.sqrt(squares[new]), turn[:, new]
+            columns, weighted = (X @ (turn / lengths) for X in (columns, weighted))
+            self._rest = lengths[:, None] * (turn.T @ self._rest)
+            if squares[0] > _EVEN * squares[-1] or lengths.size == 0:
+                break
+        self._block, self._momentum = columns, weighted
         return shares
+
+
+def _product(matrix: sp.csr_array, columns: np.ndarray) -> np.ndarray:
+    if columns.shape[1] > _THIN:
+        return matrix @ columns
+    return np.stack([matrix @ column for column in columns.T], axis=1)
 
 
 def check_modes(

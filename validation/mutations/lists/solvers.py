@@ -17,7 +17,7 @@ SOLVERS = [
             "return displacement",
         ),
         (
-            "first coordinates pinned, whichever they are",
+            "springs at the first coordinates, whichever they are",
             "return order[: rigid.shape[1]]",
             "return np.arange(rigid.shape[1])",
         ),
@@ -53,7 +53,11 @@ SOLVERS = [
             "(X @ (turn / lengths) for X in (columns, weighted))",
             "(X @ turn for X in (columns, weighted))",
         ),
-        ("rounding taken for a direction", "new = squares > least", "new = squares > -1.0"),
+        (
+            "rounding taken for a direction",
+            "new = squares > max(_DEPENDENT**2 * np.sum(shares**2), _ALIKE * squares[-1])",
+            "new = squares > -1.0",
+        ),
         (
             "Ritz vectors of a restart mixed up",
             "array[:, : self._count] @ turn[:, :kept]",
@@ -76,8 +80,8 @@ SOLVERS = [
         ),
         (
             "iteration for a problem without mass",
-            "np.stack([self._mass @ column for column in columns.T], axis=1)",
-            "columns",
+            "weighted = _product(self._mass, columns)",
+            "weighted = columns",
         ),
     ),
     *mutations(
@@ -159,6 +163,11 @@ SOLVERS = [
             "energy = kept.T @ self._energy[: self._count, : self._count] @ kept",
             "energy = self._energy[: kept.shape[1], : kept.shape[1]].copy()",
         ),
+    ),
+    *mutations(
+        "solvers/lanczos.py",
+        "test_pardiso.py::test_modes_by_wide_blocks",
+        ("bare Ritz vectors", "self.basis @ turn + self._block @ (", "self.basis @ turn + 0.0 * ("),
     ),
     *mutations(
         "solvers/fill.py",
