@@ -1,37 +1,35 @@
 """A rotor on supports that have coordinates of their own: magnetic bearings, pads that tilt.
 
-A controller's coordinates are pairs along (n1, n2). In the rotor frame, where all equations are, a
-pair with the inertia μ that stands still has those of a point mass beside the rotor,
-
-    μ (q̈ + 2Ω ẽ q̇ − Ω² q),
-
-and what is between rotor and controller turns as any support does: where both control axes are
-alike, all coefficients are constant. On a foundation magnets act, and sensors measure, against its
-points. The tilts of pads stand still; their films act as supports between the journal and a pad.
+All equations are in the rotor frame (:mod:`.own_coordinates`). On a foundation magnets act, and
+sensors measure, against its points.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.links import join_turning, stacked
-from exudyn_rotor.linear.models.points import ACROSS, with_pairs
+from exudyn_rotor.linear.models.own_coordinates import (
+    Controlled,
+    OwnCoordinates,
+    names_of_controllers,
+    pads_last,
+    places,
+)
+from exudyn_rotor.linear.models.points import with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.rotating_axes import axial_skew, into_rotor_frame, turned_harmonics
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,19 +40,18 @@ class ControlledRotor(ExtendedRotor):
     ----------
     plain : LinearRotor or RotorOnFoundation
         The rotor on all else, and on the stiffness that acts without controllers.
-    controlled : tuple of ControlledSupport and PadSupport
-        These last.
+    own : OwnCoordinates
     """
 
     plain: LinearRotor | RotorOnFoundation
-    controlled: tuple[ControlledSupport | PadSupport, ...]
+    own: OwnCoordinates
 
     @classmethod
     def of(
         cls,
         rotor: ReducedRotor | SolidRotor,
         supports: Sequence[Support],
-        controlled: Sequence[ControlledSupport | PadSupport],
+        controlled: Sequence[Controlled],
         stiffening: str = "auto",
         foundation: Foundation | None = None,
     ) -> ControlledRotor:
@@ -67,31 +64,19 @@ class ControlledRotor(ExtendedRotor):
         """
         made = LinearRotor.of if isinstance(rotor, ReducedRotor) else LinearRotor.of_solid
         check_interfaces(controlled, rotor.interfaces)
-        controlled = sorted(controlled, key=lambda one: isinstance(one, PadSupport))
-        places = [
-            support
-            for one in controlled
-            for support in (Support(one.interface, one.static_stiffness), Support(one.sensor))
-        ]
-        held = made(rotor, (*supports, *places), stiffening)
-        direct = [
-            support
-            for one in controlled
-            for support in (Support(one.interface, one.direct_stiffness), Support(one.sensor))
-        ]
-        plain = held.with_supports((*supports, *direct))
+        controlled = pads_last(controlled)
+        held = [each for one in controlled for each in places(one, one.static_stiffness)]
+        direct = [each for one in controlled for each in places(one, one.direct_stiffness)]
+        plain = made(rotor, (*supports, *held), stiffening).with_supports((*supports, *direct))
         if foundation is not None:
             plain = RotorOnFoundation.of(plain, foundation)
-        return cls(plain, tuple(controlled))
+        return cls(plain, OwnCoordinates(tuple(controlled), (1.0,) * len(controlled)))
 
     @property
     def held(self) -> LinearRotor | RotorOnFoundation:
         """The rotor with the static stiffness of its controllers."""
-        own = 2 * len(self.controlled)
-        supports = list(self.plain.supports)
-        supports[len(supports) - own :: 2] = [
-            Support(one.interface, one.static_stiffness) for one in self.controlled
-        ]
+        supports, own = list(self.plain.supports), self.own.supports
+        supports[self._place(0) :: 2] = [places(one, one.static_stiffness)[0] for one in own]
         return self.plain.with_supports(tuple(supports))
 
     def undamped(self) -> LinearRotor | RotorOnFoundation:
@@ -100,13 +85,13 @@ class ControlledRotor(ExtendedRotor):
 
     @property
     def _more(self) -> int:
-        return sum(one.size for one in self.controlled)
+        return self.own.size
 
     @property
     def beside(self) -> tuple[str, ...]:
         """Names of the coordinates of a foundation, then of controllers."""
         given = self.plain.beside if isinstance(self.plain, RotorOnFoundation) else ()
-        return given + names_of_controllers((one.interface, one.size) for one in self.controlled)
+        return given + names_of_controllers((one.interface, one.size) for one in self.own.supports)
 
     @property
     def interfaces(self) -> tuple[str, ...]:
@@ -116,7 +101,7 @@ class ControlledRotor(ExtendedRotor):
     @property
     def standing(self) -> np.ndarray:
         """Coordinates of a foundation, and of pads; the controllers' turn with the rotor."""
-        return np.r_[self.plain.standing, self.plain.size + self._turning : self.size]
+        return np.r_[self.plain.standing, self.plain.size + self.own.turning : self.size]
 
     @property
     def standing_interfaces(self) -> tuple[str, ...]:
@@ -132,12 +117,12 @@ class ControlledRotor(ExtendedRotor):
     @property
     def mass_matrix(self) -> np.ndarray:
         """Mass matrix, the controllers' inertia last."""
-        return self._joined(self.plain.mass_matrix, np.diag(self._inertia))
+        return self._joined(self.plain.mass_matrix, np.diag(self.own.masses))
 
     @property
     def stiffness_varies(self) -> bool:
         """True where supports or a static displacement have a stiffness that is not in Ω²."""
-        return self.plain.stiffness_varies or self._turning < self._more
+        return self.plain.stiffness_varies or self.own.has_pads
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
@@ -149,8 +134,8 @@ class ControlledRotor(ExtendedRotor):
         These mass for mass, as foundations.
         """
         given, rows = self.plain.point_motions(most), np.eye(self.size)[self.plain.size :]
-        pads = np.sqrt(given.share(self.plain.invariants.mass) * self._inertia)[:, None] * rows
-        own = [pads[self._turning :]]
+        pads = np.sqrt(given.share(self.plain.invariants.mass) * self.own.masses)[:, None] * rows
+        own = [pads[self.own.turning :]]
         if given.standing is not None:
             own.insert(0, self._wide(given.standing))
         standing = np.vstack(own)
@@ -159,12 +144,12 @@ class ControlledRotor(ExtendedRotor):
             motion=self._wide(given.motion),
             standing=standing if len(standing) else None,
         )
-        return with_pairs(wide, rows[: self._turning])
+        return with_pairs(wide, rows[: self.own.turning])
 
     def own_rows(self, index: int) -> slice:
         """Return where the coordinates of a controller are."""
-        start = self.plain.size + sum(one.size for one in self.controlled[:index])
-        return slice(start, start + self.controlled[index].size)
+        rows = self.own.rows(index)
+        return slice(self.plain.size + rows.start, self.plain.size + rows.stop)
 
     def sensed(self, index: int) -> Terms:
         """Return the displacement (3, k) along (n1, n2, e) that a controller measures."""
@@ -172,13 +157,12 @@ class ControlledRotor(ExtendedRotor):
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
-        plain, own = self.plain.at(speed), self._inertia
-        D, K = ({n: self._joined(X) for n, X in terms.items()} for terms in (plain.D, plain.K))
-        beside, own = slice(self.plain.size, self.plain.size + self._turning), own[: self._turning]
-        gyroscopic = np.kron(np.eye(len(own) // 2), axial_skew(3)[:2, :2])
-        D[0][beside, beside] += 2.0 * speed * own[:, None] * gyroscopic
-        K[0][beside, beside] -= speed**2 * np.diag(own)
-        for between in (self._between, self._films(speed)):
+        plain, inertia = self.plain.at(speed), self.own.inertia_terms(speed)
+        D, K = (
+            {n: self._joined(X, own if n == 0 else None) for n, X in terms.items()}
+            for terms, own in zip((plain.D, plain.K), inertia, strict=True)
+        )
+        for between in (self._between, self.own.films(speed, self._journals)):
             for terms, added, factor in zip((D, K, K), between, (1.0, 1.0, speed), strict=True):
                 for n, X in added.items():
                     terms[n] = terms.get(n, 0.0) + factor * X
@@ -186,49 +170,14 @@ class ControlledRotor(ExtendedRotor):
         return PeriodicSystem(plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding)
 
     @cached_property
-    def _inertia(self) -> np.ndarray:
-        """Inertia of the own coordinates [kg]."""
-        return np.concatenate([one.masses for one in self.controlled])
-
-    @cached_property
-    def _turning(self) -> int:
-        """Number of own coordinates that turn with the rotor; they come first."""
-        return sum(one.size for one in self.controlled if isinstance(one, ControlledSupport))
-
-    @cached_property
     def _between(self) -> tuple[Terms, Terms, Terms]:
         """Fourier terms of damping, stiffness and stiffness per Ω that controllers bring."""
-        sums = {}, {}, {}
-        for index, one in enumerate(self.controlled):
-            if isinstance(one, PadSupport):
-                continue
-            count = len(one.damping) // 2
-            lifted = np.kron(np.eye(count), ACROSS)
-            D, K = (lifted @ X @ lifted.T for X in (one.damping, one.stiffness))
-            K[:3, :3] = 0.0  # of the plain rotor
-            own = np.zeros((one.size, self.size))
-            own[:, self.own_rows(index)] = np.eye(one.size)
-            own = {0: np.kron(np.eye(count - 2), ACROSS) @ own}
-            ports = stacked([self._displacement(self._place(index)), self.sensed(index), own])
-            turning = D @ axial_skew(len(D))
-            join_turning(sums, tuple(map(turned_harmonics, (D, K, turning))), ports)
-        return sums
+        sensed = [self.sensed(index) for index in range(len(self.own.supports))]
+        return self.own.between(self._journals, sensed)
 
-    def _films(self, speed: float) -> tuple[Terms, Terms, Terms]:
-        """Return what :attr:`_between` is of films on pads, at a spin speed [rad/s]."""
-        sums = {}, {}, {}
-        for index, one in enumerate(self.controlled):
-            if not isinstance(one, PadSupport):
-                continue
-            journal = self._displacement(self._place(index))
-            own = np.eye(self.size)[self.own_rows(index)]
-            for film, tangent, row in zip(one.films, one.tangents, own, strict=True):
-                seen = dict(journal)
-                for n, t in into_rotor_frame(np.array([*tangent, 0.0])).items():
-                    seen[n] = seen.get(n, 0.0) - np.outer(t, row)
-                parts = ({n: X[:3, :3] for n, X in part.items()} for part in film.parts(speed))
-                join_turning(sums, tuple(parts), seen)
-        return sums
+    @cached_property
+    def _journals(self) -> list[Terms]:
+        return [self._displacement(self._place(i)) for i in range(len(self.own.supports))]
 
     def _displacement(self, place: int) -> dict[int, np.ndarray]:
         """Return the displacement (3, k) of one of the plain rotor's supports."""
@@ -237,13 +186,4 @@ class ControlledRotor(ExtendedRotor):
 
     def _place(self, index: int) -> int:
         """Return where a controller's pair of supports is among those of the plain rotor."""
-        return len(self.plain.supports) - 2 * len(self.controlled) + 2 * index
-
-
-def names_of_controllers(controllers: Iterable[tuple[str, int]]) -> tuple[str, ...]:
-    """Return the names of coordinates of controllers, given their interfaces and sizes."""
-    return tuple(
-        f"controller {index} at {interface}, {number}"
-        for index, (interface, size) in enumerate(controllers, 1)
-        for number in range(1, size + 1)
-    )
+        return len(self.plain.supports) - 2 * len(self.own.supports) + 2 * index

@@ -13,7 +13,8 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_rotor.linear.models.finer_rotor import Basis, FinerRotor
-from exudyn_rotor.linear.models.linear_train import LinearTrain, places_of
+from exudyn_rotor.linear.models.linear_train import LinearTrain
+from exudyn_rotor.linear.models.train_elements import places_of
 from exudyn_rotor.linear.models.turned_rotor import TurnedRotor
 
 
@@ -39,13 +40,14 @@ class FinerTrain(LinearTrain):
                 return None
             parts[name] = _finer(part, finer)
         rotors = {name: part.alone.rotor for name, part in parts.items()}
-        return cls(replace(model.train, rotors=rotors), parts, model.elements, model)
+        return cls(replace(model.train, rotors=rotors), parts, model.elements, model.own, model)
 
     @property
     def lacking(self) -> np.ndarray:
         """Which coordinates the given rotors lack, shape (k,)."""
         parts = ((self.parts[name].size, part.size) for name, part in self.given.parts.items())
-        return np.hstack([np.arange(size) >= kept for size, kept in parts])
+        rotors = [np.arange(size) >= kept for size, kept in parts]
+        return np.hstack([*rotors, np.zeros(self.own.size, dtype=bool)])
 
     @property
     def bases(self) -> tuple[Basis, ...]:

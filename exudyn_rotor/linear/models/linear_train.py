@@ -3,12 +3,12 @@
 All coordinates are seen in axes that turn with the speed Ω of the analysis: those of a rotor of
 ratio 1 are its own, those of others are turned (:mod:`.turned_rotor`). Axisymmetric rotors have
 constant coefficients there at any ratio, and so has what stands still and is the same in both
-directions across the axis; the rest repeats with θ = Ωt.
+directions across the axis; the rest repeats with θ = Ωt. Coordinates of controllers and of pads
+(:mod:`.own_coordinates`) come after those of all rotors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -16,8 +16,6 @@ from typing import ClassVar
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor import checks
-from exudyn_rotor.bearings.given import checked_supports
 from exudyn_rotor.linear.models.free_motions import named_motions
 from exudyn_rotor.linear.models.links import (
     Element,
@@ -26,13 +24,21 @@ from exudyn_rotor.linear.models.links import (
     join_turning,
     stacked,
 )
-from exudyn_rotor.linear.models.points import radius_of_gyration
+from exudyn_rotor.linear.models.own_coordinates import OwnCoordinates
+from exudyn_rotor.linear.models.points import radius_of_gyration, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.rotor_train import RotorTrain
-from exudyn_rotor.linear.models.spin import Spin
 from exudyn_rotor.linear.models.standing_space import StandingSpace
+from exudyn_rotor.linear.models.train_elements import (
+    check_rotor,
+    elements_of,
+    held_elements,
+    place_of,
+    places_of,
+)
 from exudyn_rotor.linear.models.turned_rotor import TurnedRotor
+from exudyn_rotor.linear.models.turning import Turning
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.theory.stiffening import LEVELS
@@ -49,51 +55,47 @@ class LinearTrain(InAllCoordinates):
     train : RotorTrain
     parts : mapping of str to TurnedRotor
     elements : tuple of Element
-        Supports and links.
+        Supports and links, see :mod:`.train_elements`.
+    own : OwnCoordinates
+        Of some supports.
     """
 
     gives_all: ClassVar[bool] = True
     is_full: ClassVar[bool] = False
     mesh: ClassVar[None] = None
     has_structural_damping: ClassVar[bool] = False
-    standing: ClassVar[np.ndarray] = checks.read_only(np.zeros(0, dtype=int), int)
     standing_interfaces: ClassVar[tuple[str, ...]] = ()
 
     train: RotorTrain
     parts: dict[str, TurnedRotor]
     elements: tuple[Element, ...]
+    own: OwnCoordinates
 
     @classmethod
     def of(cls, train: RotorTrain, stiffening: str = "auto") -> LinearTrain:
         """Prepare the rotors; errors are those that :class:`RotorTrain` lists."""
-        supports = {name: checked_supports(given) for name, given in train.supports.items()}
-        elements = [
-            Element.of_support(name, train.ratios[name], support)
-            for name, given in supports.items()
-            for support in given
-        ]
-        elements += [Element.of_link(link, train.ratios) for link in train.links]
-        for element in elements:
-            element.check()
+        elements, own = elements_of(train)
         parts = {}
         for name, rotor in train.rotors.items():
             alone = LinearRotor.of(rotor, (), stiffening)
-            _check(name, alone, supports.get(name, ()))
+            check_rotor(name, alone, held_elements(elements, own))
             at = places_of(name, elements)
             parts[name] = TurnedRotor.of(
                 name, alone, train.ratios[name], at, train.largest_unevenness
             )
             parts[name].terms(0.0)  # refuses what does not repeat with θ, as do motions
-        model = cls(train, parts, tuple(elements))
+        model = cls(train, parts, elements, own)
         _ = model._motions
         return model
 
     @cached_property
     def _standing(self) -> LinearTrain | None:
         """The equations in inertial axes where these are constant and those here are not."""
-        harmonics = any(n for terms in self._constant for n in terms)
+        harmonics = any(n for terms in (*self._constant, *self._between) for n in terms)
         varies = any(element.varies for element in self.elements)
-        if not (harmonics or varies) or any(element.turns for element in self.elements):
+        if not (harmonics or varies or self.own.has_pads):
+            return None
+        if any(element.turns for element in self.elements):
             return None
         parts = {}
         for name, part in self.parts.items():
@@ -103,7 +105,17 @@ class LinearTrain(InAllCoordinates):
             if not parts[name].is_even:
                 return None
         elements = tuple(replace(element, frame=0.0) for element in self.elements)
-        return replace(self, parts=parts, elements=elements)
+        return replace(self, parts=parts, elements=elements, own=replace(self.own, frame=0.0))
+
+    @cached_property
+    def held(self) -> LinearTrain:
+        """The rotors on the static stiffness of supports that have coordinates of their own."""
+        elements = held_elements(self.elements, self.own)
+        return replace(self, elements=elements, own=OwnCoordinates())
+
+    def _place(self, index: int) -> int:
+        """Return where a controller's pair of elements is."""
+        return place_of(index, self.elements, self.own)
 
     @cached_property
     def _slices(self) -> dict[str, slice]:
@@ -116,7 +128,12 @@ class LinearTrain(InAllCoordinates):
     @property
     def size(self) -> int:
         """Number of coordinates k."""
-        return sum(part.size for part in self.parts.values())
+        return sum(part.size for part in self.parts.values()) + self.own.size
+
+    @property
+    def standing(self) -> np.ndarray:
+        """Coordinates of pads."""
+        return np.arange(self.size - self.own.size + self.own.turning, self.size)
 
     @property
     def interfaces(self) -> tuple[str, ...]:
@@ -135,15 +152,19 @@ class LinearTrain(InAllCoordinates):
     @cached_property
     def mass_matrix(self) -> np.ndarray:
         """M, shape (k, k)."""
-        return la.block_diag(*(part.alone.mass_matrix for part in self.parts.values()))
+        own = np.diag(self.own.masses)
+        return la.block_diag(*(part.alone.mass_matrix for part in self.parts.values()), own)
 
     @property
     def unit_unbalance(self) -> np.ndarray:
         """Load per Ω² of the own eccentricity of the rotors of ratio 1, shape (k,)."""
         return np.hstack(
             [
-                part.alone.unit_unbalance if part.drift == 0.0 else np.zeros(part.size)
-                for part in self.parts.values()
+                *(
+                    part.alone.unit_unbalance if part.drift == 0.0 else np.zeros(part.size)
+                    for part in self.parts.values()
+                ),
+                np.zeros(self.own.size),
             ]
         )
 
@@ -155,7 +176,8 @@ class LinearTrain(InAllCoordinates):
     @property
     def base_loads(self) -> np.ndarray:
         """Loads of unit accelerations of the ground (109), shape (3, k)."""
-        return np.hstack([part.base_loads for part in self.parts.values()])
+        none = np.zeros((3, self.own.size))
+        return np.hstack([*(part.base_loads for part in self.parts.values()), none])
 
     @property
     def radius(self) -> float:
@@ -170,12 +192,14 @@ class LinearTrain(InAllCoordinates):
     @property
     def stiffness_varies(self) -> bool:
         """True where something has a stiffness that is not in Ω²."""
-        varies = any(element.stiffness_varies for element in self.elements)
+        varies = any(element.stiffness_varies for element in self.elements) or self.own.has_pads
         return varies or any(p.alone.stiffness_varies for p in self.parts.values())
 
     @cached_property
     def free_motions(self) -> tuple[str, ...]:
         """Rigid motions that no spring holds at rest."""
+        if self.own.size:
+            return self.held.free_motions
         names, columns = [], []
         for name, part in self.parts.items():
             rigid = part.alone.rotor.rigid
@@ -199,6 +223,26 @@ class LinearTrain(InAllCoordinates):
             stacked([self._wide(name, self.parts[name].motion(at)) for name, at in element.ends])
             for element in self.elements
         ]
+
+    def own_rows(self, index: int) -> slice:
+        """Return where the coordinates of a controller are."""
+        rows, first = self.own.rows(index), self.size - self.own.size
+        return slice(first + rows.start, first + rows.stop)
+
+    def sensed(self, index: int) -> Terms:
+        """Return the displacement (3, k) along (n1, n2, e) that a controller measures."""
+        return _displacement(self._motions[self._place(index) + 1])
+
+    @cached_property
+    def _journals(self) -> list[Terms]:
+        """Displacements (3, k) where supports with coordinates of their own act."""
+        indices = range(len(self.own.supports))
+        return [_displacement(self._motions[self._place(index)]) for index in indices]
+
+    @cached_property
+    def _between(self) -> tuple[Terms, Terms, Terms]:
+        """Damping, stiffness and stiffness per Ω that controllers bring."""
+        return self.own.between(self._journals, list(map(self.sensed, range(len(self._journals)))))
 
     def _wide(self, name: str, motion: Terms) -> Terms:
         wide = {}
@@ -255,6 +299,11 @@ class LinearTrain(InAllCoordinates):
         for element, U in zip(self.elements, self._motions, strict=True):
             if element.varies:
                 join_turning((D, K, carried), element.parts(speed), U)
+        for more in (self._between, self.own.films(speed, self._journals)):
+            for terms, added in zip((D, K, carried), more, strict=True):
+                join(terms, added)
+        for terms, inertia in zip((D, K), self.own.inertia_terms(speed), strict=True):
+            add(terms, 0, np.pad(inertia, (self.size - self.own.size, 0)))
         join(K, {n: speed * X for n, X in carried.items()})
         for name, part in self.parts.items():
             own = self._slices[name]
@@ -266,11 +315,15 @@ class LinearTrain(InAllCoordinates):
         return PeriodicSystem(float(speed), {0: self.mass_matrix}, D, K)
 
     def undamped(self) -> LinearTrain:
-        """Return the model itself: its damping does not enter the Hermitian part of equations."""
-        return self
+        """Return :attr:`held` without damping of supports, nor the skew part of their stiffness."""
+        elements = tuple(element.undamped() for element in self.held.elements)
+        return replace(self.held, elements=elements)
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return points of all rotors, up to `most` of each."""
+        """Return points of all rotors, up to `most` of each, and of controllers and pads.
+
+        These as :meth:`ControlledRotor.point_motions`.
+        """
         points, motions, is_mesh = [], [], True
         for name, part in self.parts.items():
             given = part.alone.point_motions(most)
@@ -280,11 +333,20 @@ class LinearTrain(InAllCoordinates):
             motions.append(wide)
             is_mesh = is_mesh and given.is_mesh
         ends = tuple(np.cumsum([len(each) for each in points]).tolist())
-        return PointMotions(np.vstack(points), np.vstack(motions), None, is_mesh, ends=ends)
+        given = PointMotions(np.vstack(points), np.vstack(motions), None, is_mesh, ends=ends)
+        if not self.own.size:
+            return given
+        mass = sum(part.alone.invariants.mass for part in self.parts.values())
+        rows = np.eye(self.size)[self.size - self.own.size :]
+        pads = np.sqrt(given.share(mass) * self.own.masses)[:, None] * rows
+        standing = pads[self.own.turning :] if self.own.has_pads else None
+        return with_pairs(replace(given, standing=standing), rows[: self.own.turning])
 
     @cached_property
     def _free_spins(self) -> np.ndarray:
         """Momenta of the combinations of spins that nothing holds, orthonormal, shape (k, f)."""
+        if self.own.size:
+            return np.pad(self.held._free_spins, ((0, self.own.size), (0, 0)))
         spins, momenta = [], []
         for name, part in self.parts.items():
             spin = part.alone.spin
@@ -309,28 +371,11 @@ class LinearTrain(InAllCoordinates):
             options = {"can_be_sent": True, "others": la.null_space(momenta.T)}
         if self._standing is None:
             return WholeSpace(self, **options)
+        still = self.own.size - self.own.turning
         turnings = [part.turning for part in self._standing.parts.values()]
+        turnings.append(Turning.beside(self.own.turning // 2, still))
         return StandingSpace(self, **options, standing=self._standing, turnings=turnings)
 
 
-def places_of(name: str, elements: Sequence[Element]) -> tuple[str, ...]:
-    """Return the interfaces of a rotor that elements act on."""
-    return tuple(at for element in elements for owner, at in element.ends if owner == name)
-
-
-def _check(name: str, alone: LinearRotor, supports: Sequence) -> None:
-    """Refuse what the equations of several rotors do not have."""
-    if alone.has_structural_damping:
-        raise ValueError(
-            f"rotors[{name!r}]: has structural damping, which is for responses of one rotor; give "
-            "damping by mass= and stiffness="
-        )
-    if alone.spin is None:
-        return
-    motions = [alone.interface_motion(support.interface) for support in supports]
-    given = alone.spin.motion, alone.spin.momentum, supports, motions
-    if Spin.of(*given, alone.invariants, alone.rotor.axis).coupled:
-        raise ValueError(
-            f"supports[{name!r}]: hold the spin by an arm off the axis, or turn with the rotor and "
-            "hold its torsion, which is for analyses of one rotor"
-        )
+def _displacement(motion: Terms) -> dict[int, np.ndarray]:
+    return {n: U[:3] for n, U in motion.items()}

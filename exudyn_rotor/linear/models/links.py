@@ -10,7 +10,7 @@ with sΩ: s = 0 where it stands still. The coordinates are seen in axes that tur
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -154,6 +154,11 @@ class Element:
             self.connection.check_range(self.rate * speed)
         return self._matrices(speed)
 
+    def undamped(self) -> Element:
+        """Return it as :meth:`Support.undamped`; gears as they are."""
+        given = self.connection
+        return replace(self, connection=given.undamped()) if isinstance(given, Support) else self
+
     @property
     def at_rest(self) -> np.ndarray:
         """Stiffness at rest."""
@@ -183,11 +188,21 @@ class Element:
             self._turned(X)
 
     def _turned(self, X: np.ndarray) -> dict[int, np.ndarray]:
-        """Return the Fourier terms of ``Rᵀ(wθ) X R(wθ)``, by multiples of θ."""
-        terms: dict[int, np.ndarray] = {}
-        for n, part in turned_harmonics(X).items():
-            add(terms, whole(n * self.drift, self.what), part)
-        return terms
+        return turned_terms(X, self.drift, self.what)
+
+
+def turned_terms(X: np.ndarray, drift: float, what: str) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Rᵀ(wθ) X R(wθ)`` for triples of rows, by multiples of θ.
+
+    Raises
+    ------
+    ValueError
+        As :func:`whole`, for the drift w.
+    """
+    terms: dict[int, np.ndarray] = {}
+    for n, part in turned_harmonics(X).items():
+        add(terms, whole(n * drift, what), part)
+    return terms
 
 
 def whole(multiple: float, what: str) -> int:

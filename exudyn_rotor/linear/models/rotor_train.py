@@ -8,9 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.given import check_interfaces, given_supports
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.linear.models.link_places import check_places
 from exudyn_rotor.linear.models.links import Element, Link
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -29,7 +27,8 @@ class RotorTrain:
         Speed of each rotor over the speed Ω of the analysis, not 0; negative for one that turns
         the other way. Results are seen from axes that turn with Ω, 'forward' is in its sense.
     supports : mapping of str to sequence of Support or bearings, optional
-        Of each rotor on the ground; bearings and tables at its own speed.
+        Of each rotor on the ground; bearings and tables at its own speed, magnetic bearings and
+        pads with their coordinates.
     links : sequence of Link, optional
         Between rotors.
     largest_unevenness : float, optional
@@ -77,7 +76,7 @@ class RotorTrain:
 
     rotors: Mapping[str, ReducedRotor]
     ratios: Mapping[str, float]
-    supports: Mapping[str, Sequence[Support | Bearing]] = field(default_factory=dict)
+    supports: Mapping[str, Sequence[Given]] = field(default_factory=dict)
     links: Sequence[Link] = ()
     largest_unevenness: float = 0.05
     positions: Mapping[str, np.ndarray] = field(default_factory=dict)

@@ -35,6 +35,7 @@ _RIGID_PAIRS = (
     (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
     (ModeKind.TILT_1, ModeKind.TILT_2),
 )
+_PAIR = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)  # waves of n = 1 and −1
 _NOTHING = 1e-13  # share of a matrix that is round-off
 
 
@@ -71,11 +72,18 @@ class Turning:
         for pair in _RIGID_PAIRS:
             if set(pair) <= set(kinds):
                 columns = [kinds.index(kind) for kind in pair]
-                E[np.ix_(columns, columns)] = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)
+                E[np.ix_(columns, columns)] = _PAIR
                 waves[columns] = 1, -1
         T = V @ E
         weights = 1.0 / (1.0 + (omega / first) ** 2)
         return cls(T, T.conj().T @ inv.M, waves, weights)
+
+    @classmethod
+    def beside(cls, pairs: int, still: int) -> Turning:
+        """Return how what is beside rotors turns: pairs along (n1, n2), then what stands."""
+        T = la.block_diag(np.kron(np.eye(pairs), _PAIR), np.eye(still))
+        waves = np.r_[np.tile([1, -1], pairs), np.zeros(still, dtype=int)].astype(int)
+        return cls(T, T.conj().T, waves, np.zeros(len(waves)))
 
     def widened(self, rotor: LinearRotor) -> Turning:
         """Return how a rotor turns that has further coordinates after these.

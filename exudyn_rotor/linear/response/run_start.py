@@ -14,9 +14,9 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.models.controlled_rotor import names_of_controllers
 from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_scene import LinearScene
+from exudyn_rotor.linear.models.own_coordinates import names_of_controllers
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
@@ -201,7 +201,7 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
 def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
     """Return supports with own coordinates and where these are: controllers, then pads that tilt.
 
-    In the order of :class:`ControlledRotor`.
+    In the order of :class:`OwnCoordinates`.
     """
     found = [(one, one.own_coordinates(body.mbs)) for one in body.supports]
     found = [(one, places) for one, places in found if places.size]

@@ -26,7 +26,9 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import Space
+from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.linear.stability.growth import GrowthAt, held_space
 from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity
@@ -39,10 +41,10 @@ _RESIDUAL = 1e-7  # of no influence here: all motions are found
 
 
 def sensitivity(
-    rotor: ReducedRotor | SolidRotor,
+    rotor: ReducedRotor | SolidRotor | RotorTrain,
     frequencies: ArrayLike,
     *,
-    supports: Sequence[Given],
+    supports: Sequence[Given] = (),
     foundation: Foundation | None = None,
     speed: float = 0.0,
     stiffening: str = "auto",
@@ -51,16 +53,17 @@ def sensitivity(
 
     Parameters
     ----------
-    rotor : ReducedRotor or SolidRotor
+    rotor : ReducedRotor, SolidRotor or RotorTrain
     frequencies : array_like, shape (f,)
         Where S is computed [rad/s], ascending, above zero. The closed loop's own frequencies
         between the first and the last, of motions with damping, are added, so that no peak is
         missed.
     supports : sequence of MagneticBearing, and others
+        Of a rotor; a train has its own.
     foundation : Foundation, optional
         What carries them, as in :func:`linear_model`.
     speed : float, optional
-        Spin speed [rad/s].
+        Spin speed [rad/s], of a train that of the analysis.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         Of centrifugal stiffening.
 
@@ -94,21 +97,27 @@ def sensitivity(
     right, 1     1.662        4.4      153  A
     right, 2     1.662        4.4      153  A
     """
-    checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor))
+    checks.instance(rotor, "rotor", (ReducedRotor, SolidRotor, RotorTrain))
     values = checks.ascending(frequencies, "frequencies", "rad/s")
     if values[0] <= 0.0:
         raise ValueError(f"frequencies: needs values above zero [rad/s], got {values[0]:g}")
     speed = checks.number(speed, "speed", "rad/s", least=0.0)
-    bearings = [s for s in given_supports(supports) if isinstance(s, MagneticBearing)]
+    bearings = _bearings(rotor, supports)
     if not bearings:
         raise ValueError("supports: needs a MagneticBearing, whose loop has a sensitivity")
     model = linear_model(rotor, supports=supports, foundation=foundation, stiffening=stiffening)
     held = held_space(model, speed, None, _RESIDUAL)
     found = GrowthAt(held, "auto", _TOLERANCE, WhirlContent.of(model))(speed)
     if found.excess > 0.0:
-        heard = found.names[0][found.least_stable]
+        heard, where = found.names[0][found.least_stable], ""
+        if found.critical is not None:
+            shape = found.critical.vectors
+            moves = [
+                np.linalg.norm(shape[:, model.own_rows(index)]) for index in range(len(bearings))
+            ]
+            where = f", in which most moves the controller of {bearings[np.argmax(moves)][0]!r},"
         raise ValueError(
-            f"supports: unstable at {speed:g} rad/s: a motion of {heard:.4g} rad/s grows by "
+            f"supports: unstable at {speed:g} rad/s: a motion of {heard:.4g} rad/s{where} grows by "
             f"{found.values.real.max():.4g} 1/s, and there is no sensitivity of an unstable loop; "
             "see stability(…), change the controller"
         )
@@ -117,15 +126,30 @@ def sensitivity(
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
     rows = [
         _of_axis(model, space, index, axis, values, speed)
-        for index, bearing in enumerate(bearings)
+        for index, (_, bearing) in enumerate(bearings)
         for axis in bearing.control_axes
     ]
-    names = [f"{bearing.interface}, {number}" for bearing in bearings for number in (1, 2)]
+    names = [f"{name}, {number}" for name, _ in bearings for number in (1, 2)]
     return Sensitivity(tuple(names), values, np.array(rows), speed)
 
 
+def _bearings(
+    rotor: ReducedRotor | SolidRotor | RotorTrain, supports: Sequence[Given]
+) -> list[tuple[str, MagneticBearing]]:
+    """Return the magnetic bearings with their names, in the order of the model's coordinates."""
+    given = [("", given_supports(supports))]
+    if isinstance(rotor, RotorTrain):
+        given += [(f"{name}:", own) for name, own in rotor.supports.items()]
+    return [
+        (name + one.interface, one)
+        for name, each in given
+        for one in each
+        if isinstance(one, MagneticBearing)
+    ]
+
+
 def _of_axis(
-    model: ControlledRotor,
+    model: ControlledRotor | LinearTrain,
     space: Space,
     index: int,
     axis: np.ndarray,
@@ -133,7 +157,7 @@ def _of_axis(
     speed: float,
 ) -> np.ndarray:
     """Return S of a bearing's control axis, given along (n1, n2)."""
-    one, rows = model.controlled[index], model.own_rows(index)
+    one, rows = model.own.supports[index], model.own_rows(index)
     drive = np.zeros((one.size // 2, 3))
     drive[:, :2] = (-one.stiffness[4:, 2:4] @ axis).reshape(-1, 2)
     loads = {}

@@ -36,8 +36,8 @@ FOUNDATIONS = [
         "test_magnetic_on_foundation.py",
         (
             "sensors on the ground",
-            "self.sensed(index), own",
-            "{0: self.sensed(index)[0]}, own",
+            "sensed = [self.sensed(index) for",
+            "sensed = [{0: self.sensed(index)[0]} for",
         ),
     ),
     *mutations(

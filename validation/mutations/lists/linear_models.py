@@ -4,10 +4,14 @@ from validation.mutations.mutation import mutations
 
 LINEAR_MODELS = [
     *mutations(
+        "linear/models/own_coordinates.py",
+        "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
+        ("controllers turn without Coriolis", "2.0 * rate * own", "0.0 * rate * own"),
+        ("controllers pulled inwards", "= -(rate**2) * np.diag", "= rate**2 * np.diag"),
+    ),
+    *mutations(
         "linear/models/controlled_rotor.py",
         "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
-        ("controllers turn without Coriolis", "+= 2.0 * speed * own", "+= 0.0 * speed * own"),
-        ("controllers pulled inwards", "-= speed**2 * np.diag(own)", "+= speed**2 * np.diag(own)"),
         (
             "damping of what stands still carries nothing",
             "(1.0, 1.0, speed), strict",
@@ -15,9 +19,9 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/controlled_rotor.py",
+        "linear/models/own_coordinates.py",
         "test_tilting_pad.py::test_scene_and_linear_analyses_agree",
-        ("films do not see their pads", "- np.outer(t, row)", "- 0.0 * np.outer(t, row)"),
+        ("films do not see their pads", "- np.outer(turned, row)", "- 0.0 * np.outer(turned, row)"),
     ),
     *mutations(
         "linear/models/left_out.py",

@@ -110,4 +110,28 @@ TRAINS = [
         "test_geared_trains.py::test_gears_are_apart_by_their_centre_distance",
         ("centres the other way", "places[1] - places[0] - expected", "places[1] - places[0]"),
     ),
+    *mutations(
+        "linear/models/own_coordinates.py",
+        "test_controlled_trains.py::test_rotors_without_links_are_those_alone",
+        ("films at the common speed", "film, 0.0, self.rates[index]", "film, 0.0, 1.0"),
+        (
+            "controllers turn in axes at rest",
+            "self.frame * speed, self.turning",
+            "speed, self.turning",
+        ),
+    ),
+    *mutations(
+        "linear/models/turning.py",
+        "test_controlled_trains.py::test_rotors_without_links_are_those_alone",
+        ("controllers' pairs stand still", "np.tile([1, -1], pairs)", "np.tile([0, 0], pairs)"),
+    ),
+    *mutations(
+        "linear/models/linear_train.py",
+        "test_controlled_trains.py::test_critical_speeds_and_free_motions_have_the_slow_stiffness",
+        (
+            "films not undamped",
+            "element.undamped() for element in self.held.elements",
+            "element for element in self.held.elements",
+        ),
+    ),
 ]
