@@ -58,6 +58,8 @@ stress = full.stress()
 print(f"largest axial stress at the end: {np.abs(stress[:, 2]).max() / 1e6:.2f} MPa")
 bent = rotor.nodes + 3e3 * full.displacement()
 axial = stress[:, 2] / 1e6
-axes = plotting.draw_surface(bent, rotor.triangles, axial, "axial stress [MPa], bent 3000 times")
+axes = plotting.draw_surface(
+    bent, rotor.triangles, axial, "axial stress [MPa]; displacements × 3000"
+)
 plotting.save(axes, "full_body.png")
 assert difference < 1e-2

@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -13,6 +14,7 @@ PACKAGE = ROOT / "exudyn_rotor"
 NAME = PACKAGE.name
 
 
+@cache
 def order() -> list[str]:
     """Return the entries of the listing in CONTRIBUTING, 'theory/' or 'checks.py', top down."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -36,8 +38,13 @@ def modules() -> dict[str, Path]:
 MODULES = modules()
 
 
-def imports(module: str) -> Iterator[str]:
-    """Yield what a module imports of the package, anywhere: in functions and for types, too."""
+@cache
+def imports(module: str) -> frozenset[str]:
+    """Return what a module imports of the package, anywhere: in functions and for types, too."""
+    return frozenset(_imports(module))
+
+
+def _imports(module: str) -> Iterator[str]:
     path = MODULES[module]
     folder = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

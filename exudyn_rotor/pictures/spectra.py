@@ -90,7 +90,7 @@ class Spectra(Result):
         ax.set_xlim(*_limits(abscissa))
         ax.set_ylim(base.min() - step, base.max() + 5.0 * step)
         ax.set_xlabel(_FREQUENCY)
-        ax.set_ylabel(f"spin speed [Hz]; {step / scale:.3g} per {step:.3g} Hz")
+        ax.set_ylabel(f"spin speed [Hz]; amplitudes: {step / scale:.2g} per {step:.3g} Hz")
         if orders.size:
             plotting.legend_above(ax, 4)
         return ax

@@ -28,14 +28,15 @@ def checked_orders(orders: Sequence[float] | float) -> np.ndarray:
     return values
 
 
-def checked_range(values: ArrayLike | None, name: str = "operating_range") -> np.ndarray | None:
+def checked_range(values: ArrayLike | None) -> np.ndarray | None:
     """Return the lowest and the highest operating speed [rad/s], or None."""
     if values is None:
         return None
-    low, high = checks.vector(values, name, "rad/s", size=2)
+    low, high = checks.vector(values, "operating_range", "rad/s", size=2)
     if not 0.0 <= low < high:
         raise ValueError(
-            f"{name}: needs the lowest and the highest speed [rad/s], got {checks.shown(values)}"
+            "operating_range: needs the lowest and the highest speed [rad/s], got "
+            f"{checks.shown(values)}"
         )
     return np.array([low, high])
 

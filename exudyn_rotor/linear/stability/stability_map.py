@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
@@ -106,7 +107,7 @@ class StabilityMap(Result):
         ax = plotting.axes_or_new(ax)
         growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
         largest = np.abs(growth).max() or 1.0
-        levels = np.linspace(-largest, largest, 21)
+        levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
         filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
         ax.figure.colorbar(filled, ax=ax, label="growth [1/s]")
         if not (self.stable.all() or not self.stable.any()):

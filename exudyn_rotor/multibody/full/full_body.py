@@ -168,7 +168,7 @@ class FullRotorBody(SceneBody):
         return full_markers.add_node_sensor(self, node, output, options)
 
 
-def reduced_body(body: object, name: str = "body", how: str = "add_rotor returned it") -> RotorBody:
+def reduced_body(body: object, how: str = "add_rotor returned it") -> RotorBody:
     """Return a rotor body in component modes, which analyses of a scene need.
 
     Raises
@@ -178,8 +178,8 @@ def reduced_body(body: object, name: str = "body", how: str = "add_rotor returne
     """
     if isinstance(body, FullRotorBody):
         raise TypeError(
-            f"{name}: rotor {body.name!r} is a full body, whose displacements of all nodes this "
+            f"body: rotor {body.name!r} is a full body, whose displacements of all nodes this "
             "does not take; add the reduced rotor, add_rotor(mbs, rotor.reduce(…)), or give a "
             "linear analysis the SolidRotor and its supports"
         )
-    return checks.instance(body, name, RotorBody, how)
+    return checks.instance(body, "body", RotorBody, how)

@@ -140,11 +140,11 @@ def modal_values(values: ArrayLike | None, name: str, labels: tuple[str, ...]) -
     return checks.vector(values, described, "√kg m", size=len(labels))
 
 
-def color_of(values: Sequence[float], name: str = "color") -> tuple[float, ...]:
+def color_of(values: Sequence[float]) -> tuple[float, ...]:
     """Return red, green, blue and opacity, each from 0 to 1."""
-    result = checks.vector(values, name, "RGBA", size=4)
+    result = checks.vector(values, "color", "RGBA", size=4)
     if np.any((result < 0.0) | (result > 1.0)):
-        raise ValueError(f"{name}: needs 4 numbers from 0 to 1 (RGBA), got {checks.shown(values)}")
+        raise ValueError(f"color: needs 4 numbers from 0 to 1 (RGBA), got {checks.shown(values)}")
     return tuple(result.tolist())
 
 
