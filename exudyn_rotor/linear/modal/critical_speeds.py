@@ -244,8 +244,7 @@ def critical_speeds_of(
     if basis is not None and basis.is_known:
         errors = np.full(len(critical), np.nan)
         count = len(critical) if max_speed is not None else JUDGED
-        given = [(entry.speed, entry.multiples, entry.vectors) for entry in critical[:count]]
-        errors[:count] = basis.critical_errors(given)
+        errors[:count] = basis.critical_errors([entry.motions for entry in critical[:count]])
     collected = _collected(critical, content, order, model.size)
     return replace(collected, basis_errors=errors, stiffening=model.stiffening)
 

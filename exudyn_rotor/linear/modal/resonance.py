@@ -24,6 +24,7 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.linear.modal.whirl import WhirlContent
+from exudyn_rotor.linear.models.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -51,13 +52,24 @@ _MODES = 10  # that the subspace of a full rotor begins with
 class Resonance:
     """One critical speed: harmonics (h, c) of its motion at the frequencies `multiples`·Ω.
 
-    `split` is the distance of the other one of a pair, relative to `speed`.
+    `upper` is the other one of a pair that is listed by its lower one.
     """
 
     speed: float
     multiples: np.ndarray
     vectors: np.ndarray
-    split: float = 0.0
+    upper: Resonance | None = None
+
+    @property
+    def split(self) -> float:
+        """Distance of the upper one, relative to `speed`; 0 without one."""
+        return 0.0 if self.upper is None else self.upper.speed / self.speed - 1.0
+
+    @property
+    def motions(self) -> tuple[CriticalMotion, CriticalMotion | None]:
+        """This motion and the upper one."""
+        own = CriticalMotion(self.speed, self.multiples, self.vectors)
+        return own, None if self.upper is None else self.upper.motions[0]
 
 
 @one_thread()
@@ -360,7 +372,7 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
                 break
             if other not in taken and _is_pair(entry, upper, content):
                 taken.add(other)
-                entry = replace(entry, split=upper.speed / entry.speed - 1.0)
+                entry = replace(entry, upper=upper)
                 break
         joined.append(entry)
     return joined

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.models.critical_shift import CriticalMotion, critical_shifts
 from exudyn_rotor.linear.models.left_out import LeftOut
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
@@ -90,15 +91,25 @@ class BasisError:
 
     @one_thread()
     def critical_errors(
-        self, critical: Sequence[tuple[float, np.ndarray, np.ndarray]]
+        self, critical: Sequence[tuple[CriticalMotion, CriticalMotion | None]]
     ) -> np.ndarray:
         """Return relative errors of critical speeds, shape (c,), where they are known.
 
-        Of each the speed [rad/s], the multiples (h,) and harmonics (h, k), see :class:`LeftOut`.
+        Each with the upper one of a pair that is listed by its lower one. The larger error of the
+        two counts then, the lower speed compared with the lower one without what is left out.
         """
         if self.left_out is None:
             return np.zeros(len(critical))
-        return np.array([abs(self.left_out.critical_shift(*one)) / one[0] for one in critical])
+        every = [motion for pair in critical for motion in pair if motion is not None]
+        moved, errors = map(iter, critical_shifts(self.left_out, every))
+        result = []
+        for lower, upper in critical:
+            new, error = [next(moved)], next(errors)
+            if upper is not None:
+                new, _ = sorted([*new, next(moved)]), next(errors)
+                error = max(abs(new[0] - lower.speed), abs(new[1] - upper.speed))
+            result.append(error / lower.speed)
+        return np.array(result)
 
     def warn(self, errors: np.ndarray, what: str) -> None:
         """Warn where an estimate exceeds the accuracy; `what` names the worst."""

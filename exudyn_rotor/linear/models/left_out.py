@@ -34,17 +34,9 @@ import numpy as np
 from exudyn_rotor.linear.models.finer_model import FinerModel, finer_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.inverse_iteration import (
-    OFF_ROOT,
-    moved,
-    moved_together,
-    nearest_root,
-)
+from exudyn_rotor.linear.periodic.inverse_iteration import moved, moved_together
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
-_FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
-_STEP = 1e-3  # of differences by the speed, relative
 _SMALL = 1e-5  # harmonics of a mode of unit length
 _FAR = 1e-3  # share of an eigenvalue by which it moves far
 _MOST_ENTRIES = 1_000_000  # of the matrices of speeds that are looked at together
@@ -140,47 +132,6 @@ class LeftOut:
         sizes = np.linalg.norm(modes.vectors, axis=1).max(axis=1, initial=0.0)
         highest = np.abs(modes.orders[sizes > _SMALL]).max(initial=0)
         return np.abs(modes.orders) <= max(highest, step)
-
-    def critical_shift(self, speed: float, multiples: np.ndarray, vectors: np.ndarray) -> float:
-        """Return the estimated ``Ω − Ω_reduced`` of a critical speed [rad/s].
-
-        As :meth:`shifts`, of the undamped ``H(Ω) = Z(ifΩ, Ω)``, which is close to quadratic in Ω.
-
-        Parameters
-        ----------
-        speed : float
-            Ω_reduced [rad/s].
-        multiples : ndarray, shape (h,)
-            Frequencies f of the harmonics over Ω.
-        vectors : ndarray, shape (h, k)
-            Harmonics of the motion.
-        """
-        lacking = self.finer.lacking
-        if not np.any(lacking):
-            return 0.0
-        middle = multiples[len(multiples) // 2]
-        orders = np.round(multiples - middle).astype(int)
-
-        def dynamic(omega: float) -> tuple[np.ndarray, np.ndarray]:
-            M, D, K = hill_matrices(self.equations.at(omega), orders)
-            rate = 1j * middle * omega
-            dynamic = rate**2 * M + rate * D + K
-            return 0.5 * (dynamic + dynamic.conj().T), M
-
-        x = np.zeros((len(orders), len(lacking)), dtype=complex)
-        x[:, ~lacking] = vectors
-        step = _STEP * speed
-        low, high = dynamic(speed - step)[0], dynamic(speed + step)[0]
-        shifted = speed * (1.0 + OFF_ROOT)
-        H, M = dynamic(shifted)
-        slope, square = (high - low) / (2.0 * step), (high - 2.0 * H + low) / (2.0 * step**2)
-        # free rigid motions have neither stiffness nor, where they stand still, inertia
-        held = np.flatnonzero(np.abs(H).max(axis=1) > _FREE * speed**2 * M.diagonal().real)
-        H, slope, square, M = (X[np.ix_(held, held)] for X in (H, slope, square, M))
-        x = x.ravel()[held]
-        z, w = np.linalg.solve(H, np.column_stack([slope @ x, M @ x])).T  # H is Hermitian
-        parts = (np.vdot(w, X) for X in (square @ z, slope @ z, slope @ x))
-        return float((nearest_root(*parts) + shifted - speed).real)
 
 
 def _shifts(

@@ -33,12 +33,23 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/left_out.py",
+        "linear/models/critical_shift.py",
+        "test_basis_on_foundations.py::test_errors_of_critical_speeds_and_of_the_least_stable_motion "
         "test_basis_error.py::test_estimates_of_critical_speeds",
         (
-            "dynamic stiffness changes twice as fast with the speed",
-            "slope, square = (high - low)",
-            "slope, square = 2.0 * (high - low)",
+            "dynamic stiffness changes half as fast with the speed",
+            "at_rest + speed**2 * B, 2.0 * speed * B",
+            "at_rest + speed**2 * B, speed * B",
+        ),
+        ("one of a close pair taken for the other", "_CLOSE = 1e-2", "_CLOSE = 0.0"),
+    ),
+    *mutations(
+        "linear/models/critical_shift.py",
+        "test_basis_on_foundations.py::test_what_the_rotor_does_not_feel_has_no_error",
+        (
+            "a motion at its own critical speed taken for a free one",
+            "np.maximum(np.abs(given.H), center * np.abs(given.slope))",
+            "np.abs(given.H)",
         ),
     ),
     *mutations(
