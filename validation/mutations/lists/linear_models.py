@@ -34,8 +34,7 @@ LINEAR_MODELS = [
     ),
     *mutations(
         "linear/models/critical_shift.py",
-        "test_basis_on_foundations.py "
-        "test_basis_error.py::test_estimates_of_critical_speeds",
+        "test_basis_on_foundations.py test_basis_error.py::test_estimates_of_critical_speeds",
         (
             "dynamic stiffness changes half as fast with the speed",
             "at_rest + speed**2 * B, 2.0 * speed * B",
