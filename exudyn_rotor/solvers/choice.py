@@ -25,8 +25,10 @@ _ITERATIVE_PER_COORDINATE = 5200.0
 # solutions, and per entry of the matrix by iteration; only their ratios count
 _PER_OPERATION, _PER_FACTOR_ENTRY, _PER_MATRIX_ENTRY = 7e-11, 1.6e-7, 2e-6
 _WORTH_IT = 2.0
-# of Pardiso: per operation that it counts itself, and per byte of the factor in 120 solutions
+# of Pardiso: per operation that it counts itself, and per byte of the factor in 110 solutions
 _PARDISO_PER_OPERATION, _PARDISO_PER_BYTE = 4e-11, 7e-9
+# bytes that 20 modes take beside its factor, for every coordinate
+_PARDISO_PER_COORDINATE = 2600.0
 
 
 class Elements(Protocol):
@@ -142,7 +144,7 @@ def _costs(
     """Return the bytes of a factor, and the seconds of 20 modes with it."""
     if ordered is not None:
         seconds = _PARDISO_PER_OPERATION * ordered.operations + _PARDISO_PER_BYTE * ordered.needed
-        return ordered.needed, seconds
+        return ordered.needed + _PARDISO_PER_COORDINATE * stiffness.shape[0], seconds
     fill = estimated_fill(stiffness, way.nodes)
     seconds = _PER_OPERATION * fill.operations + _PER_FACTOR_ENTRY * fill.entries
     return 8.0 * fill.entries + _DIRECT_PER_ENTRY * stiffness.nnz, seconds

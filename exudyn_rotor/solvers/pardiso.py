@@ -1,4 +1,4 @@
-"""Factors by Pardiso of Intel's MKL, where the package pypardiso is installed."""
+"""Factors by Pardiso of Intel's MKL, where there is one for the processor (pypardiso)."""
 
 from __future__ import annotations
 
