@@ -5,32 +5,36 @@ from __future__ import annotations
 import base64
 import inspect
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from datetime import date
 from html import escape
 from os import PathLike
 from typing import Any
 from warnings import WarningMessage
 
+import exudyn
 import numpy as np
 from matplotlib import pyplot, rc_context, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import COEFFICIENTS, Support
+from exudyn_rotor.descriptions import DESCRIBED, SUPPORTS, described, described_supports
 from exudyn_rotor.export import csv_text
-from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.models.linear_model import MODELS
+from exudyn_rotor.linear.models.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.storage import write_text
 from exudyn_rotor.units import Units
 
 _SHARPNESS = 110  # dots per inch
-_LINEAR = (LinearRotor, RotorOnFoundation)
-_KNOWN = (str, Axes, Figure, Support, ReducedRotor, SolidRotor, *_LINEAR)
-_HOW = "a rotor, supports, a linear model, a result with table(), axes or a figure, or text"
+_KNOWN = (str, Axes, Figure, *SUPPORTS, *DESCRIBED)
+_HOW = (
+    "a rotor, a train of them, supports, a linear model, a result with table(), axes or a figure, "
+    "or text"
+)
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -81,10 +85,11 @@ def report(
         A file of that name is replaced only by a complete one.
     contents : sequence of objects, mapping of heading to object or objects, or sequence of both
         In the order of the report. An object is a SolidRotor (its summary), a ReducedRotor (mass,
-        inertia, modes, interfaces), a Support or a sequence of them, a linear model of a reduced
-        rotor (supports, stiffening, free motions), a result or anything else with ``table()``,
-        matplotlib Axes or a Figure, or text, a paragraph. A mapping gives headings; a result beside
-        Axes under one heading is shown with these in place of its own picture.
+        inertia, modes, interfaces), a RotorTrain, a support, a bearing or a sequence of them, a
+        Foundation, a linear model (supports, links, stiffening, free motions; of a scene its rotor
+        and supports), a result or anything else with ``table()``, matplotlib Axes or a Figure, or
+        text, a paragraph. A mapping gives headings; a result beside Axes under one heading is shown
+        with these in place of its own picture.
     title : str, optional
     units : {'rpm', 'Hz', 'SI'}, optional
         Of speeds in tables and pictures; see :meth:`exudyn_rotor.units.Units.of`.
@@ -166,6 +171,8 @@ def _items(given: Any, where: str) -> list[Any]:
 
 def _check(content: Any, where: str) -> None:
     table = None if isinstance(content, type) else getattr(content, "table", None)
+    if isinstance(content, exudyn.MainSystem):
+        raise TypeError(f"{where}: give a scene as linear_model(mbs, body=…), got a MainSystem")
     if not isinstance(content, _KNOWN) and not callable(table):
         raise TypeError(f"{where}: needs {_HOW}, got {checks.shown(content)}")
 
@@ -173,18 +180,24 @@ def _check(content: Any, where: str) -> None:
 def _heading(content: Any) -> str:
     """Return a heading for an object that is given without one."""
     first = content[0] if isinstance(content, list | tuple) and content else content
-    if isinstance(first, Support):
-        return "Supports"
-    if isinstance(first, SolidRotor | ReducedRotor):
-        return "Rotor"
-    if isinstance(first, _LINEAR):
-        return "Linear model"
+    for kinds, heading in _HEADINGS.items():
+        if isinstance(first, kinds):
+            return heading
     if isinstance(first, str):
         return "Remarks"
     if isinstance(first, Axes | Figure | np.ndarray):
         return "Picture"
     words = "".join(f" {c.lower()}" if c.isupper() else c for c in type(first).__name__)
     return words.strip().capitalize()
+
+
+_HEADINGS = {
+    SUPPORTS: "Supports",
+    (SolidRotor, ReducedRotor): "Rotor",
+    RotorTrain: "Rotors",
+    Foundation: "Foundation",
+    MODELS: "Linear model",
+}
 
 
 def _message(warning: Any) -> str:
@@ -202,7 +215,7 @@ def _message(warning: Any) -> str:
 def _html(items: list[Any], heading: str, units: str) -> str:
     """Return the objects under a heading as HTML."""
     pictured = any(isinstance(item, Axes | Figure) for item in items)
-    supports = [item for item in items if isinstance(item, Support)]
+    supports = [item for item in items if isinstance(item, SUPPORTS)]
     parts, figures = [], []
     for item in items:
         if isinstance(item, str):
@@ -212,15 +225,11 @@ def _html(items: list[Any], heading: str, units: str) -> str:
             if made not in figures:  # a Bode diagram has two axes
                 figures.append(made)
                 parts.append(_picture(made, heading))
-        elif isinstance(item, Support):
+        elif isinstance(item, SUPPORTS):
             if item is supports[0]:
-                parts.append(_pre(_supports(supports)))
-        elif isinstance(item, SolidRotor):
-            parts.append(_pre(item.summary()))
-        elif isinstance(item, ReducedRotor):
-            parts.append(_pre(_reduced(item)))
-        elif isinstance(item, _LINEAR):
-            parts.append(_pre(_model(item)))
+                parts.append(_pre(described_supports(supports)))
+        elif isinstance(item, DESCRIBED):
+            parts.append(_pre(described(item)))
         else:
             parts.append(_result(item, heading, units, not pictured))
     return "\n".join(parts)
@@ -271,66 +280,3 @@ def _download(columns: Mapping[str, np.ndarray], heading: str) -> str:
     data = base64.b64encode(csv_text(columns).encode("utf-8")).decode("ascii")
     name = escape("_".join(heading.lower().split()) + ".csv")
     return f'<p><a download="{name}" href="data:text/csv;base64,{data}">{name}</a></p>'
-
-
-def _reduced(rotor: ReducedRotor) -> str:
-    """Return mass, inertia, modes and interfaces of a reduced rotor as lines of text."""
-    known, e = rotor.invariants, rotor.axis.direction
-    second = known.J - known.mass * np.outer(known.center, known.center)
-    polar = np.trace(second) - e @ second @ e
-    across = 0.5 * (np.trace(second) + e @ second @ e)
-    elastic = rotor.frequencies[len(rotor.rigid_kinds) :] / (2.0 * np.pi)
-    span = f", {elastic.min():.5g} to {elastic.max():.5g} Hz" if elastic.size else ""
-    lines = [
-        f"mass             {known.mass:.6g} kg",
-        f"centre of mass   {_vector(rotor.center_of_mass)} m",
-        f"moments          polar {polar:.6g}, mean transverse {across:.6g} kg m² about it",
-        f"spin axis        direction {_vector(e)}, point {_vector(rotor.axis.point)} m",
-        f"modes            {len(rotor.rigid_kinds)} rigid, {elastic.size} flexible{span}",
-        f"prestress        {'none' if known.K2 is None else 'of the static state at speed'}",
-    ]
-    lines += [
-        f"interface        {name}: centre {_vector(one.center)} m"
-        for name, one in rotor.interfaces.items()
-    ]
-    return "\n".join(lines)
-
-
-def _supports(supports: Sequence[Support]) -> str:
-    """Return the coefficients of supports as lines of text."""
-    lines = ["interface     frame      coefficient"]
-    for support in supports:
-        for name in COEFFICIENTS:
-            value = getattr(support, name)
-            if callable(value) or np.any(value[1] if isinstance(value, tuple) else value):
-                lines.append(
-                    f"{support.interface:12}  {support.frame:9}  {name.replace('_', ' '):14}  "
-                    f"{_coefficient(value)} {_UNITS[name]}"
-                )
-    return "\n".join(lines)
-
-
-_UNITS = dict(zip(COEFFICIENTS, ("N/m", "N s/m", "N m/rad", "N m s/rad"), strict=True))
-
-
-def _coefficient(value: Any) -> str:
-    if callable(value):
-        return "by a function of the speed"
-    if isinstance(value, tuple):
-        low, high = (value[0][place] * 30.0 / np.pi for place in (0, -1))
-        return f"by a table of {len(value[0])} speeds, {low:.6g} to {high:.6g} rpm"
-    if np.ndim(value) == 0:
-        return f"{value:.6g}"
-    return "[" + "; ".join(", ".join(f"{entry:.6g}" for entry in row) for row in value) + "]"
-
-
-def _model(model: LinearRotor | RotorOnFoundation) -> str:
-    """Return supports, foundation, level of stiffening and free motions of a linear model."""
-    free = ", ".join(model.free_motions) or "none"
-    level = f"centrifugal stiffening: {model.stiffening}"
-    carried = [repr(model.foundation)] if isinstance(model, RotorOnFoundation) else []
-    return "\n".join([_supports(model.supports), *carried, level, f"free motions: {free}"])
-
-
-def _vector(values: np.ndarray) -> str:
-    return "[" + ", ".join(f"{value:.5g}" for value in values) + "]"

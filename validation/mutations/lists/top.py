@@ -23,10 +23,14 @@ TOP = [
         "html_report.py",
         "test_report.py",
         ("text taken for HTML", '"<p>{escape(item)}</p>"', '"<p>{item}</p>"'),
-        ("transverse moment", "(np.trace(second) + e @", "(np.trace(second) - e @"),
-        ("polar moment", "polar = np.trace(second) - e", "polar = np.trace(second) + e"),
         ("units of the report forgotten", "return lambda: method(units=units)", "return method"),
         ("usual picture beside one's own", "units, not pictured)", "units, True)"),
+    ),
+    *mutations(
+        "descriptions.py",
+        "test_report.py",
+        ("transverse moment", "(np.trace(second) + e @", "(np.trace(second) - e @"),
+        ("polar moment", "polar = np.trace(second) - e", "polar = np.trace(second) + e"),
     ),
     *mutations(
         "units.py",
