@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.periodic.eigenvalues import repeated
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -19,6 +18,7 @@ _STEEPEST = 4.0
 # a match is another mode below this likeness, or beyond this many steepest changes of frequency
 _LEAST_LIKENESS, _MOST_CHANGES = 0.25, 2.0
 _NO_FREQUENCY = 1e-7  # of the highest: a free motion
+_MOST_ENTRIES = 1_000_000  # of the arrays of speeds that are matched at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,50 +63,102 @@ def track(
     columns = np.empty((len(modes), count), dtype=np.int64)
     columns[0] = np.arange(count)
     continued = np.ones((len(modes), count), dtype=bool)
-    signed = modes[0].values.imag.copy()
-    last = _Motions.of(modes[0], weigh)
+    constant = all(len(entry.orders) == 1 for entry in modes)
+    steps = (_steps_of_constant if constant else _steps_of_periodic)(modes, speeds, weigh)
+    for step, (matched, same) in enumerate(steps, start=1):
+        last = columns[step - 1]
+        columns[step], continued[step] = matched[last], same[last]
+    return Tracks(columns, continued)
+
+
+Steps = Iterator[tuple[np.ndarray, np.ndarray]]
+
+
+def _steps_of_constant(
+    modes: Sequence[FloquetModes], speeds: np.ndarray, weigh: Callable[[np.ndarray], np.ndarray]
+) -> Steps:
+    """Yield which column continues each, and whether as the same mode, each (k,), step by step.
+
+    Of equations that do not change in time. Only the relative sense of two motions matters.
+    """
+    size, count = modes[0].vectors.shape[1:]
+    at_once = max(1, _MOST_ENTRIES // (count * max(size, count)))
+    for first in range(0, len(modes) - 1, at_once):
+        few = slice(first, first + at_once + 1)
+        vectors = np.stack([entry.vectors[0] for entry in modes[few]])
+        weighed = weigh(vectors.transpose(1, 0, 2).reshape(size, -1))
+        weighed = weighed.reshape(size, -1, count).transpose(1, 0, 2)
+        products = [X.swapaxes(1, 2) @ weighed[1:] for X in (vectors[:-1].conj(), vectors[:-1])]
+        norms = _products(vectors, weighed)
+        likeness = _criterion(np.stack(products, axis=1), norms[:-1, None], norms[1:, None])
+        frequencies = np.array([entry.values.imag for entry in modes[few]])
+        forms = np.stack([frequencies[1:], -frequencies[1:]], axis=1)
+        changes, after = np.diff(speeds[few]), modes[few][1:]
+        matched, _, same = _matched(likeness, frequencies[:-1], forms, changes, after)
+        yield from zip(matched, same, strict=True)
+
+
+def _steps_of_periodic(
+    modes: Sequence[FloquetModes], speeds: np.ndarray, weigh: Callable[[np.ndarray], np.ndarray]
+) -> Steps:
+    """Yield what :func:`_steps_of_constant` does, for equations that repeat every revolution."""
+    signed, last = modes[0].values.imag, _Motions.of(modes[0], weigh)
     for step in range(1, len(modes)):
-        change = abs(speeds[step] - speeds[step - 1])
         frequencies, copies = zip(*_copies(modes[step], speeds[step], weigh), strict=True)
-        frequencies, together = np.array(frequencies), _of_one_value(modes[step])
-        before, after = last, copies
+        frequencies, before, after = np.array(frequencies), last, copies
         if 0.0 in (speeds[step - 1], speeds[step]):
             # at rest nothing turns, and all harmonics are one motion
             before, after = last.together(), [copy.together() for copy in copies]
         likeness = np.array([before.likeness(copy) for copy in after])
-        jump = np.abs(frequencies[:, None, :] - signed[:, None])
-        allowed = _STEEPEST * change + 1e-3 * np.abs(signed[:, None]) + modes[step].resolution
-        cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
-        choice = np.argmin(cost, axis=0)
-        rows, matched = linear_sum_assignment(np.min(cost, axis=0))
-        columns[step, rows] = matched
-        used = choice[rows, matched]
-        same = (likeness if together is None else likeness @ together) >= _LEAST_LIKENESS
-        same &= jump <= _MOST_CHANGES * allowed
-        same |= _at_rest(signed)[:, None] & _at_rest(frequencies)[:, None, :]
-        continued[step, rows] = same[used, rows, matched]
-        signed = frequencies[used, matched]
-        last = _Motions.chosen(copies, used, matched)
-    return Tracks(columns, continued)
+        change = speeds[step] - speeds[step - 1]
+        given = likeness[None], signed[None], frequencies[None], np.array([change])
+        matched, used, same = (each[0] for each in _matched(*given, [modes[step]]))
+        yield matched, same
+        forms = used[np.argsort(matched)]  # of each column here
+        signed = np.take_along_axis(frequencies, forms[None], axis=0)[0]
+        last = _Motions.chosen(copies, forms)
+
+
+def _matched(
+    likeness: np.ndarray,
+    before: np.ndarray,
+    frequencies: np.ndarray,
+    changes: np.ndarray,
+    modes: Sequence[FloquetModes],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return which columns continue those before, in which form, and whether as the same mode.
+
+    Parameters
+    ----------
+    likeness : ndarray, shape (s, n, k, k)
+        Of motions to n forms of those at the next speed.
+    before, frequencies : ndarray, shapes (s, k) and (s, n, k)
+        Signed, of the motions and of the forms [rad/s].
+    changes : ndarray, shape (s,)
+        Of the speed [rad/s].
+    modes : sequence of FloquetModes
+        Those at the next speeds.
+    """
+    values, resolution = (np.array([getattr(entry, name) for entry in modes])
+                          for name in ("values", "resolution"))  # fmt: skip
+    jump = np.abs(frequencies[:, :, None, :] - before[:, None, :, None])
+    allowed = _STEEPEST * np.abs(changes)[:, None] + 1e-3 * np.abs(before) + resolution[:, None]
+    cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed[:, None, :, None], 4.0)
+    matched = np.array([linear_sum_assignment(each)[1] for each in cost.min(axis=1)])
+    steps, rows = np.ogrid[: matched.shape[0], : matched.shape[1]]
+    used = cost.argmin(axis=1)[steps, rows, matched]
+    # shapes of modes with one eigenvalue are arbitrary
+    alike = np.abs(values[:, :, None] - values[:, None]) <= resolution[:, None, None]
+    alike = np.sum(likeness[steps, used, rows] * alike[steps, matched], axis=2)
+    same = (alike >= _LEAST_LIKENESS) & (
+        jump[steps, used, rows, matched] <= _MOST_CHANGES * allowed
+    )
+    return matched, used, same | _at_rest(before) & _at_rest(frequencies)[steps, used, matched]
 
 
 def _at_rest(frequencies: np.ndarray) -> np.ndarray:
     """Return True for free motions, whose shapes are arbitrary."""
     return np.abs(frequencies) <= _NO_FREQUENCY * np.abs(frequencies).max(axis=-1, keepdims=True)
-
-
-def _of_one_value(modes: FloquetModes) -> np.ndarray | None:
-    """Return 1 where two modes have one eigenvalue, so that their shapes are arbitrary, (k, k).
-
-    None where all differ.
-    """
-    groups = repeated(modes.values, modes.resolution)
-    if not groups:
-        return None
-    result = np.eye(modes.values.size)
-    for group in groups:
-        result[np.ix_(group, group)] = 1.0
-    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,15 +179,15 @@ class _Motions:
         return cls(vectors, weighed, sum(_products(X, weighed[m]) for m, X in vectors.items()))
 
     @classmethod
-    def chosen(cls, copies: Sequence[_Motions], used: np.ndarray, columns: np.ndarray) -> _Motions:
-        """Return motions of which number i is column ``columns[i]`` of copy ``used[i]``."""
+    def chosen(cls, copies: Sequence[_Motions], used: np.ndarray) -> _Motions:
+        """Return motions of which number i is that of copy ``used[i]``."""
         parts: tuple[dict[int, np.ndarray], ...] = {}, {}
         for number, copy in enumerate(copies):
             if np.any(used == number):
                 for part, given in zip(parts, (copy.vectors, copy.weighed), strict=True):
                     for m, X in given.items():
-                        part[m] = part.get(m, 0.0) + X[:, columns] * (used == number)
-        return cls(*parts, copies[0].norms[columns])
+                        part[m] = part.get(m, 0.0) + X * (used == number)
+        return cls(*parts, copies[0].norms)
 
     def moved(self, shift: int) -> _Motions:
         """Return the same motions with a frequency ``shift·Ω`` higher."""
@@ -157,8 +209,7 @@ class _Motions:
         for m, X in self.vectors.items():
             if m in other.weighed:
                 product += X.conj().T @ other.weighed[m]
-        sizes = np.maximum(self.norms[:, None] * other.norms, 1e-300)
-        return (product.real**2 + product.imag**2) / sizes
+        return _criterion(product, self.norms, other.norms)
 
 
 def _copies(
@@ -176,4 +227,10 @@ def _copies(
 
 def _products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return ``Re Σ X̄Y`` of each column."""
-    return np.sum(first.real * second.real + first.imag * second.imag, axis=0)
+    return np.sum(first.real * second.real + first.imag * second.imag, axis=-2)
+
+
+def _criterion(products: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return the modal assurance criterion from ``XᴴMY`` (…, k, k) and both norms (…, k)."""
+    sizes = np.maximum(first[..., :, None] * second[..., None, :], 1e-300)
+    return (products.real**2 + products.imag**2) / sizes
