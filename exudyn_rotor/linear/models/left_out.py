@@ -35,7 +35,7 @@ from exudyn_rotor.linear.models.finer_model import FinerModel, finer_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.inverse_iteration import moved, moved_together
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 
 _SMALL = 1e-5  # harmonics of a mode of unit length
 _FAR = 1e-3  # share of an eigenvalue by which it moves far
@@ -110,12 +110,27 @@ class LeftOut:
         at_once = max(1, _MOST_ENTRIES // len(self.finer.lacking) ** 2)
         for first in range(0, len(speeds), at_once):
             few = slice(first, first + at_once)
-            starts = [self._start(*each) for each in zip(speeds[few], modes[few], strict=True)]
-            if all(start.system.is_constant for start in starts):
-                result += _shifts_together(starts)
-            else:
-                result += [_shifts(start.moved, start.values, start.shapes) for start in starts]
+            systems = self.equations.constant_at(speeds[few]) if self.others is None else None
+            if systems is not None:
+                result += self._shifts_together(systems, modes[few])
+                continue
+            for speed, entry in zip(speeds[few], modes[few], strict=True):
+                start = self._start(speed, entry)
+                result.append(_shifts(start.moved, start.values, start.shapes))
         return result
+
+    def _shifts_together(
+        self, systems: ConstantSystems, modes: Sequence[FloquetModes]
+    ) -> list[np.ndarray]:
+        """Return the shifts in systems that do not change in time, in arrays of equal width."""
+        counts = [len(entry.values) for entry in modes]
+        values = np.zeros((len(modes), max(counts)), dtype=complex)
+        shapes = np.zeros((len(modes), len(self.finer.lacking), max(counts)), dtype=complex)
+        own = np.flatnonzero(~self.finer.lacking)
+        for i, (entry, count) in enumerate(zip(modes, counts, strict=True)):
+            values[i, :count], shapes[i, own, :count] = entry.values, entry.central
+        shifts = _shifts(partial(moved_together, systems), values, shapes)
+        return [row[:count] for row, count in zip(shifts, counts, strict=True)]
 
     def _start(self, speed: float, modes: FloquetModes) -> _Start:
         """Return the motions of the reduced model in the coordinates of the finer one."""
@@ -145,16 +160,3 @@ def _shifts(
     # not quite without that one's
     far = np.abs(found - values) > _FAR * np.abs(values)
     return move(found, shapes, far) - values
-
-
-def _shifts_together(starts: Sequence[_Start]) -> list[np.ndarray]:
-    """Return :func:`_shifts` of systems that do not change in time, in arrays of equal width."""
-    counts = [len(start.values) for start in starts]
-    values = np.zeros((len(starts), max(counts)), dtype=complex)
-    shapes = np.zeros((len(starts), starts[0].system.size, max(counts)), dtype=complex)
-    for i, (start, count) in enumerate(zip(starts, counts, strict=True)):
-        values[i, :count], shapes[i, :, :count] = start.values, start.shapes[0]
-    systems = [start.system for start in starts]
-    terms = np.array([[X[0] for X in (one.M, one.D, one.K)] for one in systems], dtype=complex)
-    shifts = _shifts(partial(moved_together, terms), values, shapes)
-    return [row[:count] for row, count in zip(shifts, counts, strict=True)]

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.spin import Spin, spin_of
 from exudyn_rotor.linear.models.supported_rotor import SupportedRotor
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem, Terms
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -187,6 +187,23 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
                     add_terms(terms, harmonics, U)
         return D, K, carried
 
+    @cached_property
+    def _varying(self) -> list[tuple[Support, np.ndarray]]:
+        """The supports that vary with the speed, with what they act on."""
+        both = zip(self.supports, self.supported_motions, strict=True)
+        return [(support, U) for support, U in both if support.varies]
+
+    def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        """Return the equations at spin speeds [rad/s]; None where they change in time."""
+        coupled = self.spin is not None and self.spin.coupled
+        if coupled or self._varying or any(set(terms) > {0} for terms in self._constant):
+            return super().constant_at(speeds)
+        D, K, carried = (terms.get(0, 0.0) for terms in self._constant)
+        speed = np.asarray(speeds)[:, None, None]
+        D = D + self.terms.damping(speed)
+        K = K + carried * speed + self.spin_terms.stiffness(speed)
+        return ConstantSystems(self.invariants.M[None], D, K)
+
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
         D, K, carried = (dict(terms) for terms in self._constant)
@@ -194,10 +211,9 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
             K[n] = K.get(n, 0.0) + speed * X
         D[0] = D[0] + self.terms.damping(speed)
         K[0] = K[0] + self.spin_terms.stiffness(speed)
-        for support, U in zip(self.supports, self.supported_motions, strict=True):
-            if support.varies:
-                for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
-                    add_terms(terms, harmonics, U)
+        for support, U in self._varying:
+            for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
+                add_terms(terms, harmonics, U)
         if self.spin is not None and self.spin.coupled:
             torsion = self.steady_torsion(speed)
             K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)

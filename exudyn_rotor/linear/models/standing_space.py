@@ -17,8 +17,8 @@ from exudyn_rotor.linear.models.turning import Turning
 from exudyn_rotor.linear.models.waves import HIGHEST
 from exudyn_rotor.linear.models.whole_space import Equations, WholeSpace
 from exudyn_rotor.linear.periodic.exponents import motions
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, constant_modes, stands_still
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, constant_modes
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,9 +38,11 @@ class StandingSpace(WholeSpace):
 
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return all modes."""
-        if stands_still(self.at(speed)):
+        if self.at(speed).stands_still:
             return super().modes(speed, tolerance)
-        found = self._turned(constant_modes([self.standing.at(speed)])[0], speed)
+        found = self._turned(
+            constant_modes(ConstantSystems.of([self.standing.at(speed)]))[0], speed
+        )
         negative = found.values.imag < 0.0
         values = np.where(negative, found.values.conj(), found.values)
         vectors = np.where(negative, found.vectors[::-1].conj(), found.vectors)
@@ -57,7 +59,7 @@ class StandingSpace(WholeSpace):
     ) -> tuple[FloquetModes, PeriodicSystem]:
         """Return all exponents with their motions, and the equations."""
         system = self.at(speed)
-        if method != "auto" or stands_still(system):
+        if method != "auto" or system.stands_still:
             return super().motions(speed, method, tolerance, shapes)
         standing = self.standing.at(speed)
         if self.others is not None:

@@ -13,10 +13,9 @@ from exudyn_rotor.linear.periodic.floquet_modes import (
     FloquetModes,
     constant_modes,
     floquet_modes,
-    stands_still,
 )
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 
 
 class Equations(Protocol):
@@ -24,6 +23,9 @@ class Equations(Protocol):
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
+
+    def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        """Return the equations at spin speeds [rad/s]; None where they change in time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,17 +68,11 @@ class WholeSpace:
 
     def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
         """Return all modes at all speeds at once, which is faster; None where they are periodic."""
-        systems: list[PeriodicSystem] = []
-        for speed in speeds:
-            systems.append(self.at(speed))
-            if not stands_still(systems[-1]):
-                return None
-        first = systems[0]
-        alike = all(
-            system.rounding == first.rounding and np.array_equal(system.M[0], first.M[0])
-            for system in systems[1:]
-        )
-        return constant_modes(systems) if alike else None
+        if self.others is None:
+            systems = self.equations.constant_at(speeds)
+        else:
+            systems = ConstantSystems.of(map(self.at, speeds))
+        return None if systems is None or len(systems.M) > 1 else constant_modes(systems)
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
@@ -101,6 +97,10 @@ class WholeSpace:
 
 class InAllCoordinates:
     """Base of models that are solved in all coordinates."""
+
+    def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        """Return the equations at spin speeds [rad/s]; None where they change in time."""
+        return ConstantSystems.of(map(self.at, speeds))
 
     def space(
         self,
@@ -127,3 +127,6 @@ class _Tabulated:
 
     def at(self, speed: float) -> PeriodicSystem:
         return self.systems[float(speed)]
+
+    def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        return ConstantSystems.of(map(self.at, speeds))

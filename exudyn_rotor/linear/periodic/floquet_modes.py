@@ -7,7 +7,6 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -21,7 +20,7 @@ from exudyn_rotor.linear.periodic.eigenvalues import (
 )
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 
 # distance of the exponents of two members of a Floquet family, as a share of their step
 _SAME_FAMILY = 1e-3
@@ -78,25 +77,19 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     ValueError
         If modes are lost, or the harmonics do not die away.
     """
-    if stands_still(system):
-        return constant_modes([system])[0]
+    if system.stands_still:
+        return constant_modes(ConstantSystems.of([system]))[0]
     found = solve_hill(system, partial(_one_of_each_pair, speed=system.speed), tolerance)
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
 
 
-def stands_still(system: PeriodicSystem) -> bool:
-    """Return True where the coefficients of a system do not change in time."""
-    return system.is_constant or system.speed == 0.0
-
-
-def constant_modes(systems: Sequence[PeriodicSystem]) -> list[FloquetModes]:
-    """Return the motions of systems that do not change in time; they share mass and rounding."""
-    M, D, K = zip(*(system.matrices(0.0) for system in systems), strict=True)
+def constant_modes(systems: ConstantSystems) -> list[FloquetModes]:
+    """Return the motions of systems that do not change in time and have one mass matrix."""
     return [
         FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
         for values, vectors, resolution, bounds in quadratic_modes(
-            M[0], np.array(D), np.array(K), systems[0].rounding
+            systems.M[0], systems.D, systems.K, systems.rounding
         )
     ]
 

@@ -8,7 +8,11 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic import harmonic_chain
 from exudyn_rotor.linear.periodic.harmonics import adjoint_slopes, convolved, slopes
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import (
+    ConstantSystems,
+    PeriodicSystem,
+    times,
+)
 
 # relative distance from an eigenvalue that keeps its matrix invertible
 OFF_ROOT = 1e-9
@@ -71,14 +75,14 @@ def moved(
 
 
 def moved_together(
-    terms: np.ndarray, values: np.ndarray, shapes: np.ndarray, wanted: np.ndarray
+    systems: ConstantSystems, values: np.ndarray, shapes: np.ndarray, wanted: np.ndarray
 ) -> np.ndarray:
     """Return the eigenvalues of :func:`moved` of several systems that do not change in time.
 
     Parameters
     ----------
-    terms : ndarray, shape (s, 3, k, k), complex
-        M, D and K.
+    systems : ConstantSystems
+        s of them.
     values : ndarray, shape (s, j), complex
         λ to begin with.
     shapes : ndarray, shape (s, k, j), complex
@@ -86,27 +90,36 @@ def moved_together(
     wanted : ndarray of bool, shape (s, j)
         Which λ to move; the others are returned as they are.
     """
-    shifted, size = values * (1.0 + OFF_ROOT), terms.shape[-1]
+    shifted, size = values * (1.0 + OFF_ROOT), systems.D.shape[-1]
     rates = shifted[:, None]
 
     def inertia_and_slopes(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        inertia = terms[:, 0] @ x
-        return inertia, 2.0 * rates * inertia + terms[:, 1] @ x
+        inertia = times(systems.M, x)
+        return inertia, 2.0 * rates * inertia + times(systems.D, x)
 
     forces, loads = inertia_and_slopes(shapes)
-    powers = np.stack([shifted**2, shifted, np.ones_like(shifted)], axis=-1)
     answers = np.zeros((2, *shapes.shape), dtype=complex)
-    for i, j in np.argwhere(wanted):
-        dynamic = (powers[i, j] @ terms[i].reshape(3, -1)).reshape(size, size)
-        try:
-            answers[:, i, :, j] = harmonic_chain.on_both_sides(
-                dynamic, loads[i, :, j], forces[i, :, j]
-            )
-        except np.linalg.LinAlgError:
-            answers[:, i, :, j] = np.nan
+    matrices = zip(np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K, strict=True)
+    for i, (columns, each) in enumerate(zip(map(np.flatnonzero, wanted), matrices, strict=True)):
+        dynamic = _dynamic(np.stack(each).reshape(3, -1), shifted[i, columns])
+        for j, matrix in zip(columns, dynamic.reshape(-1, size, size), strict=True):
+            try:
+                answers[:, i, :, j] = harmonic_chain.on_both_sides(
+                    matrix, loads[i, :, j], forces[i, :, j]
+                )
+            except np.linalg.LinAlgError:
+                answers[:, i, :, j] = np.nan
     z, w = answers
     a, b, c = (np.sum(w.conj() * X, axis=1) for X in (*inertia_and_slopes(z), loads))
     return np.where(wanted, shifted + nearest_root(a, b, c), values)
+
+
+def _dynamic(terms: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Return ``λ²M + λD + K`` at the rates λ (j,), shape (j, n), of real terms (3, n)."""
+    powers = np.stack([rates**2, rates, np.ones_like(rates)], axis=1)
+    result = np.empty((len(rates), terms.shape[1]), dtype=complex)
+    result.real, result.imag = powers.real @ terms, powers.imag @ terms
+    return result
 
 
 def settled(

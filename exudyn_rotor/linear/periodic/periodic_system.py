@@ -7,7 +7,7 @@ with the matrices given by their Fourier terms in θ; constant where only the te
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import gcd
@@ -71,6 +71,11 @@ class PeriodicSystem:
         return gcd(*(n for terms in (self.M, self.D, self.K) for n in terms))
 
     @property
+    def stands_still(self) -> bool:
+        """True where the coefficients do not change in time."""
+        return self.is_constant or self.speed == 0.0
+
+    @property
     def base(self) -> float:
         """Frequency pΩ of the coefficients [rad/s]; 0 where they are constant."""
         return self.step * self.speed
@@ -105,6 +110,43 @@ class PeriodicSystem:
         )
         H = None if self.H is None else basis.T @ self.H @ basis
         return PeriodicSystem(self.speed, *parts, H, self.rounding)
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantSystems:
+    """Systems at several speeds whose coefficients do not change in time.
+
+    Attributes
+    ----------
+    M : ndarray, shape (1, k, k) or (s, k, k)
+        One matrix where all systems have the same.
+    D, K : ndarray, shape (s, k, k)
+    rounding : float
+        See :class:`PeriodicSystem`.
+    """
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    rounding: float = EPSILON
+
+    @classmethod
+    def of(cls, systems: Iterable[PeriodicSystem]) -> ConstantSystems | None:
+        """Return systems together; None where one changes in time, or their rounding differs."""
+        matrices, roundings = [], set()
+        for system in systems:
+            roundings.add(system.rounding)
+            if not system.stands_still or len(roundings) > 1:
+                return None
+            matrices.append(system.matrices(0.0))
+        M, D, K = (np.array(each) for each in zip(*matrices, strict=True))
+        return cls(M[:1] if np.all(M[0] == M) else M, D, K, *roundings)
+
+
+def times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return real matrices (…, n, k) times complex vectors (…, k, j), by real products."""
+    parts = np.ascontiguousarray(vectors, dtype=complex).view(float)
+    return (matrices @ parts).view(complex)
 
 
 def fold(exponents: np.ndarray, base: float) -> np.ndarray:
