@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from threading import Lock, local
 from typing import TypeVar
 
@@ -98,6 +98,23 @@ def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Re
             for each in helping:
                 each.result()
     return results
+
+
+@contextmanager
+def meanwhile(function: Callable[..., Result], *arguments: object) -> Iterator[Callable[[], Result]]:
+    """Let another thread compute a function of arrays, where BLAS may use several.
+
+    What the context gives returns the result when it is called.
+    """
+    with one_thread() as count:
+        if count == 1 or hasattr(_HERE, "helps"):
+            yield cache(partial(function, *arguments))
+            return
+        made = _helpers().submit(function, *arguments)
+        try:
+            yield made.result
+        finally:
+            wait([made])
 
 
 def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -189,6 +189,7 @@ def test_columns_ascend_and_tracked_columns_follow_the_modes(frame):
     seen = {"rotor": result.frequencies_rotor, "inertial": result.frequencies_inertial}
     assert np.all(np.diff(seen[frame], axis=1) >= -1e-9 * seen[frame][:, 1:])
     assert result.plot().get_ylabel() == f"frequency in the {frame} frame [Hz]"
+    assert np.all(result.continued)  # as conjugates where a frequency passes zero
     tracked = result.tracked()
     for column in range(3):
         words = set(tracked.whirl[1:, column])

@@ -1,14 +1,14 @@
 """One thread of BLAS for small dense problems."""
 
 from concurrent.futures import ThreadPoolExecutor
-from threading import Barrier
+from threading import Barrier, get_ident
 
 import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
 from exudyn_rotor.sweep import sweep
-from exudyn_rotor.threads import eig, one_thread, shared
+from exudyn_rotor.threads import eig, meanwhile, one_thread, shared
 
 
 def counts(_value: float = 0.0) -> set[int]:
@@ -70,3 +70,16 @@ def test_shared_work_is_done_in_order_by_two_threads_at_once():
     assert counts() == {2}
     with pytest.raises(ZeroDivisionError):
         shared(lambda number: 1 / number, [1, 0, 2, 0])
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_meanwhile_computes_once_and_passes_errors_on(threads):
+    found = []
+    with ThreadpoolController().limit(limits=threads, user_api="blas"):
+        with meanwhile(lambda value: found.append(get_ident()) or value, 3.0) as result:
+            assert counts() == {1}
+            assert (result(), result()) == (3.0, 3.0)
+        assert counts() == {threads}
+        with pytest.raises(ZeroDivisionError), meanwhile(divmod, 1, 0) as result:
+            result()
+    assert [one == get_ident() for one in found] == [threads == 1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +29,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.threads import meanwhile, one_thread
 
 _FULL_MODES = 10
 _SLOW = 1.0  # rad/s
@@ -154,11 +154,13 @@ def campbell(
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:
         space = space.prepared(values)
-    content, computed = WhirlContent.of(model), model.size
-    if not model.gives_all:
-        fastest = values[np.argmax(np.abs(values))]
-        computed = count if not seen else _computed(space, count, fastest, tolerance, content)
-    modes_at = _modes_at(space, values, tolerance, executor, progress)
+    with meanwhile(WhirlContent.from_points, WhirlContent.points_of(model)) as content_made:
+        computed = model.size if model.gives_all else count
+        if seen and not model.gives_all:
+            fastest = values[np.argmax(np.abs(values))]
+            computed = _computed(space, count, fastest, tolerance, content_made())
+        modes_at = _modes_at(space, values, tolerance, executor, progress)
+        content = content_made()
     solved = _classified(modes_at, values, content, computed, seen)
     tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count, seen)
@@ -234,7 +236,9 @@ def _classified(
     order = np.lexsort((key, ~moves & (growth < -resolution)))
     solved = zip(modes, vectors, inertial, codes, diameters, order, strict=True)
     return [
-        _Solved(replace(entry, vectors=shapes), *found).columns(chosen)
+        _Solved(
+            FloquetModes(entry.values, shapes, entry.orders, entry.resolution, entry.bounds), *found
+        ).columns(chosen)
         for entry, shapes, *found, chosen in solved
     ]
 

@@ -31,6 +31,7 @@ from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 # of the largest rigid motion: nodes on one line are not displaced by a rotation about it
@@ -98,7 +99,8 @@ class Spin:
         """Return the spin on its supports."""
         turned = [U @ motion for U in motions]
         offset = axes_of(axis).T @ invariants.center
-        at_arm = [u[:3] + np.cross(u[3:], offset) for u in turned]  # by rotation about the axis
+        # by rotation about the axis
+        at_arm = [u[:3] - skew(offset) @ u[3:] for u in turned]
         probed = [_stiffnesses(support) for support in supports]
         turning = [support.frame == "rotor" for support in supports]
         coupled = _held_off_center(
@@ -112,7 +114,7 @@ class Spin:
         twisted = any(np.any(K[5]) for each in probed for K in each)
         unmoved = np.zeros(6)
         shifts = tuple(unmoved if coupled else np.r_[-u[:3], 0.0, 0.0, 0.0] for u in turned)
-        bends = tuple(u[5] * np.cross([0.0, 0.0, 1.0], u[:3]) for u in turned)
+        bends = tuple(u[5] * np.array([-u[1], u[0], 0.0]) for u in turned)
         return cls(motion, momentum, shifts, bends, coupled, not (coupled or twisted))
 
     def amount(self, X: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON, times
 from exudyn_rotor.threads import eig
 
 # so large a left vector is that of a defective eigenvalue
@@ -115,9 +115,10 @@ class Companion:
         # real and imaginary parts of conjugate pairs, which stand side by side, +i first
         rows = _inverse(np.where(_transposed(sense) < 0.0, -z.imag, z.real))
         rows = np.clip(rows, -_LARGE, _LARGE)
-        real, imaginary = np.roll(rows, 1, axis=-2), np.roll(rows, -1, axis=-2)
-        pairs = 0.5 * np.where(sense > 0.0, rows - 1j * imaginary, real + 1j * rows)
-        return np.where(sense == 0.0, rows, pairs)
+        share, left = np.where(sense == 0.0, 1.0, 0.5), np.empty(rows.shape, dtype=complex)
+        left.real = share * np.where(sense < 0.0, np.roll(rows, 1, axis=-2), rows)
+        left.imag = -0.5 * sense * np.where(sense > 0.0, np.roll(rows, -1, axis=-2), rows)
+        return left
 
     @cached_property
     def _amounts(self) -> np.ndarray:
@@ -138,7 +139,8 @@ class Companion:
     @cached_property
     def _states(self) -> tuple[np.ndarray, np.ndarray]:
         """Unit vectors (x, λx/s), and the length of those that belong to unit vectors z."""
-        displacement, rates = self.axes @ self._amounts, self.values() / self.scale[..., None]
+        displacement = times(self.axes, self._amounts)
+        rates = self.values() / self.scale[..., None]
         lengths = np.linalg.norm(displacement, axis=-2) * np.hypot(1.0, np.abs(rates))
         displacement = displacement / lengths[..., None, :]
         states = np.concatenate([displacement, displacement * rates[..., None, :]], axis=-2)

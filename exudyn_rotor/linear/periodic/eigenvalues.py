@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.periodic.companion import Companion
-from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON, times
 
 # a double root of a defective eigenvalue splits by the root of the rounding error
 _SPLIT = 4.0 * np.sqrt(EPSILON)
@@ -75,7 +75,7 @@ def quadratic_modes(
     values = np.array([merged(*each) for each in parts])
     chosen = _one_of_each_pair(values, size)
     values, bounds = (np.take_along_axis(X, chosen, axis=1) for X in (values, bounds))
-    vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2).astype(complex)
+    vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
     doubtful = _errors_of_vectors(found, chosen, vectors, M, D, K) > _CLEAR
     doubtful[values == 0.0] = False
@@ -104,8 +104,8 @@ def _errors_of_vectors(
     `found` (s, 2k), or zero.
     """
     values = np.take_along_axis(found, chosen, axis=1)
-    rates, inertia = values[:, None, :], M @ vectors
-    residual = rates * (rates * inertia + D @ vectors) + K @ vectors
+    rates, inertia = values[:, None, :], times(M, vectors)
+    residual = rates * (rates * inertia + times(D, vectors)) + times(K, vectors)
     apart = np.abs(values[:, :, None] - found[:, None, :])
     np.put_along_axis(apart, chosen[:, :, None], np.inf, axis=2)
     sizes = np.abs(values)

@@ -7,7 +7,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -58,8 +58,8 @@ class FloquetModes:
     def columns(self, chosen: np.ndarray) -> FloquetModes:
         """Return some of the modes."""
         bounds = None if self.bounds is None else self.bounds[chosen]
-        vectors = self.vectors[:, :, chosen]
-        return replace(self, values=self.values[chosen], vectors=vectors, bounds=bounds)
+        values, vectors = self.values[chosen], self.vectors[:, :, chosen]
+        return FloquetModes(values, vectors, self.orders, self.resolution, bounds)
 
 
 def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> FloquetModes:

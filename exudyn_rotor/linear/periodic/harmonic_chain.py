@@ -30,12 +30,8 @@ def solved(
 ) -> np.ndarray:
     """Return ``H(λ)⁻¹ F`` and ``H(λ)⁻ᴴ G`` of harmonics F and G (h, k, j), shape (2, h, k, j).
 
-    The harmonics `orders` (h,) go from −N to N; of each motion λ is one of `values` (j,).
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If a matrix is singular.
+    The harmonics `orders` (h,) go from −N to N; of each motion λ is one of `values` (j,). NaN where
+    a matrix is singular.
     """
     # axes: H and Hᴴ, sides above and below the middle, motions, rows, columns
     given = np.stack([loads, forces])
@@ -73,28 +69,24 @@ def solved(
 
 def _all_on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Return ``S⁻¹ F`` and ``S⁻ᴴ G`` of matrices S (…, n, n) and loads F, G (2, …, n, r)."""
-    result = np.empty_like(loads)
-    for place in np.ndindex(matrices.shape[:-2]):
-        at = slice(None), *place
-        result[at] = on_both_sides(matrices[place], *loads[at])
-    return result
+    each = loads.reshape(2, -1, *loads.shape[-2:]).swapaxes(0, 1)
+    found = on_both_sides(matrices.reshape(-1, *matrices.shape[-2:]), each)
+    return found.swapaxes(0, 1).reshape(loads.shape)
 
 
-def on_both_sides(
-    matrix: np.ndarray, load: np.ndarray, force: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return ``S⁻¹ f`` and ``S⁻ᴴ g``; a complex matrix S in C order is overwritten.
+def on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Return ``S⁻¹ F`` and ``S⁻ᴴ G`` of matrices S (m, n, n) and loads F, G (m, 2, n, r).
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If S is singular.
+    NaN where S is singular. Complex matrices in C order are overwritten.
     """
-    # LAPACK itself: one factor, of Sᵀ in its order, for both, and scipy's checks take longer
-    lu, pivots, singular = zgetrf(matrix.T, overwrite_a=True)
-    if singular:
-        raise np.linalg.LinAlgError("singular matrix")
-    return zgetrs(lu, pivots, load, trans=1)[0], zgetrs(lu, pivots, force.conj())[0].conj()
+    result = np.full(loads.shape, np.nan, dtype=complex)
+    for matrix, (load, force), answers in zip(matrices, loads, result, strict=True):
+        # LAPACK itself: one factor, of Sᵀ in its order, for both, and scipy's checks take longer
+        lu, pivots, singular = zgetrf(matrix.T, overwrite_a=True)
+        if not singular:
+            answers[0] = zgetrs(lu, pivots, load, trans=1)[0]
+            answers[1] = zgetrs(lu, pivots, force.conj())[0].conj()
+    return result
 
 
 def _groups(count: int, reach: int) -> list[np.ndarray]:

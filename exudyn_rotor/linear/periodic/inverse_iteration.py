@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 import numpy as np
 
 from exudyn_rotor.linear.periodic import harmonic_chain
@@ -61,13 +59,12 @@ def moved(
     shifted = values * (1.0 + OFF_ROOT)
     forces = convolved(system.M, shapes, orders) if forces is None else forces
     loads = slopes(system, shifted, shapes, orders)
-    answers = np.full((2, *loads.shape), np.nan, dtype=complex)
+    answers = np.empty((2, *loads.shape), dtype=complex)
     at_once = max(1, _MOST_ENTRIES // (len(orders) * system.size**2))
     for start in range(0, len(values), at_once):
         few = slice(start, start + at_once)
         given = shifted[few], loads[..., few], forces[..., few]
-        with suppress(np.linalg.LinAlgError):  # singular
-            answers[..., few] = harmonic_chain.solved(system, orders, *given)
+        answers[..., few] = harmonic_chain.solved(system, orders, *given)
     z, w = answers
     square, linear = convolved(system.M, z, orders), slopes(system, shifted, z, orders)
     a, b, c = (np.sum(w.conj() * X, axis=(0, 1)) for X in (square, linear, loads))
@@ -90,7 +87,7 @@ def moved_together(
     wanted : ndarray of bool, shape (s, j)
         Which λ to move; the others are returned as they are.
     """
-    shifted, size = values * (1.0 + OFF_ROOT), systems.D.shape[-1]
+    shifted = values * (1.0 + OFF_ROOT)
     rates = shifted[:, None]
 
     def inertia_and_slopes(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -98,28 +95,25 @@ def moved_together(
         return inertia, 2.0 * rates * inertia + times(systems.D, x)
 
     forces, loads = inertia_and_slopes(shapes)
-    answers = np.zeros((2, *shapes.shape), dtype=complex)
-    matrices = zip(np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K, strict=True)
-    for i, (columns, each) in enumerate(zip(map(np.flatnonzero, wanted), matrices, strict=True)):
-        dynamic = _dynamic(np.stack(each).reshape(3, -1), shifted[i, columns])
-        for j, matrix in zip(columns, dynamic.reshape(-1, size, size), strict=True):
-            try:
-                answers[:, i, :, j] = harmonic_chain.on_both_sides(
-                    matrix, loads[i, :, j], forces[i, :, j]
-                )
-            except np.linalg.LinAlgError:
-                answers[:, i, :, j] = np.nan
-    z, w = answers
+    both = np.stack([loads, forces]).transpose(1, 3, 0, 2)[..., None]
+    answers = np.zeros_like(both)
+    dynamic = _dynamic(systems, shifted, wanted)
+    answers[wanted] = harmonic_chain.on_both_sides(dynamic, both[wanted])
+    z, w = answers[..., 0].transpose(2, 0, 3, 1)
     a, b, c = (np.sum(w.conj() * X, axis=1) for X in (*inertia_and_slopes(z), loads))
     return np.where(wanted, shifted + nearest_root(a, b, c), values)
 
 
-def _dynamic(terms: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Return ``λ²M + λD + K`` at the rates λ (j,), shape (j, n), of real terms (3, n)."""
-    powers = np.stack([rates**2, rates, np.ones_like(rates)], axis=1)
-    result = np.empty((len(rates), terms.shape[1]), dtype=complex)
-    result.real, result.imag = powers.real @ terms, powers.imag @ terms
-    return result
+def _dynamic(systems: ConstantSystems, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return ``λ²M + λD + K`` of systems at those λ (s, j) that are wanted, by real products."""
+    result = np.empty((np.count_nonzero(wanted), systems.D[0].size), dtype=complex)
+    powers = np.stack([values**2, values, np.ones_like(values)], axis=-1)[wanted]
+    ends = np.cumsum(np.count_nonzero(wanted, axis=1))
+    terms = np.stack([np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K], axis=1)
+    for few, each in zip(map(slice, ends - np.diff(ends, prepend=0), ends), terms, strict=True):
+        each = each.reshape(3, -1)
+        result.real[few], result.imag[few] = powers.real[few] @ each, powers.imag[few] @ each
+    return result.reshape(-1, *systems.D.shape[1:])
 
 
 def settled(
