@@ -164,9 +164,9 @@ LINEAR = [
         "linear/modal/tracking.py",
         "test_campbell_frames.py::test_columns_ascend_and_tracked_columns_follow_the_modes",
         (
-            "conjugate motions keep the sign of the frequency",
-            "[frequencies[1:], -frequencies[1:]]",
-            "[frequencies[1:], frequencies[1:]]",
+            "conjugate motions are not looked at",
+            "(vectors[:-1].conj(), vectors[:-1])",
+            "(vectors[:-1].conj(),) * 2",
         ),
     ),
     *mutations(
