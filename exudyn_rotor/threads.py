@@ -101,7 +101,9 @@ def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Re
 
 
 @contextmanager
-def meanwhile(function: Callable[..., Result], *arguments: object) -> Iterator[Callable[[], Result]]:
+def meanwhile(
+    function: Callable[..., Result], *arguments: object
+) -> Iterator[Callable[[], Result]]:
     """Let another thread compute a function of arrays, where BLAS may use several.
 
     What the context gives returns the result when it is called.
