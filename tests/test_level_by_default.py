@@ -1,4 +1,4 @@
-"""The level of stiffening that nobody chose, and the estimate of what it leaves out."""
+"""The default level of stiffening, and the estimate of what it leaves out."""
 
 import warnings
 from functools import cache

@@ -6,7 +6,7 @@ class AssumptionWarning(UserWarning):
 
     Examples
     --------
-    An error instead, for scripts that nobody watches:
+    An error instead:
 
     >>> import warnings
     >>> from exudyn_rotor import AssumptionWarning

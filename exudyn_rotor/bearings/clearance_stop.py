@@ -154,17 +154,7 @@ class ClearanceStop(Bearing):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping of the open stop: zeros, each (2, 2).
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], which plays no part.
-        load : array_like, shape (2,), optional
-            Of no influence.
-
-        Raises
-        ------
-        TypeError, ValueError
-            For bad input.
+        Parameters and errors are those of :meth:`equilibrium`.
         """
         self.equilibrium(speed, load)
         return np.zeros((2, 2)), np.zeros((2, 2))

@@ -108,17 +108,7 @@ class JournalBearing(Bearing):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness [N/m] and damping [N s/m] about the equilibrium, each (2, 2).
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError, ArithmeticError
-            As :meth:`equilibrium`.
+        Parameters and errors are those of :meth:`equilibrium`.
         """
         return self._state(speed, load).coefficients()
 

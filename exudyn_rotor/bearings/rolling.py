@@ -214,17 +214,7 @@ class RollingBearing(Bearing):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return mean stiffness [N/m] over an element's passage, and damping [N s/m], (2, 2).
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s], which plays no part.
-        load : array_like, shape (2,), optional
-            On the inner ring [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`equilibrium`.
+        Parameters and errors are those of :meth:`equilibrium`.
         """
         passage = 2.0 * pi / (self.count * self.cage_ratio)
         angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES

@@ -162,17 +162,7 @@ class ShortJournalBearing(ShortFilmBearing):
 
         The derivatives of (2) along the line of centres and across it, turned into (n1, n2).
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`eccentricity_ratio`.
+        Parameters and errors are those of :meth:`equilibrium`.
         """
         ratio = self.eccentricity_ratio(speed, load)
         sense = -1.0 if speed < 0.0 else 1.0
@@ -194,17 +184,7 @@ class ShortJournalBearing(ShortFilmBearing):
     def power_loss(self, speed: float, load: ArrayLike | None = None) -> float:
         """Return the friction (3) of the journal at rest under a static load, −T Ω [W].
 
-        Parameters
-        ----------
-        speed : float
-            Spin speed [rad/s].
-        load : array_like, shape (2,), optional
-            On the journal [N]; that of the bearing by default.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`eccentricity_ratio`.
+        Parameters and errors are those of :meth:`equilibrium`.
         """
         place = self.equilibrium(speed, load).tolist()
         return -speed * self._law_with_torque(*place, 0.0, 0.0, 0.0, speed)[2]

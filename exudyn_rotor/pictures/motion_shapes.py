@@ -122,7 +122,10 @@ class MotionShapes(Result):
         return "\n".join(lines)
 
     def displacement(self, index: int, time: float) -> np.ndarray:
-        """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3)."""
+        """Return the displacement of all nodes at a time [s], rotor frame, mesh axes, (n, 3).
+
+        `index` counts the motions, as :attr:`labels` does.
+        """
         index = checks.count(index, "index", most=len(self.labels) - 1)
         time = checks.number(time, "time", "s")
         turns = self.rates[index] + self.orders * self.speeds[index]

@@ -60,6 +60,9 @@ class _State:
 class Motion:
     """Equations of motion ``M(q) q̈ = f(t, q, q̇)`` of one formulation.
 
+    Methods take the time t [s], and the unknowns q and their rates q_t, shape (size,): translations
+    [m], the angle θ [rad], modal coordinates.
+
     Parameters
     ----------
     invariants : Invariants
@@ -147,13 +150,9 @@ class Motion:
 
     def _free_directions(self, plane: np.ndarray | None) -> np.ndarray:
         count = self.formulation.translation_count
-        if count == 3:
-            return np.eye(3)
-        if plane is None:
-            plane = self.orientation @ self._axis.plane
-        if count == 2:
-            return plane
-        return np.zeros((3, 0))
+        if count != 2:
+            return np.eye(3)[:, :count]
+        return self.orientation @ self._axis.plane if plane is None else plane
 
     @cached_property
     def static_unbalance(self) -> np.ndarray:

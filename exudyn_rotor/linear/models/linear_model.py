@@ -165,6 +165,6 @@ def warn_of_structural_damping(model: LinearModel, what: str) -> None:
 
 
 def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
-    """Warn where the level 'tilt', which nobody asked for, errs much at a speed [rad/s]."""
+    """Warn where the level 'tilt', taken by default, errs much at a speed [rad/s]."""
     if isinstance(model, LinearRotor | ExtendedRotor):
         warn_of_left_out(model.invariants, speed, user_level() + 1)
