@@ -14,32 +14,24 @@ from exudyn_rotor.solid import matrices
 _TENSOR = (0, 5, 4, 5, 1, 3, 4, 3, 2)
 
 
-def nodal_space(mesh: ngs.Mesh, order: int) -> ngs.FESpace:
-    """Return the scalar space whose degrees of freedom are the mesh nodes."""
-    return ngs.NodalFESpace(mesh, order=2) if order == 2 else ngs.H1(mesh, order=1)
+def nodal_space(mesh: ngs.Mesh, order: int, dim: int = 1) -> ngs.FESpace:
+    """Return the space whose degrees of freedom are the mesh nodes, `dim` of them at each."""
+    if order == 2:
+        return ngs.NodalFESpace(mesh, order=2, dim=dim)
+    return ngs.H1(mesh, order=1, dim=dim)
 
 
 def assembled(form: ngs.BilinearForm) -> sp.csr_array:
-    """Return the matrix of a form as arrays of its own."""
+    """Return the matrix of a form as arrays of its own, coordinates in the order x0 y0 z0 x1 …."""
     with ngs.TaskManager():
         form.Assemble()
     # the arrays belong to the form, which ends here
-    data, columns, ends = (array.NumPy() for array in form.mat.CSR())
+    dim, data = form.space.dim, form.mat.AsVector().FV().NumPy()
     # half the memory of long ones
-    indices = (array.astype(np.int32) for array in (columns, ends))
-    return sp.csr_array((data.copy(), *indices), shape=form.mat.shape)
-
-
-def node_by_node(matrix: sp.csr_array) -> sp.csr_array:
-    """Return `matrix` reordered from x0 x1 … y0 y1 … z0 z1 … to x0 y0 z0 x1 …."""
-    count = matrix.shape[0] // 3
-    order = np.arange(3 * count, dtype=np.int32).reshape(3, count).T.ravel()
-    place = np.empty_like(order)
-    place[order] = np.arange(3 * count, dtype=np.int32)
-    rows = matrix[order]
-    reordered = sp.csr_array((rows.data, place[rows.indices], rows.indptr), shape=matrix.shape)
-    reordered.sort_indices()
-    return reordered
+    columns, ends = (array.NumPy().astype(np.int32) for array in form.mat.CSR()[1:])
+    if dim == 1:
+        return sp.csr_array((data.copy(), columns, ends), shape=form.mat.shape)
+    return sp.bsr_array((data.reshape(-1, dim, dim), columns, ends)).tocsr()
 
 
 def assemble_mass(space: ngs.FESpace, densities: np.ndarray) -> sp.csr_array:
@@ -47,16 +39,16 @@ def assemble_mass(space: ngs.FESpace, densities: np.ndarray) -> sp.csr_array:
     u, v = space.TnT()
     form = ngs.BilinearForm(space)
     form += ngs.CoefficientFunction(list(densities)) * u * v * ngs.dx
-    return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
+    return matrices.in_all_directions(assembled(form))
 
 
-def assemble_stiffness(space: ngs.FESpace, lame: np.ndarray) -> sp.csr_array:
+def assemble_stiffness(mesh: ngs.Mesh, order: int, lame: np.ndarray) -> sp.csr_array:
     """Return the stiffness matrix of linear isotropic elasticity."""
-    displacement = space**3
-    u, v = displacement.TnT()
-    form = ngs.BilinearForm(displacement)
+    space = nodal_space(mesh, order, dim=3)
+    u, v = space.TnT()
+    form = ngs.BilinearForm(space)
     form += ngs.InnerProduct(_hooke(ngs.Sym(ngs.Grad(u)), lame), ngs.Sym(ngs.Grad(v))) * ngs.dx
-    return node_by_node(assembled(form))
+    return assembled(form)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +104,8 @@ class NgsolveElements:
     def stiffness_matrix(self, factors: np.ndarray) -> sp.csr_array:
         """Return the stiffness matrix (3n, 3n) with a factor for every region."""
         self._check_mesh()
-        space = nodal_space(self.mesh, self.order)
-        return self._without_held(assemble_stiffness(space, factors[:, None] * self.lame))
+        lame = factors[:, None] * self.lame
+        return self._without_held(assemble_stiffness(self.mesh, self.order, lame))
 
     def holding(self, nodes: np.ndarray) -> NgsolveElements:
         """Return the elements with more nodes clamped."""
@@ -192,14 +184,14 @@ class NgsolveElements:
         St. Venant–Kirchhoff elasticity in the direction u⁰, from ``W = ½ E : C : E`` with
         ``E = sym ∇u + ½ ∇uᵀ∇u``. Parameters as there.
         """
-        # ngs.grad has a row per component; ngs.Grad is its transpose in this space
+        # with a row per component: ngs.grad in product spaces, ngs.Grad in spaces of vectors
         static = ngs.grad(self._displacement(displacement))
-        space = nodal_space(self.mesh, self.order) ** 3
-        u, v = (ngs.grad(function) for function in space.TnT())
+        space = nodal_space(self.mesh, self.order, dim=3)
+        u, v = (ngs.Grad(function) for function in space.TnT())
         form = ngs.BilinearForm(space)
         form += ngs.InnerProduct(self._hooke(ngs.Sym(u)), ngs.Sym(static.trans * v)) * ngs.dx
         form += ngs.InnerProduct(self._hooke(ngs.Sym(static.trans * u)), ngs.Sym(v)) * ngs.dx
-        return self._without_held(node_by_node(assembled(form)))
+        return self._without_held(assembled(form))
 
     def squared_displacement_stiffness(self, displacement: np.ndarray) -> sp.csr_array:
         """Return ``∫ E₁(v) : C : E₁(u) dV``, the tangent's part of second order in u⁰.
@@ -207,11 +199,11 @@ class NgsolveElements:
         Symbols and parameters of :meth:`initial_displacement_stiffness`.
         """
         static = ngs.grad(self._displacement(displacement))
-        space = nodal_space(self.mesh, self.order) ** 3
-        u, v = (ngs.Sym(static.trans * ngs.grad(function)) for function in space.TnT())
+        space = nodal_space(self.mesh, self.order, dim=3)
+        u, v = (ngs.Sym(static.trans * ngs.Grad(function)) for function in space.TnT())
         form = ngs.BilinearForm(space)
         form += ngs.InnerProduct(self._hooke(u), v) * ngs.dx
-        return self._without_held(node_by_node(assembled(form)))
+        return self._without_held(assembled(form))
 
     def _of_stress(self, stress: ngs.CoefficientFunction) -> sp.csr_array:
         """Return K_G of a stress tensor; it acts on each direction by itself, the same on all."""
@@ -219,7 +211,7 @@ class NgsolveElements:
         u, v = space.TnT()
         form = ngs.BilinearForm(space)
         form += ngs.InnerProduct(stress * ngs.grad(u), ngs.grad(v)) * ngs.dx
-        return sp.csr_array(sp.kron(assembled(form), sp.eye_array(3), format="csr"))
+        return matrices.in_all_directions(assembled(form))
 
     def _hooke(self, strain: ngs.CoefficientFunction) -> ngs.CoefficientFunction:
         return _hooke(strain, self.lame)

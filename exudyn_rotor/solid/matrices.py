@@ -137,6 +137,21 @@ def without_nodes(matrix: sp.csr_array, nodes: np.ndarray) -> sp.csr_array:
     return sp.csr_array(mask @ matrix @ mask)
 
 
+def in_all_directions(matrix: sp.csr_array) -> sp.csr_array:
+    """Return ``A ⊗ I₃`` of a matrix (n, n) in canonical form, faster than scipy does."""
+    lengths, nnz = np.diff(matrix.indptr), matrix.nnz
+    first = 2 * np.repeat(matrix.indptr[:-1], lengths) + np.arange(nnz, dtype=np.int32)
+    step = np.repeat(lengths, lengths)
+    data, indices = np.empty(3 * nnz), np.empty(3 * nnz, dtype=matrix.indices.dtype)
+    for direction in range(3):
+        place = first + direction * step
+        data[place], indices[place] = matrix.data, 3 * matrix.indices + direction
+    ends = np.append(0, np.cumsum(np.repeat(lengths, 3)))
+    return sp.csr_array(
+        (data, indices, ends.astype(indices.dtype)), shape=3 * np.array(matrix.shape)
+    )
+
+
 def frozen(matrix: sp.csr_array) -> sp.csr_array:
     """Return `matrix` in canonical form with its arrays made read-only."""
     matrix.sum_duplicates()
@@ -245,18 +260,23 @@ def as_triangles(triangles: Any, node_count: int) -> np.ndarray:
 
 
 def _to_csr(label: str, matrix: Any) -> sp.csr_array:
+    """Return a matrix in canonical form, whose arrays may be those that were given."""
     if matrix is None:
         raise ValueError(f"{label}: is missing (None)")
     if not sp.issparse(matrix):
         matrix = checks.array(matrix, label, finite=False)
     if matrix.ndim != 2:
         raise ValueError(f"{label}: needs a square matrix, got the shape {matrix.shape}")
-    rows = sp.csr_array(matrix, copy=True)
-    rows.sum_duplicates()  # now, for entries that are read-only cannot be put in order
-    entries = checks.array(rows.data, f"{label}: its entries", finite=False)
+    rows = sp.csr_array(matrix)
+    if not rows.has_canonical_format:
+        rows = rows.copy()
+        rows.sum_duplicates()  # now, for entries that are read-only cannot be put in order
+    entries = rows.data
+    if entries.dtype != float:
+        entries = checks.array(entries, f"{label}: its entries", finite=False)
     indices = rows.indices, rows.indptr
     if rows.nnz <= np.iinfo(np.int32).max:
-        indices = tuple(array.astype(np.int32) for array in indices)
+        indices = tuple(array.astype(np.int32, copy=False) for array in indices)
     return sp.csr_array((entries, *indices), shape=rows.shape)
 
 
@@ -279,10 +299,9 @@ def _check_size(label: str, shape: tuple[int, int], node_count: int) -> None:
 def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
     transposed = sp.csr_array(matrix.T)
     largest = _largest(matrix)
-    alike = np.array_equal(matrix.indptr, transposed.indptr)
-    alike = alike and np.array_equal(matrix.indices, transposed.indices)
+    alike = _alike(matrix, transposed)
     if alike:
-        difference = float(np.abs(matrix.data - transposed.data).max(initial=0.0))
+        difference = _largest_of(matrix.data - transposed.data)
     else:
         difference = _largest(matrix - transposed)
     if difference > SYMMETRY_TOLERANCE * largest:
@@ -300,8 +319,9 @@ def _symmetrised(label: str, matrix: sp.csr_array) -> sp.csr_array:
 
 
 def _has_identity_blocks(mass: sp.csr_array) -> bool:
-    blocks = sp.kron(mass[::3, ::3], sp.eye_array(3), format="csr")
-    return _largest(mass - blocks) <= BLOCK_TOLERANCE * _largest(mass)
+    blocks = in_all_directions(sp.csr_array(mass[::3, ::3]))
+    difference = blocks.data - mass.data if _alike(mass, blocks) else (mass - blocks).data
+    return _largest_of(difference) <= BLOCK_TOLERANCE * _largest(mass)
 
 
 def _explain_blocks(mass: sp.csr_array) -> str:
@@ -328,8 +348,18 @@ def _explain_blocks(mass: sp.csr_array) -> str:
     )
 
 
+def _alike(first: sp.csr_array, second: sp.csr_array) -> bool:
+    """Return whether two matrices have their entries at the same places."""
+    same = np.array_equal(first.indptr, second.indptr)
+    return same and np.array_equal(first.indices, second.indices)
+
+
 def _largest(matrix: sp.csr_array) -> float:
-    return float(np.abs(matrix.data).max(initial=0.0))
+    return _largest_of(matrix.data)
+
+
+def _largest_of(values: np.ndarray) -> float:
+    return float(max(values.max(initial=0.0), -values.min(initial=0.0)))
 
 
 def _some(nodes: np.ndarray) -> str:

@@ -60,7 +60,7 @@ def assemble_model(
     return FiniteElementModel(
         nodes=nodes,
         mass=assemble_mass(space, densities),
-        stiffness=assemble_stiffness(space, lame),
+        stiffness=assemble_stiffness(mesh, order, lame),
         node_sets=_node_sets(nodes, triangles, faces, interfaces),
         triangles=triangles,
         stress_recovery=TetrahedronStress(nodes, tetrahedra, lame[region_numbers]),

@@ -12,7 +12,8 @@ _EPS = np.finfo(float).eps
 
 def row_norm(matrix: sp.csr_array) -> float:
     """Return the largest row sum of absolute values, ``‖A‖∞``."""
-    return float(abs(matrix).sum(axis=1).max(initial=0.0))
+    sizes = sp.csr_array((np.abs(matrix.data), matrix.indices, matrix.indptr), shape=matrix.shape)
+    return float((sizes @ np.ones(matrix.shape[1])).max(initial=0.0))
 
 
 def rounding_unit(stiffness: sp.csr_array, precision: float = _EPS) -> float:

@@ -32,7 +32,7 @@ from netgen.occ import Axis, Box, Cylinder, OCCGeometry, Pnt, X, Z
 from tqdm import tqdm
 
 from exudyn_rotor import SolidRotor
-from exudyn_rotor.solid.elements import nodal_space, node_by_node
+from exudyn_rotor.solid.elements import nodal_space
 from exudyn_rotor.solid.tensor import von_mises
 from exudyn_rotor.solvers.factor import SparseCholesky
 from exudyn_rotor.theory.nodal import block_diagonal
@@ -137,7 +137,7 @@ class ClampedSolid:
         form.Apply(function.vec, force)
         form.AssembleLinearization(function.vec)
         tangent = sp.csr_array(form.mat.CSR(), copy=True)
-        return force.FV().NumPy()[places], node_by_node(tangent)
+        return force.FV().NumPy()[places], tangent[places][:, places]
 
     def linear_preload(self, speed: float) -> sp.csr_array:
         """Return the tangent about the displacement of linear elasticity, with its linear stress.
@@ -167,7 +167,7 @@ class ClampedSolid:
         form += ngs.Variation((density + ngs.InnerProduct(stress, change)) * ngs.dx)
         rest = ngs.GridFunction(space)
         form.AssembleLinearization(rest.vec)
-        return node_by_node(sp.csr_array(form.mat.CSR(), copy=True))
+        return sp.csr_array(form.mat.CSR(), copy=True)[places][:, places]
 
     def static(self, speed: float) -> tuple[np.ndarray, sp.csr_array]:
         """Return displacement (3n,) [m] and elastic tangent, at rest in the rotating frame.

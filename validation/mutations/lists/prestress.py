@@ -38,8 +38,8 @@ PRESTRESS = [
         "test_prestress.py::test_turned_static_state_is_not_strained",
         (
             "static gradient transposed in the term of second order",
-            "ngs.Sym(static.trans * ngs.grad(function))",
-            "ngs.Sym(static * ngs.grad(function))",
+            "ngs.Sym(static.trans * ngs.Grad(function))",
+            "ngs.Sym(static * ngs.Grad(function))",
         ),
     ),
     *mutations(
