@@ -16,7 +16,7 @@ NAME = PACKAGE.name
 
 @cache
 def order() -> list[str]:
-    """Return the entries of the listing in CONTRIBUTING, 'theory/' or 'checks.py', top down."""
+    """Return the entries of the listing in CONTRIBUTING, 'theory/' or 'units.py', top down."""
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     listing = text.split("### Structure", 1)[1].split(f"{NAME}/", 1)[1]
     listing = listing.split("\n    validation/")[0]

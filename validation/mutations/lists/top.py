@@ -61,7 +61,7 @@ TOP = [
         ),
     ),
     *mutations(
-        "checks.py",
+        "checks/arrays.py",
         "test_checks.py",
         ("mirror taken for a rotation", " or np.linalg.det(result) < 0.0", ""),
         (
