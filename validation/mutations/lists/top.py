@@ -69,5 +69,12 @@ TOP = [
             "(result - sign * result.T, result)",
             "(result + sign * result.T, result)",
         ),
+        ("a speed twice", "np.any(np.diff(result) <= 0.0)", "np.any(np.diff(result) < 0.0)"),
+        ("whole numbers without an upper limit", " | (result > most)]", "]"),
+    ),
+    *mutations(
+        "checks/numbers.py",
+        "test_checks.py",
+        ("the least number refused", '"≥": operator.ge', '"≥": operator.gt'),
     ),
 ]
