@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, inf
-from typing import ClassVar, TypeVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 
-Kind = TypeVar("Kind", bound="LoadedBearing")
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
@@ -51,10 +50,6 @@ class LoadedBearing(ABC):
     @abstractmethod
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [N], the bearing's own by default."""
-
-    def with_load(self: Kind, load: ArrayLike) -> Kind:
-        """Return the bearing with a static load on the journal [N], shape (2,)."""
-        return replace(self, load=checks.vector(load, "load", "N", size=2))
 
     def _static_load(self, load: ArrayLike | None) -> np.ndarray:
         if load is not None:

@@ -138,16 +138,6 @@ class MagneticBearing(LoadedBearing):
         checks.number(speed, "speed", "rad/s")
         return self.control_axes.T @ [place for place, _ in self._states(load)]
 
-    def currents(self, load: ArrayLike | None = None) -> np.ndarray:
-        """Return the currents of both axes in the equilibrium [A], shape (2,).
-
-        Raises
-        ------
-        TypeError, ValueError
-            As :meth:`equilibrium`.
-        """
-        return np.array([current for _, current in self._states(load)])
-
     def _states(self, load: ArrayLike | None) -> list[tuple[float, float]]:
         """Return place [m] and current [A] of each control axis in the equilibrium."""
         axes, gain, actuator = self.control_axes, self.controller.proportional, self.actuator

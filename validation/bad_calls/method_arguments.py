@@ -48,7 +48,6 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
     "*.to_csv": lambda w: {"path": w.folder / "table.csv"},
     "*.torque": lambda w: {"speed": 10.0},
     "*.transmitted": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
-    "*.with_load": lambda w: {"load": [0.0, -500.0]},
     "AnnularSeal.added_mass": lambda w: {"speed": 100.0},
     "AnnularSeal.axial_velocity": lambda w: {"speed": 100.0},
     "AnnularSeal.terms": lambda w: {"speed": 100.0},
