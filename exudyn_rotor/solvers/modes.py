@@ -9,12 +9,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.solvers.davidson import ApproximateInverse, davidson_modes
-from exudyn_rotor.solvers.lanczos import Modes, lanczos_modes
+from exudyn_rotor.solvers.lanczos import WIDE, Modes, lanczos_modes
 
-# where many columns at once are solved for much quicker: how many, which takes the least time for
-# 20 modes, and the residual of them at most, below what lanczos.check_modes allows
-_WIDTH = 12
-_RESIDUAL = 1e-7
+_RESIDUAL = 1e-7  # below what lanczos.check_modes allows
 
 
 class Inverse(ApproximateInverse, Protocol):
@@ -42,5 +39,5 @@ def lowest_modes(
     if inverse.by_blocks:
         # the error of eigenvalues is of second order in the residual
         residual = min(_RESIDUAL, np.sqrt(tolerance))
-        return lanczos_modes(mass, inverse.solve, count, residual, width=_WIDTH)
+        return lanczos_modes(mass, inverse.solve, count, residual, width=WIDE)
     return lanczos_modes(mass, inverse.solve, count, tolerance)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import weakref
 from collections.abc import Callable
@@ -50,8 +51,10 @@ class Ordered:
     """
 
     def __init__(self, matrix: sp.csr_array) -> None:
-        from pypardiso import PyPardisoSolver
+        from pypardiso import PyPardisoSolver, ps
 
+        # else every solver looks for the library in all folders of the environment
+        os.environ.setdefault("PYPARDISO_MKL_RT", ps.libmkl._name)
         self._solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)
         for number, value in _PARAMETERS.items():
             self._solver.set_iparm(number, value)

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 from exudyn_rotor.reduction.fields import ReducedInterface
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solvers.factor import SparseCholesky
-from exudyn_rotor.solvers.lanczos import lanczos_modes
+from exudyn_rotor.solvers.lanczos import WIDE, dense_modes, is_small, lanczos_modes
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
@@ -87,11 +87,19 @@ class Subspace:
             self.grow(column[:, None])
         self.rigid = self.basis.shape[1]
         wanted = min(2 * count + 8, full.size - 1)
-        _, modes = lanczos_modes(inv.M, self._factor.solve, wanted, 1e-6)
-        self.grow(modes)
+        self.grow(self._lowest(wanted))
         if loads:
             columns = _parts(loads)
             self.grow(self.solve(columns[:, np.any(columns, axis=0)]))
+
+    def _lowest(self, count: int) -> np.ndarray:
+        """Return the lowest modes of the shifted stiffness."""
+        mass = self.full.invariants.M
+        # the small ones may have eigenvalues of any multiplicity, which blocks do not find
+        if is_small(self.full.size, count):
+            return dense_modes(self._shifted.toarray(), mass.toarray(), count)[1]
+        width = WIDE if self._factor.by_blocks else 2
+        return lanczos_modes(mass, self._factor.solve, count, 1e-6, width)[1]
 
     def at(self, speed: float) -> PeriodicSystem:
         """Return the projected equations at a spin speed [rad/s]."""
