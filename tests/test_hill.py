@@ -131,6 +131,19 @@ def test_stiff_dampers_do_not_hide_slow_motions(stiffness, damping):
     assert apart.min(axis=0).max() < 1e-8 * system.speed
 
 
+def test_modes_gone_within_a_turn_are_not_waited_for():
+    """Dampers of an uneven shaft at low speed: 56 harmonics for a motion that decays with 460 Ω."""
+    uneven = 4e6 * np.array([[1.0, 0.3], [-0.2, 1.5]]), 1257.4334 * np.diag([1.0, 4.0])
+    supports = [Support(name, *uneven) for name in ("left", "right")]
+    system = LinearRotor.of(asymmetric_shaft(), supports).at(10.0)
+    modes, exact = floquet_modes(system), floquet_exponents(system, 1e-10)
+    assert modes.orders[-1] <= 16
+    slow = modes.values[np.abs(modes.values.real) < 10.0 * system.speed]
+    assert len(slow) == 4
+    apart = np.abs(fold(slow[:, None] - exact, system.base))
+    assert apart.min(axis=1).max() < 1e-6 * system.speed
+
+
 @pytest.mark.parametrize(
     ("held", "k", "drag"),
     [

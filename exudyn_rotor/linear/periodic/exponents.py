@@ -15,7 +15,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, one_of_each_family
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
@@ -27,8 +27,6 @@ from exudyn_rotor.linear.periodic.periodic_system import (
 
 # distance of exponents, over the base, and cosine of shapes, from which families are conjugate
 _SAME_FAMILY, _ALIKE = 1e-3, 0.7
-# decay over Ω above which a motion is gone before the coefficients change
-_GONE = 100.0
 METHODS = ("auto", "floquet", "hill", "eigen")
 
 
@@ -170,12 +168,8 @@ def _without_conjugates(
 
 
 def _sizes(values: np.ndarray, speed: float) -> np.ndarray:
-    """Return what the error of each exponent is relative to: Ω, or a faster decay.
-
-    Motions of stiff dampers, gone after a small part of a turn, would need very many harmonics.
-    """
-    decay = np.maximum(-values.real, speed)
-    return np.where(decay > _GONE * speed, np.inf, decay)
+    """Return what the error of each exponent is relative to: Ω, or a faster decay."""
+    return np.where(gone(values, speed), np.inf, np.maximum(-values.real, speed))
 
 
 def _central(solution: HillSolution, step: int, count: int) -> np.ndarray | None:

@@ -24,6 +24,8 @@ from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, Period
 
 # distance of the exponents of two members of a Floquet family, as a share of their step
 _SAME_FAMILY = 1e-3
+# decay over Ω above which a motion is gone before the coefficients change
+_GONE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,7 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     system : PeriodicSystem
     tolerance : float, optional
         Largest error of λ by harmonics that Hill's method leaves out, relative to the larger of
-        |λ| and pΩ.
+        |λ| and pΩ; motions that decay faster than 100 Ω are not waited for.
 
     Raises
     ------
@@ -82,6 +84,11 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     found = solve_hill(system, partial(_one_of_each_pair, speed=system.speed), tolerance)
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
+
+
+def gone(values: np.ndarray, speed: float) -> np.ndarray:
+    """Return which motions die within a small part of a turn; they need very many harmonics."""
+    return -values.real > _GONE * abs(speed)
 
 
 def constant_modes(systems: ConstantSystems) -> list[FloquetModes]:
@@ -114,7 +121,7 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
     columns, paired = columns[order], order < np.count_nonzero(~alone)
     sizes = np.maximum(np.abs(values[columns]), solution.step * abs(speed))
     # what is zero to rounding has no error of truncation that could be told
-    sizes = np.where(values[columns] == 0.0, np.inf, sizes)
+    sizes[(values[columns] == 0.0) | gone(values[columns], speed)] = np.inf
     return Chosen(columns, values[columns], shapes[:, :, columns], sizes, paired)
 
 

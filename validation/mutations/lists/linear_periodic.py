@@ -65,9 +65,14 @@ LINEAR_PERIODIC = [
         "test_hill.py::test_stiff_dampers_do_not_hide_slow_motions",
         (
             "motions that are gone within a turn waited for",
-            "np.where(decay > _GONE * speed, np.inf, decay)",
-            "decay",
+            "np.where(gone(values, speed), np.inf, np.maximum(-values.real, speed))",
+            "np.maximum(-values.real, speed)",
         ),
+    ),
+    *mutations(
+        "linear/periodic/floquet_modes.py",
+        "test_hill.py::test_modes_gone_within_a_turn_are_not_waited_for",
+        ("modes that are gone within a turn waited for", " | gone(values[columns], speed)", ""),
     ),
     *mutations(
         "linear/periodic/hill.py",
