@@ -78,6 +78,17 @@ def test_two_steps_of_harmonics_are_taken_of_any_number_of_coordinates(monkeypat
         motions(system, "hill", 1e-11)
 
 
+def test_motions_follow_into_truncations_too_large_to_be_solved(monkeypatch):
+    system = weakly_periodic(0)
+    exact = motions(system, "hill", 1e-11)
+    unknowns = 2 * len(exact.orders) * system.size
+    monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.6 * unknowns))
+    assert np.array_equal(motions(system, "hill", 1e-11).values, exact.values)
+    monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.4 * unknowns))
+    with pytest.raises(UnconvergedError, match="harmonics up to"):
+        motions(system, "hill", 1e-11)
+
+
 def test_strong_coupling_is_solved_as_a_whole(sizes_solved):
     strong = mathieu(2.0, 30.0)
     found = motions(strong, "hill", 1e-9).values

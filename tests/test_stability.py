@@ -14,6 +14,7 @@ from exudyn_rotor.linear.periodic.exponents import (
     constant_exponents,
     exponents,
     hill_exponents,
+    motions,
 )
 from exudyn_rotor.linear.periodic.fundamental import _magnus, floquet_exponents, monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
@@ -102,6 +103,17 @@ def test_hill_and_floquet_agree(seed):
     assert len(hill) == len(floquet) == 8
     assert paired(hill, floquet, 1.3) < 1e-8
     assert paired(floquet, hill, 1.3) < 1e-8
+
+
+def test_motions_that_die_within_a_turn_are_not_taken_for_neutral():
+    """Of a multiplier of 1e-12 rounding leaves that it is small, by Floquet's method."""
+    coupling = np.array([[1e3, 2e4], [2e4, 5e4]])
+    stiffness = {0: np.diag([1e4, 1e6]), 2: coupling, -2: coupling}
+    system = PeriodicSystem(300.0, {0: np.eye(2)}, {0: np.diag([1.0, 3e3])}, stiffness)
+    found, exact = motions(system, "floquet"), motions(system, "hill").values
+    assert np.all(found.values.real + found.bounds < 0.0)
+    apart = np.abs(fold(found.values[:, None] - exact, system.base))
+    assert np.all(apart.min(axis=1) < found.bounds + 1e-6)
 
 
 def test_the_error_of_hills_method_is_not_underestimated():

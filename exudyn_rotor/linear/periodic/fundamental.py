@@ -98,7 +98,9 @@ def floquet_motions(
     """Return the 2k exponents, the states (x, ẋ) at θ = 0 as columns, and bounds of the error.
 
     The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε``, and by
-    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says.
+    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of a
+    multiplier that is smaller than its error δ the exponent is known from above alone:
+    ``Re λ ≤ log(|μ| + δ)/T``.
     """
     fundamental = monodromy(system, tolerance)
     scale = _scale(system)
@@ -108,7 +110,8 @@ def floquet_motions(
     values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
     condition = np.linalg.norm(np.linalg.pinv(states), axis=1)
     error = (len(scale) * system.rounding + tolerance) * np.linalg.norm(scaled)
-    bounds = condition * error / np.abs(multipliers) * base / (2.0 * np.pi)
+    relative, decays = condition * error / np.abs(multipliers), np.abs(multipliers) < 1.0
+    bounds = np.where(decays, np.log1p(relative), relative) * base / (2.0 * np.pi)
     return fold(values, base), states.astype(complex) / scale[:, None], bounds
 
 

@@ -26,6 +26,7 @@ from exudyn_rotor.linear.periodic.inverse_iteration import settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
 MOST_UNKNOWNS = 1600  # in first-order form, beyond the first two harmonics
+_FOLLOWED = 2  # times as many where motions follow, which costs solutions of linear equations alone
 # error of λ, as a share of its distance from the next copy, from which a motion is followed
 _NEAR = 1e-2
 # times its estimate that a change of λ by further harmonics may be
@@ -180,7 +181,8 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
     Raises
     ------
     UnconvergedError
-        If that takes more than 1600 unknowns, and further harmonics than two steps.
+        If that takes more than 1600 unknowns, or 3200 where motions follow, and further harmonics
+        than two steps.
     """
     order, error = system.step, np.inf
     while True:
@@ -197,11 +199,13 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         order = _next(system, order, error, tolerance)
 
 
-def _next(system: PeriodicSystem, order: int, error: float, tolerance: float) -> int:
-    """Return the highest harmonic of the next truncation."""
-    step = system.step
+def _next(
+    system: PeriodicSystem, order: int, error: float, tolerance: float, most: int | None = None
+) -> int:
+    """Return the highest harmonic of the next truncation, of MOST_UNKNOWNS or `most`."""
+    step, most = system.step, MOST_UNKNOWNS if most is None else most
     larger = order + step * max(1, order // (2 * step))
-    if larger == 2 * step or 2 * len(system.harmonics(larger)) * system.size <= MOST_UNKNOWNS:
+    if larger == 2 * step or 2 * len(system.harmonics(larger)) * system.size <= most:
         return larger
     raise UnconvergedError(
         f"Hill's method at {system.speed:g} rad/s: error {error:.1e} with harmonics up to "
@@ -238,7 +242,8 @@ def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) ->
     # its estimate does not see the further harmonics that the first ones left out bring along
     limit = (_FIRST if motions.orders[-1] == system.step else 1.0) * tolerance
     while motions.error > limit:
-        order = _next(system, int(motions.orders[-1]), motions.error, tolerance)
+        last, most = int(motions.orders[-1]), _FOLLOWED * MOST_UNKNOWNS
+        order = _next(system, last, motions.error, tolerance, most)
         lacking = np.flatnonzero(motions.errors > min(limit, _ALMOST * tolerance))
         larger = _in_larger(system, motions, lacking, system.harmonics(order))
         if larger is None or not _differ(larger, lacking, system.base):
