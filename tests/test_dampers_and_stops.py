@@ -11,10 +11,13 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
+    recommended_settings,
     stability,
     steady_state,
 )
 
+ENDS = ("left", "right")
+DISPLACEMENT = exu.OutputVariableType.Displacement
 FILM = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.01}
 STOP = {"radius": 0.05, "clearance": 1e-4, "stiffness": 4e6, "friction": 0.2}
 
@@ -90,6 +93,74 @@ def test_rotor_that_leans_on_stops_has_a_steady_state(friction):
     parts = np.poly1d([K + k, -k * c]), friction * k * np.poly1d([1.0, -c])
     roots = (parts[0] ** 2 + parts[1] ** 2 - (98.1) ** 2).roots
     assert found == pytest.approx(roots.real.max(), rel=1e-6)
+
+
+def leaning(supports, spin, excess=0.0):
+    """Return body and system of two rings of 20 kg, with an excess mass [kg] at the right one."""
+    rings = ring_rotor(0.1, 0.15, 20.0)
+    if excess:
+        rings = rings.add_point_mass([0.1, 0.0, 0.15], excess)
+    rotor = rings.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=spin, gravity=[0.0, -9.81, 0.0])
+    add_supports(body, supports)
+    mbs.Assemble()
+    return mbs, body
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_rotor_at_rest_lies_in_its_stops(friction, angle):
+    """At c + W/(2k) below the centre, whatever the friction, of balanced and of uneven rotors."""
+    k, c = 1e7, 1e-5
+    stops = [stop(name, stiffness=k, clearance=c, friction=friction) for name in ("left", "right")]
+    axial = Support("left", np.diag([0.0, 0.0, 1e6]))
+    for excess in (0.0, 0.01):
+        body = leaning([*stops, axial], 0.0, excess)[1]
+        steady = steady_state(body)
+        for name, load in (("left", 98.1), ("right", 98.1 + 9.81 * excess)):
+            expected = [0.0, -c - load / k]
+            found = steady.interface_motion(name, angle)[:2]
+            np.testing.assert_allclose(found, expected, atol=1e-7 * c)
+
+
+@pytest.mark.parametrize("spin", [0.0, 300.0])
+def test_equilibrium_on_a_stop_a_thousand_times_stiffer_than_the_bearings(spin):
+    """K e + k (e − c) = W/2 at the left end, K e = W/2 at the right one."""
+    K, k, c = 1e6, 1e9, 1e-5
+    pair = [Support(name, K, 1e3) for name in ("left", "right")]
+    body = leaning([*pair, stop(stiffness=k, clearance=c, friction=0.0)], spin)[1]
+    steady = steady_state(body)
+    for name, expected in (("left", (98.1 + k * c) / (K + k)), ("right", 98.1 / K)):
+        assert -steady.interface_motion(name)[1] == pytest.approx(expected, rel=1e-7)
+
+
+def test_uneven_rotor_that_lifts_off_its_stop_starts_in_its_steady_motion():
+    """A revolution later it is where it began, but for the error of the steps at kinks."""
+    speed, turn = 300.0, 2.0 * np.pi / 300.0
+    pair = [Support(name, 1e6, 1e3) for name in ("left", "right")]
+    touched = [stop(name, stiffness=1e7, clearance=1e-5) for name in ("left", "right")]
+
+    def places():
+        return np.array([mbs.GetMarkerOutput(body.marker(n), DISPLACEMENT) for n in ENDS])
+
+    away = []
+    for steps in (100, 200):
+        mbs, body = leaning([*pair, *touched], speed, excess=0.01)
+        with pytest.warns(UserWarning, match="of the motion to higher harmonics"):
+            steady = steady_state(body)
+        around = [steady.interface_motion("right", a)[:2] for a in np.arange(0.0, 6.2, 0.1)]
+        gaps = np.linalg.norm(around, axis=1) - 1e-5
+        assert gaps.min() < 0.0 < gaps.max()
+        body.start_from(steady.state())
+        mbs.Assemble()
+        begun = places()
+        settings = recommended_settings(turn, turn / steps, accuracy=1e-7)
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        mbs.SolveDynamic(settings)
+        away.append(np.abs(places() - begun).max() / np.ptp(around, axis=0).max())
+    assert away[1] < 0.5 * away[0] < 0.005
 
 
 def test_linear_analyses_take_them():

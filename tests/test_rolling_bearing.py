@@ -7,6 +7,7 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     RollingBearing,
+    Support,
     add_rotor,
     add_supports,
     recommended_settings,
@@ -36,6 +37,35 @@ def test_one_ball_carries_by_hertz():
     """With a wide clearance the load is on one ball: W = k (x − c)^{3/2}."""
     place = bearing(clearance=1e-3, load=[500.0, 0.0]).equilibrium(0.0)
     np.testing.assert_allclose(place, [1e-3 + (500.0 / 7e9) ** (2.0 / 3.0), 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("load", [(0.0, -98.1), (-100.0, 0.0), (0.0, 1e-3)])
+@pytest.mark.parametrize("count", [4, 8])
+def test_one_ball_straight_below_the_load_carries(load, count):
+    """Others stand aside of a wide clearance, so that across the load nothing resists."""
+    size = np.hypot(*load)
+    place = bearing(count=count, clearance=2e-5).equilibrium(0.0, load)
+    expected = np.array(load) / size * (2e-5 + (size / 7e9) ** (2.0 / 3.0))
+    np.testing.assert_allclose(place, expected, atol=1e-7 * 2e-5)
+
+
+@pytest.mark.filterwarnings("ignore:rotor 'rotor'. a contact that opens")
+@pytest.mark.parametrize("spin", [0.0, 300.0])
+def test_uneven_rotor_on_balls_has_a_steady_start(spin):
+    """At rest the equilibrium of each end's weight; at a speed near it, by the small unbalance."""
+    rings = ring_rotor(0.1, 0.15, 20.0).add_point_mass([0.1, 0.0, 0.15], 1e-3)
+    uneven = rings.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, uneven.reduce(0), spin=spin, gravity=[0.0, -9.81, 0.0])
+    pair = [bearing(name, damping=1500.0) for name in ("left", "right")]
+    add_supports(body, [*pair, Support("left", np.diag([0.0, 0.0, 1e6]))])
+    mbs.Assemble()
+    steady = steady_state(body, tolerance=1e-5)
+    for one, load in zip(pair, (98.1, 98.1 + 9.81e-3), strict=True):
+        expected = one.equilibrium(0.0, [0.0, -load])
+        near = 1e-6 if spin == 0.0 else 0.3  # 9 N of unbalance, 98 N of weight
+        found = steady.interface_motion(one.interface, 0.0)[:2]
+        np.testing.assert_allclose(found, expected, atol=near * np.abs(expected).max())
 
 
 def test_cage_and_passing_frequency():

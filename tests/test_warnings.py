@@ -15,6 +15,7 @@ from point_rotors import ring_rotor
 import exudyn_rotor
 from exudyn_rotor import (
     AssumptionWarning,
+    ClearanceStop,
     ConnectionWarning,
     Formulation,
     SolidRotor,
@@ -23,12 +24,14 @@ from exudyn_rotor import (
     Support,
     Unbalance,
     add_rotor,
+    add_supports,
     campbell,
     check_run,
     propose,
     select_modes,
     stability_level_one,
     stability_threshold,
+    steady_state,
     stress_history,
     unbalance_response,
 )
@@ -112,6 +115,17 @@ def scene_of_a_lossy_rotor(_):
 def scene_of_a_full_lossy_rotor(_):
     rotor = ring_rotor(0.1, 0.1, 2.0).with_damping(loss=0.01)
     add_rotor(exu.SystemContainer().AddSystem(), rotor, spin=4.0)
+
+
+def steady_motion_on_a_stop_that_opens(_):
+    rotor = ring_rotor(0.1, 0.1, 20.0).add_point_mass([0.1, 0.0, -0.1], 0.01)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=300.0, translation="none", gravity=[0.0, -9.81, 0.0])
+    stop = ClearanceStop(interface="left", radius=0.05, clearance=1e-5, stiffness=1e7)
+    add_supports(body, [*(Support(name, 1e6, 1e3) for name in ("left", "right")), stop])
+    mbs.Assemble()
+    steady_state(body)
 
 
 def frame_held_by_modes(_):
@@ -253,6 +267,9 @@ PLACES = {
     ),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",
+    ),
+    "linear/response/steady_state.py:steady_state": (
+        steady_motion_on_a_stop_that_opens, UserWarning, "of the motion to higher harmonics",
     ),
 }  # fmt: skip
 # places that several kinds of bodies reach

@@ -28,12 +28,15 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import root
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+from exudyn_rotor.solvers.line_search import step_share
 
 _EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}
+_MOST_ITERATIONS = 100
+_CONVERGED = 1e-14  # last step over the depth of the contact
+_SOFT = 1e-6  # share of the bearing's stiffness
 _CAGE_ANGLES = 16  # over the passage of one element, for mean coefficients
 
 
@@ -190,18 +193,30 @@ class RollingBearing(Bearing):
             raise ValueError("load: needs a force other than 0: without one no element carries")
         exponent = _EXPONENTS[self.elements]
         depth = (4.0 * weight / (self.count * self.stiffness)) ** (1.0 / exponent)
-        start = (self.clearance + 1.5 * depth) * load / weight
+        # there one element carries, wherever they stand
+        place = (self.clearance / cos(pi / self.count) + 1.5 * depth) * load / weight
+        soft = _SOFT * weight / depth * np.eye(2)  # against a single element's free direction
 
-        def left(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            force = np.array(self._law(*(depth * place), 0.0, 0.0, angle, 0.0))
-            return (force + load) / weight, -self._tangent(depth * place, angle) * depth / weight
+        def lacking(place: np.ndarray) -> np.ndarray:
+            return load + np.array(self._law(*place, 0.0, 0.0, angle, 0.0))
 
-        found = root(left, start / depth, jac=True, method="lm", options={"xtol": 1e-14})
-        if np.abs(found.fun).max() > 1e-9:
+        for _ in range(_MOST_ITERATIONS):
+            tangent = self._tangent(place, angle)
+            step = np.linalg.solve(tangent + soft, lacking(place))
+
+            def slope(share: float, at: np.ndarray = place, step: np.ndarray = step) -> float:
+                return -float(step @ lacking(at + share * step))
+
+            place = place + step_share(slope) * step
+            if np.abs(step).max() < _CONVERGED * depth:
+                break
+        # what a place knows of the depth of contact, with a wide clearance and a small load
+        rounding = 10.0 * np.finfo(float).eps * np.abs(place).max() * np.abs(tangent).max()
+        if np.abs(lacking(place)).max() > 1e-9 * weight + rounding:
             raise ValueError(
                 f"load: bearing at {self.interface!r}: no equilibrium found under {weight:g} N"
             )
-        return depth * found.x
+        return place
 
     def _tangent(self, place: np.ndarray, angle: float) -> np.ndarray:
         angles, exponent = self._angles(angle), _EXPONENTS[self.elements]

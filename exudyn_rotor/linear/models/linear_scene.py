@@ -25,13 +25,19 @@ from exudyn_rotor.linear.models.probe import probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_checks import check_scene
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
-from exudyn_rotor.linear.models.steady_motion import check_period, equations_about, steady_motion
+from exudyn_rotor.linear.models.steady_motion import (
+    check_period,
+    equations_about,
+    motion_at_rest,
+    steady_motion,
+)
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.support_connectors import held_cages
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 
 ABOUT = ("steady", "given")
@@ -195,8 +201,11 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             the own spin of a rotor with an elastic drive against a torque.
         """
         checks.number(speed, "speed", "rad/s")
-        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
+        angle = spin_at_start(self.body)[0]
+        with held_cages(self.body, angle), probing(self, speed) as probe:
             check_period(self, probe)
+            if speed == 0.0 and ModeKind.SPIN not in self.body.selection.kinds:
+                return motion_at_rest(self, probe, tolerance, angle)
             _, orders, harmonics = steady_motion(self, probe, tolerance)
         return orders, harmonics
 

@@ -22,6 +22,8 @@ from exudyn_rotor.theory.stiffening import stiffening as second_order
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 _CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
+_SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
+_KINK = 1e-4  # relative second-order error of a step that tells so
 
 
 class Probe:
@@ -94,6 +96,13 @@ class Probe:
         total[self.physics] -= self._physics_force(q[self.physics], q_t[self.physics])
         return total[self.scene.free]
 
+    def unbalanced(self, theta: float, y: np.ndarray) -> np.ndarray:
+        """Return what the forces lack for an equilibrium at rest (k,), as the residual of y."""
+        _, _, K, constant = self.rotor_terms(theta)
+        T = self.scene.turn(theta)[0]
+        x = T @ y
+        return T.T @ (K @ x - constant - self.force(theta, x, np.zeros_like(x)))
+
     def _physics_force(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return what the rotor's object in the scene contributes at this state."""
         body, unknowns = self.scene.body, self.scene.body.layout.unknowns
@@ -164,7 +173,7 @@ def linearised(
     if probe.step is None:
         probe.step = _chosen_step(moved, T * sizes, _STEPS)
         probe.velocity_step = _chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
-    rest_K = -_differences(moved, probe.step * T * sizes)[0] / (probe.step * sizes)
+    rest_K = -_slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
     faster = probe.velocity_step
     rest_D = -_differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
     carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
@@ -188,6 +197,15 @@ def _differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, flo
     )
     error = np.abs(near - far).max() / 3.0 / max(np.abs(near).max(), 1e-300)
     return near + (near - far) / 3.0, float(error)
+
+
+def _slopes(function: Callable, moves: np.ndarray) -> np.ndarray:
+    """Return differences along `moves`, of smaller ones where the forces have a kink within."""
+    for share in _SHARES:
+        slopes, error = _differences(function, share * moves)
+        if error < _KINK:
+            break
+    return slopes / share
 
 
 def _chosen_step(function: Callable, moves: np.ndarray, steps: tuple[float, ...]) -> float:

@@ -13,26 +13,27 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import scipy.linalg
 
+from exudyn_rotor.linear.models.equilibrium import FAR, NOISE, SMALLEST, UNHELD, equilibrium, solved
 from exudyn_rotor.linear.models.journal_start import journal_start
 from exudyn_rotor.linear.models.own_spin import OwnSpin
-from exudyn_rotor.linear.models.probe import LinearPoint, Probe, linearised
+from exudyn_rotor.linear.models.probe import LinearPoint, Probe, linearised, probing
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
+_REST_SAMPLES = 7  # an odd number: the harmonics are exact at all of them
 _MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
+_ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
+_SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
+_FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the start
+_MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
 _LEAST_SHARE = 2e-3  # of a step
-_NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
-_UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
-_FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
-_SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
 _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
 
 
@@ -66,7 +67,12 @@ def steady_motion(
     samples, found = _FIRST_SAMPLES, None
     while samples <= _MOST_SAMPLES:
         search = _Search(scene, probe, samples, tolerance)
-        system, found = search.found(found)
+        try:
+            system, found = search.found(found)
+        except UnconvergedError:
+            if found is not None or not probe.speed:
+                raise
+            system, found = search.followed()
         if system is not None:
             return system, search.orders, found
         samples *= 2
@@ -78,6 +84,34 @@ def steady_motion(
     )
 
 
+def motion_at_rest(
+    scene: Scene, probe: Probe, tolerance: float, angle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
+
+    Exact at the start's angle [rad] and those of the same distance from it.
+
+    Raises
+    ------
+    UnconvergedError
+        Where there is no equilibrium.
+    """
+    start = journal_start(scene, 0.0, np.arange(-1, 2))
+    count = _REST_SAMPLES
+    while True:
+        angles = angle + 2.0 * np.pi * np.arange(count) / count
+        orders = np.arange(-(count // 2), count // 2 + 1)
+        values = []
+        for theta in angles:
+            near = values[-1] if values else (np.exp(1j * theta * np.arange(-1, 2)) @ start).real
+            values.append(equilibrium(scene, probe, theta, near, tolerance))
+        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
+        sizes = np.abs(harmonics).max(axis=1)
+        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _REST_SAMPLES:
+            return orders, harmonics
+        count = 2 * count + 1
+
+
 def check_period(scene: SceneCoordinates, probe: Probe) -> None:
     """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
     still = np.zeros(len(scene.free))
@@ -86,7 +120,7 @@ def check_period(scene: SceneCoordinates, probe: Probe) -> None:
         loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
         for turns in (1.0, 2.0):
             later = probe.force(theta + 2.0 * np.pi * turns, still, still)
-            if np.abs(later - first).max() > _PERIODIC * loads + _UNHELD * scene.mass:
+            if np.abs(later - first).max() > _PERIODIC * loads + UNHELD * scene.mass:
                 raise UnconvergedError(
                     f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
                     "revolution of the rotor, so there is no steady motion; leave out loads and "
@@ -133,42 +167,87 @@ class _Search:
 
         It begins with those of fewer samples.
         """
-        Y = self._start(start)
-        change, share, before = np.zeros_like(Y), 1.0, np.inf
-        for iteration in range(_MOST_ITERATIONS):
-            points = self._points(Y)
-            system = self._system(points)
-            if system is None or self.scene.about == "given":
+        return self._newton(self._start(start), 0.0, _MOST_ITERATIONS)
+
+    def followed(self) -> tuple[PeriodicSystem | None, np.ndarray]:
+        """Return as :meth:`found`, beginning with the equilibria at rest where there are any.
+
+        What is unbalanced there at the speed is taken away in steps.
+        """
+        Y = self._start(None)
+        try:
+            with probing(self.scene, 0.0) as at_rest:
+                orders, still = motion_at_rest(self.scene, at_rest, _AT_REST, 0.0)
+        except UnconvergedError:
+            pass  # films carry nothing at rest
+        else:
+            common = np.intersect1d(orders, self.orders)
+            Y[np.isin(self.orders, common)] = still[np.isin(orders, common)]
+        first = self._residual(self._points(Y))
+        left, stride = 1.0, _FIRST_STRIDE
+        for _ in range(_MOST_STRIDES):
+            goal = max(left - stride, 0.0)
+            try:
+                system, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
+            except UnconvergedError:
+                stride *= 0.5
+                continue
+            left, stride = goal, 2.0 * stride
+            if not left:
                 return system, Y
-            metres = 1.0 / self.scene.metre(np.diag(system.M[0]))
-            residual = self.waves.conj().T @ np.array([point.residual for point in points])
-            residual = residual / self.samples
+        raise self._lost()
+
+    def _newton(
+        self, Y: np.ndarray, wanted: np.ndarray | float, most: int
+    ) -> tuple[PeriodicSystem | None, np.ndarray]:
+        """Return equations and harmonics whose residual is the one wanted, beginning at Y."""
+        change, share, before = np.zeros_like(Y), 1.0, np.inf
+        for iteration in range(most):
+            points = self._points(Y)
+            system, resolved = self._system(points)
+            if self.scene.about == "given":
+                return system if resolved else None, Y
+            if not resolved and (self.for_equations or self.samples > _MOST_UNRESOLVED):
+                return None, Y
+            metres = 1.0 / self.scene.metre(np.diag(points[0].M))
+            residual = self._residual(points) - wanted
             size = np.linalg.norm(residual / metres)
             if size > _RISE * before and share > _LEAST_SHARE:
                 change, share = 0.5 * change, 0.5 * share
                 Y = Y - change
                 continue
             before, share = size, 1.0
-            K = hill_matrices(system, self.orders)[2]
-            change, left = (X.reshape(Y.shape) for X in _solved(K, -residual.ravel()))
+            K = hill_matrices(self._discrete(points), self.orders)[2]
+            change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
             # there are no forces before the first step
             torque, twist = self._own_spin(system, points if iteration else None, K, Y + change)
             change = change - torque * twist
             Y = Y + change
             sizes = np.abs(Y * metres).max(axis=1)
-            unheld = np.abs(left / metres).max() > _UNHELD * self.scene.mass
-            if unheld or sizes.max() > _FAR * self.scene.length:
+            unheld = np.abs(left / metres).max() > UNHELD * self.scene.mass
+            if unheld or sizes.max() > FAR * self.scene.length:
                 break
-            if np.abs(change * metres).max() < self.tolerance * self._counts(sizes):
+            tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
+            limit = self.tolerance * max(sizes.max(), self._counts(sizes))
+            goal = max(self.tolerance * self._counts(sizes), _SOLVED * (tail - limit))
+            if np.abs(change * metres).max() < goal:
                 self._check_spin(torque)
-                limit = self.tolerance * max(sizes.max(), self._counts(sizes))
-                return system if sizes[[0, 1, -2, -1]].max() <= limit else None, Y
-        raise UnconvergedError(
+                if not resolved and self.samples == _MOST_UNRESOLVED:
+                    limit = max(limit, _ROUGH * sizes.max())
+                return system if tail <= limit else None, Y
+        raise self._lost()
+
+    def _lost(self) -> UnconvergedError:
+        return UnconvergedError(
             f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
             "that nothing holds, a resonance without damping, or a stop or a bearing with "
             "clearance that the rotor leaves and hits? A damped run from rest shows what it does "
             "there; about='given' needs no steady motion"
         )
+
+    def _residual(self, points: list[LinearPoint]) -> np.ndarray:
+        """Return the harmonics (h, k) of what the forces leave unbalanced."""
+        return self.waves.conj().T @ np.array([point.residual for point in points]) / self.samples
 
     def _start(self, found: np.ndarray | None) -> np.ndarray:
         if found is None:
@@ -182,13 +261,26 @@ class _Search:
         motion = [(self.waves @ (Y * rates**n)).real for n in range(3)]
         return [linearised(self.probe, *at) for at in zip(self.angles, *motion, strict=True)]
 
-    def _system(self, points: list[LinearPoint]) -> PeriodicSystem | None:
-        """Return the equations; None where they need more samples."""
+    def _system(self, points: list[LinearPoint]) -> tuple[PeriodicSystem, bool]:
+        """Return the equations, and whether the samples resolve their coefficients."""
         terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
-        if not all(resolved) and (self.for_equations or self.samples > _MOST_UNRESOLVED):
-            return None
         speed, rounding = self.probe.speed, self.probe.rounding
-        return PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
+        system = PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
+        return system, all(resolved)
+
+    def _discrete(self, points: list[LinearPoint]) -> PeriodicSystem:
+        """Return the equations whose Hill matrix is the derivative of the residual at the angles.
+
+        Their Fourier terms n and n + samples are the same: so the angles see them.
+        """
+        terms = []
+        for X, scale, size in _scaled(points):
+            spectrum = np.fft.fft(X, axis=0) / self.samples
+            kept = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2)) > NOISE * size
+            reach = range(2 * self.orders[0], 2 * self.orders[-1] + 1)
+            kept[0] = True
+            terms.append({n: spectrum[n % self.samples] for n in reach if kept[n % self.samples]})
+        return PeriodicSystem(self.probe.speed, *terms)
 
     def _own_spin(
         self, system: PeriodicSystem, points: list[LinearPoint] | None, K: np.ndarray, Y: np.ndarray
@@ -201,29 +293,18 @@ class _Search:
             forces = np.mean([point.forces for point in points], axis=0)
             least = self.spin.least_stiffness(system.K[0], forces, self.probe.rounding)
         middle = np.flatnonzero(self.orders == 0)[0]
-        twist = _solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
+        twist = solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
         return self.spin.drive_torque(twist[middle], Y[middle], least), twist
 
     def _counts(self, sizes: np.ndarray) -> float:
         """Return the motion of which the tolerance is a share."""
         # what the equations need is the motion to a share of their step of differences
-        return self.probe.step if self.for_equations else max(sizes.max(), _SMALLEST)
+        return self.probe.step if self.for_equations else max(sizes.max(), SMALLEST)
 
     def _check_spin(self, torque: float) -> None:
         if self.spin is not None and not self.for_equations:
-            most = _UNHELD * np.sqrt(self.scene.mass)
+            most = UNHELD * np.sqrt(self.scene.mass)
             self.spin.check_held(torque, most, self.probe.speed)
-
-
-def _solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve with motions that nothing holds left at rest; return what remains of the load, too."""
-    rows = np.abs(K).max(axis=1)
-    # a row of round-off is not blown up to the size of the others
-    scale = 1.0 / np.sqrt(np.maximum(rows, max(_NOISE * rows.max(), 1e-300)))
-    scaled = scale[:, None] * K * scale
-    solution = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
-    answer = scale * solution[0]
-    return answer, load - K @ answer
 
 
 def _scaled(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
@@ -245,6 +326,6 @@ def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Term
     resolved = bool(sizes[top - 1 : top + 2].max() <= _CONVERGED * largest)
     terms = {0: spectrum[0].real}
     for n in range(1, top - 1):
-        if sizes[n] > _NOISE * largest:
+        if sizes[n] > NOISE * largest:
             terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
     return terms, resolved

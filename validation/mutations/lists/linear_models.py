@@ -75,6 +75,29 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "linear/models/equilibrium.py",
+        "test_dampers_and_stops.py::test_rotor_at_rest_lies_in_its_stops",
+        (
+            "what nothing holds does not move with its load",
+            "reach * pull / np",
+            "-reach * pull / np",
+        ),
+    ),
+    *mutations(
+        "linear/models/steady_motion.py",
+        "test_dampers_and_stops.py::test_uneven_rotor_that_lifts_off_its_stop_starts_in_its_steady_motion",
+        (
+            "angles see another motion",
+            "np.array([point.residual for point in points]) / self.samples",
+            "np.array([point.residual for point in points[::-1]]) / self.samples",
+        ),
+    ),
+    *mutations(
+        "linear/models/probe.py",
+        "test_dampers_and_stops.py::test_equilibrium_on_a_stop_a_thousand_times_stiffer_than_the_bearings",
+        ("steps of differences beyond the contact", "_KINK = 1e-4", "_KINK = 1e4"),
+    ),
+    *mutations(
         "linear/models/finer_scene.py",
         "test_basis_in_scenes.py::test_a_scene_errs_as_a_rotor_on_the_same_supports",
         (
