@@ -9,14 +9,14 @@ the frequency ``ν = ω + mΩ`` of each harmonic.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
 
@@ -38,7 +38,8 @@ def forced_motion(
     """Return the harmonics X_m (k,) of the steady motion in the rotor frame.
 
     Harmonics are added until the motion changes by less than `tolerance`, taken relative to the
-    largest harmonic in the norm of the mass matrix.
+    largest harmonic in the norm of the mass matrix, or no more than by rounding: in the rotor frame
+    a soft direction beside a stiff one is the difference of large numbers.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def forced_motion(
         system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)), system.H)
         loads = {0: sum(loads.values())}
     balance = _Balance(system, loads, rate, list(driven))
-    step = system.step
+    step, change = system.step, np.inf
     reach = max(abs(n) for n in loads) + step
     motion = balance.solved(reach)
     while step:
@@ -72,7 +73,9 @@ def forced_motion(
                 f"by more than {tolerance:g}; the system is close to a parametric instability"
             )
         earlier, motion = motion, balance.solved(reach)
-        if _change(system.M[0], earlier, motion) <= tolerance:
+        before, change = change, _change(system.M[0], earlier, motion)
+        at_rounding = change <= balance.rounding and change >= 0.5 * before
+        if change <= tolerance or at_rounding:
             break
     return motion
 
@@ -103,6 +106,12 @@ class _Balance:
     loads: Harmonics
     rate: float
     driven: list[int]
+    conditions: list[float] = field(default_factory=list)  # reciprocal, of all solutions so far
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of a solution by rounding, at most."""
+        return EPSILON / min(self.conditions)
 
     @cached_property
     def fastest(self) -> float:
@@ -161,7 +170,9 @@ class _Balance:
             A[rows, rows] += spring @ spring.T
             load[index] = self._without_free(load[index])
         scale = np.tile(self.scale, len(orders))
-        return _scaled_solve(A, load.ravel(), scale).reshape(load.shape)
+        solution, condition = _scaled_solve(A, load.ravel(), scale)
+        self.conditions.append(condition)
+        return solution.reshape(load.shape)
 
     def _without_free(self, load: np.ndarray) -> np.ndarray:
         """Return a load (k,) without the rounding that acts on free motions.
@@ -182,8 +193,10 @@ class _Balance:
         return (scaled - self.free @ on_free) / self.scale
 
 
-def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Solve ``A x = f`` in scaled unknowns.
+def _scaled_solve(
+    A: np.ndarray, load: np.ndarray, scale: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Solve ``A x = f`` in scaled unknowns; return their reciprocal condition number, too.
 
     Raises
     ------
@@ -198,4 +211,4 @@ def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> np.ndar
             "the equations are singular: a resonance without any damping; add damping or leave "
             "this value out"
         )
-    return scale * zgetrs(factor, pivots, scale * load)[0]
+    return scale * zgetrs(factor, pivots, scale * load)[0], float(condition)

@@ -235,8 +235,8 @@ LINEAR_MODELS = [
         "test_rolling_bearing.py::test_a_run_at_rest_starts_in_the_equilibrium_and_stays",
         (
             "cages held at another angle",
-            "spin_at_start(self.body)[0])",
-            "spin_at_start(self.body)[0] + 1.0)",
+            "angle = spin_at_start(self.body)[0]",
+            "angle = spin_at_start(self.body)[0] + 1.0",
         ),
     ),
     *mutations(
