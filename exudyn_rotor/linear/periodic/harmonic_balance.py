@@ -193,9 +193,7 @@ class _Balance:
         return (scaled - self.free @ on_free) / self.scale
 
 
-def _scaled_solve(
-    A: np.ndarray, load: np.ndarray, scale: np.ndarray
-) -> tuple[np.ndarray, float]:
+def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, float]:
     """Solve ``A x = f`` in scaled unknowns; return their reciprocal condition number, too.
 
     Raises
