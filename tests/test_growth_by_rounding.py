@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import STEEL
+from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, stability
 from exudyn_rotor.linear.periodic.exponents import constant_exponents, motions
@@ -160,3 +161,20 @@ def test_soft_directions_are_exact_beside_stiff_ones():
     ]
     alone, beside = (np.sort(np.abs(constant_exponents(part))) for part in parts)
     np.testing.assert_allclose(beside[:6], alone, rtol=1e-14)
+
+
+@pytest.mark.parametrize("damping", [[10.0, 10.0, 10.0], [1e3, 1e3, 0.0], [10.0, 1e3, 0.0]])
+@pytest.mark.parametrize("masses", [[1e-2, 1e-9], [1e-4, 1e-4], [1e-3, 1e-2]])
+def test_uneven_rotor_held_by_dampers_alone_does_not_grow(damping, masses):
+    """A free place and tilt in space are neutral, on dampers as without; excess masses [kg]."""
+    rotor = ring_rotor(0.1, 0.15, 20.0)
+    for node, mass in zip((5, 2), masses, strict=True):
+        rotor = rotor.add_point_mass(rotor.nodes[node], mass)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    dampers = [Support(name, 0.0, np.diag(damping)) for name in ("left", "right")]
+    found = stability(rotor, [30.0, 300.0], supports=dampers, stiffening="tilt")
+    assert np.all(found.stable)
+    assert np.all(found.growth < 1e-3)
+    pushed = [Support(name, np.diag([-5.0, -5.0, 0.0])) for name in ("left", "right")]
+    pushed = stability(rotor, [30.0, 300.0], supports=[*dampers, *pushed], stiffening="tilt")
+    assert not np.any(pushed.stable)  # springs that push away, 5 N/m beside 1e3 N s/m

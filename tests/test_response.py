@@ -96,6 +96,24 @@ def test_anisotropic_supports_make_the_ellipse_of_two_oscillators():
     assert minor[np.argmin(np.abs(SPEEDS - 240.0))] < 0.0  # backward between the critical speeds
 
 
+@pytest.mark.filterwarnings("ignore:the centre of mass is")
+def test_soft_direction_beside_a_rigid_one():
+    """Bearings of 1e9 and 1e12 N/m are rigid to this rotor of 1 N/m; beside them 1e3 N/m.
+
+    In the rotor frame that is the difference of numbers of 1e12, which round by 1e-4: 1e-7 of it,
+    and a tenfold response.
+    """
+    uneven = random_rotor(1, [0.0, 0.0, 1.0])
+    rotor = uneven.with_interface("left", range(3)).with_interface("right", range(3, 6)).reduce(0)
+    found = []
+    for stiff in (1e9, 1e12):
+        stiffness = np.diag([stiff, 1e3, 1e3])
+        supports = [Support(name, stiffness, 10.0) for name in ("left", "right")]
+        found.append(unbalance_response(rotor, [5.0, 30.0], supports=supports, accuracy=None))
+    first, second = (one.phasor("left", "n2") for one in found)
+    np.testing.assert_allclose(first, second, rtol=3e-5)
+
+
 def test_between_anisotropic_criticals_the_rotor_frame_sees_twice_the_speed():
     supports = held(np.diag([K, 2 * K]))
     options = {"unbalances": [Unbalance("mid", 1e-4)], "own": False, "supports": supports}

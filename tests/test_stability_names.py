@@ -208,3 +208,13 @@ def test_thresholds_stand_below_their_heads():
     assert [line[: len(label)].strip() for line in lines] == [label, "3e-07", "500000"]
     kind = lines[0].index("kind")
     assert [line[kind:] for line in lines[1:]] == ["torsional", "lateral"]
+
+
+def test_growth_below_its_bound_is_told_with_the_bound():
+    """Where differences of forces leave 4e-3 1/s, an axial growth of −2e-3 1/s is not known."""
+    values = [[-1.0 + 100.0j, -2e-3 + 50.0j, 1e-14 + 70.0j]]
+    names = {"frequencies_inertial": [[100.0, 50.0, 70.0]], "nodal_diameters": [[1, 0, 0]]}
+    names["whirl_codes"] = [[WHIRLS.index(name) for name in ("forward", "axial", "torsional")]]
+    names["bounds"] = [[1e-3, 4e-3, 1e-12]]
+    result = Stability([50.0], values, values, [-2e-3], [True], [0.0], **names, tolerance=1e-9)
+    assert result.table().splitlines()[1].split()[:4] == ["50.0000", "-1", "0", "±0.004"]

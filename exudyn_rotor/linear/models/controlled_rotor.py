@@ -167,7 +167,9 @@ class ControlledRotor(ExtendedRotor):
                 for n, X in added.items():
                     terms[n] = terms.get(n, 0.0) + factor * X
         H = None if plain.H is None else self._joined(plain.H)
-        return PeriodicSystem(plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding)
+        return PeriodicSystem(
+            plain.speed, {0: self.mass_matrix}, D, K, H, plain.rounding, plain.drift
+        )
 
     @cached_property
     def _between(self) -> tuple[Terms, Terms, Terms]:

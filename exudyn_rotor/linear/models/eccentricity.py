@@ -52,6 +52,18 @@ def without_drive(invariants: Invariants) -> tuple[float, float]:
     return error, error ** (1.0 / 3.0)
 
 
+def decoupling(invariants: Invariants) -> float:
+    """Return which share of rates errs where spin and lateral motion are taken for decoupled.
+
+    ``(J/Θ)² + m e²/Θ``, with the product of inertia J and the eccentricity e. By as much of Ω, and
+    of the decay that dampers bring, a motion drifts that stands still in space, tilted or moved.
+    """
+    inv = invariants
+    across = np.eye(3) - np.outer(inv.direction, inv.direction)
+    couple, offset = across @ inv.J @ inv.direction, across @ inv.center
+    return float(couple @ couple / inv.Theta**2 + inv.mass * (offset @ offset) / inv.Theta)
+
+
 def is_balanced(invariants: Invariants) -> bool:
     """True where centre of mass and principal axis are on the spin axis but for rounding."""
     inv = invariants

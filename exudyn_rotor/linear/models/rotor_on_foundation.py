@@ -141,7 +141,7 @@ class RotorOnFoundation(ExtendedRotor):
             for name, harmonics in zip("DK", _coupling(support, speed), strict=True):
                 add_terms(terms[name], harmonics, pulled)
         H = system.H if system.H is None else self._joined(system.H)
-        return PeriodicSystem(float(speed), *terms.values(), H)
+        return PeriodicSystem(float(speed), *terms.values(), H, drift=system.drift)
 
     @cached_property
     def _both(self) -> list[np.ndarray]:

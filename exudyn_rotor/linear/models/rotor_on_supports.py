@@ -17,7 +17,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.eccentricity import warn_of_eccentricity
+from exudyn_rotor.linear.models.eccentricity import decoupling, warn_of_eccentricity
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.identity_basis import as_reduced
 from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
@@ -217,7 +217,12 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         if self.spin is not None and self.spin.coupled:
             torsion = self.steady_torsion(speed)
             K[0] = K[0] + torsion * np.outer(self.spin.momentum, self.spin.momentum)
-        return PeriodicSystem(float(speed), {0: self.invariants.M}, D, K, self.invariants.H)
+        system = PeriodicSystem(float(speed), {0: self.invariants.M}, D, K, self.invariants.H)
+        return system if self.spin is None else replace(system, drift=self._drift)
+
+    @cached_property
+    def _drift(self) -> float:
+        return decoupling(self.invariants)
 
     def steady_torsion(self, speed: float) -> float:
         """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].

@@ -206,7 +206,8 @@ def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> tuple[n
     condition = zgecon(factor, np.abs(matrix).sum(axis=0).max())[0] if info == 0 else 0.0
     if condition < _SINGULAR:
         raise ValueError(
-            "the equations are singular: a resonance without any damping; add damping or leave "
-            "this value out"
+            "the equations are singular: a resonance without any damping, or stiffnesses that "
+            "differ by more than 1e14; add damping, leave this value out, or take a bearing that "
+            "is rigid as one a thousand times stiffer than the rotor"
         )
     return scale * zgetrs(factor, pivots, scale * load)[0], float(condition)

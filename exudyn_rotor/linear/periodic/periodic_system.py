@@ -38,6 +38,9 @@ class PeriodicSystem:
         :func:`forced_motion` knows the frequency ν; all else leaves it out.
     rounding : float
         Relative error of the entries of D and K, that of one operation by default.
+    drift : float
+        Share of the rates, of Ω and decay, with which a motion that stands still in space drifts
+        by what the equations neglect.
     """
 
     speed: float
@@ -46,6 +49,7 @@ class PeriodicSystem:
     K: Terms
     H: np.ndarray | None = None
     rounding: float = EPSILON
+    drift: float = 0.0
 
     @property
     def size(self) -> int:
@@ -109,7 +113,7 @@ class PeriodicSystem:
             {n: basis.T @ X @ basis for n, X in terms.items()} for terms in (self.M, self.D, self.K)
         )
         H = None if self.H is None else basis.T @ self.H @ basis
-        return PeriodicSystem(self.speed, *parts, H, self.rounding)
+        return PeriodicSystem(self.speed, *parts, H, self.rounding, self.drift)
 
 
 @dataclass(frozen=True, eq=False)

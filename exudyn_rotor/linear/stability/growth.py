@@ -21,6 +21,8 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.threads import one_thread
 
 _MODES = 10  # of a large SolidRotor
+_DRIFT = 3.0  # times its estimate that a motion may drift by what the equations neglect
+_FASTEST = 100.0  # revolutions' rate beyond which decay does not count for it
 
 
 class Growth(NamedTuple):
@@ -77,7 +79,8 @@ def growth_of(
     content: WhirlContent | None = None,
 ) -> Growth:
     """Return the growth of all motions of a system, in order."""
-    values, speed, bounds = modes.values, system.speed, modes.bounds
+    values, speed = modes.values, system.speed
+    bounds = np.maximum(modes.bounds, _drifts(values, system))
     names: tuple[np.ndarray, ...] = ()
     if content is not None:
         names = content.named(modes, speed)[1:]
@@ -89,6 +92,15 @@ def growth_of(
     if not (constant or len(modes.orders) > 1):
         return growth
     return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
+
+
+def _drifts(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
+    """Return the drift of motions that stand still in space by what the equations neglect [1/s]."""
+    speed = abs(system.speed)
+    decay = min(np.abs(values.real).max(initial=0.0), _FASTEST * speed)
+    drift = _DRIFT * system.drift * (speed + decay)
+    turning = [fold(values - 1j * sense * speed, abs(system.base)) for sense in (1, -1)]
+    return np.where(np.min(np.abs(turning), axis=0) <= drift, drift, 0.0)
 
 
 def held_space(model: LinearModel, fastest: float, modes: int | None, residual: float) -> Space:

@@ -14,6 +14,7 @@ from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
+_EXACT = 1e-8  # share of a motion's rate: bounds below it are rounding of the last digits
 _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
 
 
@@ -41,7 +42,8 @@ class Stability(Result):
         Frequency of the coefficients [rad/s], 0 where they are constant.
     bounds : ndarray, as exponents
         Real parts that rounding, of the matrices and of the eigensolver, and harmonics left out can
-        feign [1/s], from the condition of each exponent.
+        feign [1/s], from the condition of each exponent; of motions that stand still in space also
+        what the equations neglect of a rotor off its axis.
     frequencies_inertial : ndarray, as exponents
         Frequency of the motion's strongest wave seen from outside [rad/s], not modulo `base`; by
         Floquet's method, where Hill's does not converge, modulo `base`.
@@ -177,6 +179,17 @@ class Stability(Result):
         largest = np.where(self.families == family, growth, -np.inf).max(axis=1)
         return np.where(np.isfinite(largest), largest, np.nan)
 
+    def _written(self, family: str) -> list[str]:
+        """Return the growth of a family for the table: '±' its bound where that hides it."""
+        own = (self.families == family) & (np.abs(self.exponents.real) <= self.bounds)
+        rates = np.maximum(np.abs(self.exponents), self.speeds[:, None])
+        hidden = np.where(own & (self.bounds > _EXACT * rates), self.bounds, 0.0).max(axis=1)
+        growth = zip(self.growth_of(family), hidden, strict=True)
+        return [
+            "-" if np.isnan(g) else f"±{bound:.1g}" if g == 0.0 and bound else f"{g:.4g}"
+            for g, bound in growth
+        ]
+
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`plot`."""
         shown = Units.of(units)
@@ -197,19 +210,22 @@ class Stability(Result):
     def table(self, *, units: str = "SI") -> str:
         """Return speed, growth of the families, the least stable motion and verdict as text.
 
+        A family whose growth is below what its bound can feign has '±' and the bound, but for
+        rounding of the last digits, which is 0.
+
         `units` are those of :meth:`plot`.
         """
         shown = Units.of(units)
         speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors > 0.0)
-        growth = np.array([self.growth_of(name) for name in FAMILIES[:3]]).T
+        growth = [self._written(name) for name in FAMILIES[:3]]
         lines = [
             f"{speed:>13}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
             f"{frequency:>17}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
         ]
         for row, column in enumerate(self.least_stable):
-            parts = ["-" if np.isnan(value) else f"{value:.4g}" for value in growth[row]]
+            parts = [family[row] for family in growth]
             n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
             heard = shown.frequencies(self.frequencies_inertial[row, column])
             verdict = "stable" if self.stable[row] else "unstable"

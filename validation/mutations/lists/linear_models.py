@@ -75,6 +75,29 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "linear/models/eccentricity.py",
+        "test_growth_by_rounding.py::test_uneven_rotor_held_by_dampers_alone_does_not_grow",
+        (
+            "product of inertia does not couple spin and tilts",
+            "couple @ couple / inv.Theta**2 +",
+            "1e-6 * couple @ couple / inv.Theta**2 +",
+        ),
+    ),
+    *mutations(
+        "linear/stability/growth.py",
+        "test_growth_by_rounding.py::test_uneven_rotor_held_by_dampers_alone_does_not_grow",
+        (
+            "every motion drifts",
+            "np.where(np.min(np.abs(turning)",
+            "np.where(0.0 * np.min(np.abs(turning)",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/harmonic_balance.py",
+        "test_response.py::test_soft_direction_beside_a_rigid_one",
+        ("rounding is smaller than it is", "EPSILON / min(self", "1e-6 * EPSILON / min(self"),
+    ),
+    *mutations(
         "linear/models/equilibrium.py",
         "test_dampers_and_stops.py::test_rotor_at_rest_lies_in_its_stops",
         (
