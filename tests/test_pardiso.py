@@ -9,10 +9,12 @@ from netgen.occ import Cylinder, OCCGeometry, Pnt, X
 from ngsolve import Mesh
 
 from exudyn_rotor import SolidRotor, free_modes
-from exudyn_rotor.solvers import factor, pardiso
+from exudyn_rotor.solvers import choice, factor, pardiso
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
+from exudyn_rotor.solvers.fill import estimated_fill
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.solvers.lanczos import lanczos_modes
+from exudyn_rotor.solvers.memory import TooLittleMemoryError
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 
@@ -71,6 +73,30 @@ def test_pardiso_gives_the_modes_of_ngsolve(shaft, monkeypatch):
     found = free_modes(again, 12)
     assert inertia_relief(again).by_blocks
     assert found.frequencies == pytest.approx(expected.frequencies, rel=1e-9)
+
+
+def test_ordering_tells_what_the_factor_takes(shaft):
+    """Beside the estimate from the places of the nodes, whose planes are no better separators."""
+    pytest.importorskip("pypardiso")
+    ordered, fill = pardiso.Ordered(shaft.stiffness), estimated_fill(shaft.stiffness, shaft.nodes)
+    assert 0.5 < ordered.needed / (8.0 * fill.entries) < 3.0
+    assert 0.3 < ordered.operations / fill.operations < 1.2
+
+
+def test_choice_with_pardiso(shaft, monkeypatch):
+    """A factor, unless it does not fit or takes much longer; asked for, an error before it."""
+    pytest.importorskip("pypardiso")
+    monkeypatch.setattr(pardiso, "SMALLEST", factor.DENSE_SIZE)
+    monkeypatch.setattr(choice, "_QUICK", 0)
+    ordered, way = pardiso.Ordered(shaft.stiffness), choice.way_of(shaft)
+    assert not choice.is_iterative(way, shaft.stiffness, ordered)
+    monkeypatch.setattr(ordered, "operations", 1e13)
+    assert choice.is_iterative(way, shaft.stiffness, ordered)
+    assert choice.fits_directly(way, shaft.stiffness, ordered)
+    monkeypatch.setattr(choice, "available_memory", lambda: 0.9 * ordered.needed)
+    assert not choice.fits_directly(way, shaft.stiffness, ordered)
+    with pytest.raises(TooLittleMemoryError, match="needs up to"):
+        inertia_relief(shaft.with_solver("direct"))
 
 
 def test_threads_share_a_factor():
