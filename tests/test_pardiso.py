@@ -97,6 +97,9 @@ def test_choice_with_pardiso(shaft, monkeypatch):
     assert not choice.fits_directly(way, shaft.stiffness, ordered)
     with pytest.raises(TooLittleMemoryError, match="needs up to"):
         inertia_relief(shaft.with_solver("direct"))
+    monkeypatch.setattr(pardiso, "available_memory", lambda: 1e6)
+    with pytest.raises(TooLittleMemoryError, match="to order the factor of"):
+        pardiso.Ordered(shaft.stiffness)
 
 
 def test_threads_share_a_factor():

@@ -11,7 +11,7 @@ from importlib.util import find_spec
 import numpy as np
 import scipy.sparse as sp
 
-from exudyn_rotor.solvers.memory import TooLittleMemoryError
+from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
 # above this size it is quicker than handing the matrix to NGSolve
 SMALLEST = 10_000
@@ -24,6 +24,7 @@ _PARAMETERS = {1: 1, 2: 3, 10: 0, 19: -1}
 _PEAK, _KEPT, _FACTOR, _OPERATIONS = 15, 16, 17, 19
 _ORDER, _FACTORISE, _SOLVE = 11, 22, 33
 _NO_MEMORY = (-2, -9)  # numbers of errors
+_ORDERING = 25.0  # bytes of the ordering and the triangle for every entry of the matrix
 
 
 class PivotError(ValueError):
@@ -48,11 +49,22 @@ class Ordered:
         Bytes that the factor and solutions will take.
     operations : float
         Operations of the factorisation.
+
+    Raises
+    ------
+    TooLittleMemoryError
+        If there is too little for the ordering, which takes a quarter of what iteration does.
     """
 
     def __init__(self, matrix: sp.csr_array) -> None:
         from pypardiso import PyPardisoSolver, ps
 
+        needed, available = _ORDERING * matrix.nnz, available_memory()
+        if needed > available:
+            raise TooLittleMemoryError(
+                f"to order the factor of {matrix.shape[0]} coordinates needs {needed / 1e9:.1f} "
+                f"GB, and {available / 1e9:.1f} GB of memory are available; use a coarser mesh"
+            )
         # else every solver looks for the library in all folders of the environment
         os.environ.setdefault("PYPARDISO_MKL_RT", ps.libmkl._name)
         self._solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)
