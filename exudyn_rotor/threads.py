@@ -39,16 +39,19 @@ class _Limit:
         """Return how many threads there were before anyone held it."""
         with self._lock:
             if self._holders == 0:
-                self._before = max((each["num_threads"] for each in _libraries().info()), default=1)
-                self._limiter = _libraries().limit(limits=1)
+                libraries = _libraries().lib_controllers
+                self._before = [(each, each.num_threads) for each in libraries]
+                for library in libraries:
+                    library.set_num_threads(1)
             self._holders += 1
-            return self._before
+            return max((count for _, count in self._before), default=1)
 
     def leave(self) -> None:
         with self._lock:
             self._holders -= 1
             if self._holders == 0:
-                self._limiter.restore_original_limits()
+                for library, count in self._before:
+                    library.set_num_threads(count)
 
 
 _LIMIT = _Limit()

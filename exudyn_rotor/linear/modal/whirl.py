@@ -210,9 +210,11 @@ class WhirlContent:
         result, last = [], (None, None)
         for entry in modes:
             vectors = entry.vectors.astype(complex)
-            negative = entry.values.imag < 0.0
-            vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
-            for half in (np.flatnonzero(~negative), np.flatnonzero(negative)):
+            negative, halves = entry.values.imag < 0.0, [np.arange(len(entry.values))]
+            if np.any(negative):
+                vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
+                halves = [np.flatnonzero(~negative), np.flatnonzero(negative)]
+            for half in halves:
                 for group in repeated(entry.values[half], entry.resolution):
                     copies = vectors[:, :, half[group]]
                     # free motions are the same at all speeds

@@ -283,7 +283,9 @@ def _without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants,
         level = chosen_level(stiffening, invariants.K2 is not None)
         terms = SpinTerms.of(invariants, second_order(invariants, level))
         estimate = invariants.K2_estimated if stiffening == "auto" else None
-        known[stiffening] = replace(invariants, K4=terms.K4, K2_estimated=estimate), terms, level
+        if terms.K4 is not invariants.K4 or estimate is not invariants.K2_estimated:
+            invariants = replace(invariants, K4=terms.K4, K2_estimated=estimate)
+        known[stiffening] = invariants, terms, level
     return known[stiffening]
 
 
@@ -299,5 +301,10 @@ def congruent(X: np.ndarray, U: np.ndarray) -> np.ndarray:
 
     The rounding of a stiff support would else be a circulatory force.
     """
-    blocks = [U.T @ (0.5 * (X + sign * X.T)) @ U for sign in (1.0, -1.0)]
-    return sum(0.5 * (B + sign * B.T) for B, sign in zip(blocks, (1.0, -1.0), strict=True))
+    result = np.zeros((U.shape[1], U.shape[1]))
+    for sign in (1.0, -1.0):
+        part = 0.5 * (X + sign * X.T)
+        if np.any(part):
+            block = U.T @ part @ U
+            result += 0.5 * (block + sign * block.T)
+    return result

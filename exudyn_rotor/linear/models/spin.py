@@ -170,6 +170,8 @@ def _held_off_center(
 
 def _stiffnesses(support: Support) -> list[np.ndarray]:
     """Return the stiffness (6, 6) at some speeds."""
+    if not support.stiffness_varies:
+        return [support.matrices(0.0)[0]] * len(_PROBED)
     speeds = list(_PROBED)
     for value in (support.stiffness, support.tilt_stiffness):
         speeds += list(np.ravel(value[0])) if isinstance(value, tuple) else []

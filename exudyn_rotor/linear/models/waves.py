@@ -76,9 +76,11 @@ def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
     parts = fields.reshape(len(points), -1).view(float)  # real beside imaginary ones
     gram = parts.T @ parts
     spaces, known = [], np.zeros((len(gram), 0))
-    for count, here in enumerate(np.split(np.arange(len(gram)), highest + 1)):
+    width = len(gram) // (highest + 1)
+    for count in range(highest + 1):
+        here = slice(count * width, (count + 1) * width)
         products = np.ascontiguousarray(gram[:, here]).view(complex)
-        within = products[here[::2]] - 1j * products[here[1::2]]
+        within = products[here][::2] - 1j * products[here][1::2]
         forward = _new_fields(within, known.T @ products)
         # both senses at once, so that neither is preferred: one has the conjugate fields
         both = np.sqrt(2.0) * np.vstack([forward, 1j * forward]) if count else forward
@@ -98,7 +100,7 @@ def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:
     From the Gram matrix of the fields F and their products with an orthonormal basis of the others.
     """
     lengths, turn = np.linalg.eigh(within - shared.conj().T @ shared)
-    least = max(_NEW_SHARE**2 * np.linalg.norm(within, 2), 1e-300)
+    least = max(_NEW_SHARE**2 * np.linalg.eigvalsh(within)[-1], 1e-300)
     directions = turn[:, lengths > least].conj().T
     return np.linalg.solve(
         np.linalg.cholesky(directions @ within @ directions.conj().T), directions

@@ -79,15 +79,29 @@ def quadratic_modes(
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
     doubtful = _errors_of_vectors(found, chosen, vectors, M, D, K) > _CLEAR
     doubtful[values == 0.0] = False
-    known = None
-    for system in zip(values, vectors, doubtful, D, K, strict=True):
-        of_system, shapes, rest, damping, stiffness = system
-        if np.any(rest):
-            given = of_system[rest], shapes[:, rest]
-            shapes[:, rest] = inverse_iterated(*given, M, damping, stiffness)
-        free = of_system == 0.0
-        known = shapes[:, free] = free_motions(M, stiffness, shapes[:, free], known)
+    for i in np.flatnonzero(np.any(doubtful, axis=1)):
+        rest = doubtful[i]
+        given = values[i, rest], vectors[i][:, rest]
+        vectors[i][:, rest] = inverse_iterated(*given, M, D[i], K[i])
+    _set_free_motions(values == 0.0, vectors, M, K)
     return list(zip(values, vectors, resolutions, bounds, strict=True))
+
+
+def _set_free_motions(free: np.ndarray, vectors: np.ndarray, M: np.ndarray, K: np.ndarray) -> None:
+    """Put :func:`free_motions` in the place of `vectors` (s, k, j) that are `free` (s, j).
+
+    Those of one system are taken where as many are free in another, too.
+    """
+    left = np.count_nonzero(free, axis=1)
+    while np.any(left > 1):
+        i = np.argmax(left > 1)
+        found = free_motions(M, K[i], vectors[i][:, free[i]])
+        forces = np.linalg.norm(K @ found, axis=(1, 2))
+        alike = forces <= _STILL_NULL * np.linalg.norm(K, axis=(1, 2))
+        alike = (alike | (np.arange(len(K)) == i)) & (left == left[i])
+        for place in np.flatnonzero(alike):
+            vectors[place][:, free[place]] = found
+        left[alike] = 0
 
 
 def _errors_of_vectors(
@@ -113,22 +127,15 @@ def _errors_of_vectors(
     return np.linalg.norm(residual, axis=1) / np.maximum(moved, 1e-300)
 
 
-def free_motions(
-    M: np.ndarray, K: np.ndarray, otherwise: np.ndarray, known: np.ndarray | None = None
-) -> np.ndarray:
+def free_motions(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
     """Return unit vectors of free motions, ``Kx = 0``; as many as, and else, those given.
 
     Copies of one free motion (a Jordan block at zero) would hide another. K is a matrix, or several
-    that all have to vanish, shape (n, k, k). Those `known` from another speed are taken where they
-    are free here, too.
+    that all have to vanish, shape (n, k, k).
     """
     count = otherwise.shape[1]
     if count < 2:
         return otherwise
-    if known is not None and known.shape == otherwise.shape:
-        left = np.linalg.norm(K @ known)
-        if left <= _STILL_NULL * np.linalg.norm(K):
-            return known
     lower = la.cholesky(M, lower=True)
     per_mass = np.vstack([_within(lower, each) for each in np.reshape(K, (-1, *M.shape))])
     _, lengths, rows = la.svd(per_mass, full_matrices=False)
