@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -85,19 +85,36 @@ class LeftOut:
         """The finer model."""
         return self.finer.equations
 
-    def at(self, speed: float) -> tuple[PeriodicSystem, np.ndarray]:
-        """Return the finer equations at a speed [rad/s], and which coordinates are left out."""
-        system, lacking = self.equations.at(speed), self.finer.lacking
+    @cached_property
+    def _lacking(self) -> np.ndarray:
+        """Which coordinates of :meth:`at` are left out."""
+        if self.others is None:
+            return self.finer.lacking
+        more = np.count_nonzero(self.finer.lacking)
+        return np.arange(self.others.shape[1] + more) >= self.others.shape[1]
+
+    @cached_property
+    def _basis(self) -> np.ndarray:
+        """Motions of the finer model without a spin that is no coordinate, as columns."""
+        basis = np.zeros((len(self.finer.lacking), len(self._lacking)))
+        basis[np.ix_(~self.finer.lacking, ~self._lacking)] = self.others
+        basis[np.ix_(self.finer.lacking, self._lacking)] = np.eye(np.count_nonzero(self._lacking))
+        return basis
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the finer equations at a speed [rad/s]."""
+        system = self.equations.at(speed)
         if speed == 0.0:  # at rest nothing turns: coefficients are what they are at θ = 0
             M, D, K = ({0: X} for X in system.matrices(0.0))
             system = PeriodicSystem(0.0, M, D, K, system.H)
-        if self.others is None:
-            return system, lacking
-        kept, more = self.others.shape[1], np.count_nonzero(lacking)
-        wide = np.zeros((len(lacking), kept + more))
-        wide[~lacking, :kept] = self.others
-        wide[lacking, kept:] = np.eye(more)
-        return system.projected(wide), np.arange(kept + more) >= kept
+        return system if self.others is None else system.projected(self._basis)
+
+    def _constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        """Return the finer equations at speeds where they do not have to be made one by one."""
+        systems = self.equations.constant_at(speeds)
+        if systems is None or self.others is None:
+            return systems
+        return systems.projected(self._basis)
 
     def shifts(self, speeds: Sequence[float], modes: Sequence[FloquetModes]) -> list[np.ndarray]:
         """Return the estimated ``λ − λ_reduced`` of the modes at each speed, (k,), complex [1/s].
@@ -110,13 +127,15 @@ class LeftOut:
         at_once = max(1, _MOST_ENTRIES // len(self.finer.lacking) ** 2)
         for first in range(0, len(speeds), at_once):
             few = slice(first, first + at_once)
-            systems = self.equations.constant_at(speeds[few]) if self.others is None else None
-            if systems is not None:
+            systems = self._constant_at(speeds[few])
+            if systems is None:
+                each = [self.at(speed) for speed in speeds[few]]
+                systems = ConstantSystems.of(each)
+            if systems is None:
+                starts = map(self._start, each, modes[few])
+                result += [_shifts(start.moved, start.values, start.shapes) for start in starts]
+            else:
                 result += self._shifts_together(systems, modes[few])
-                continue
-            for speed, entry in zip(speeds[few], modes[few], strict=True):
-                start = self._start(speed, entry)
-                result.append(_shifts(start.moved, start.values, start.shapes))
         return result
 
     def _shifts_together(
@@ -125,20 +144,23 @@ class LeftOut:
         """Return the shifts in systems that do not change in time, in arrays of equal width."""
         counts = [len(entry.values) for entry in modes]
         values = np.zeros((len(modes), max(counts)), dtype=complex)
-        shapes = np.zeros((len(modes), len(self.finer.lacking), max(counts)), dtype=complex)
-        own = np.flatnonzero(~self.finer.lacking)
+        shapes = np.zeros((len(modes), len(self._lacking), max(counts)), dtype=complex)
+        own = np.flatnonzero(~self._lacking)
         for i, (entry, count) in enumerate(zip(modes, counts, strict=True)):
-            values[i, :count], shapes[i, own, :count] = entry.values, entry.central
+            values[i, :count], shapes[i, own, :count] = entry.values, self._given(entry.central)
         shifts = _shifts(partial(moved_together, systems), values, shapes)
         return [row[:count] for row, count in zip(shifts, counts, strict=True)]
 
-    def _start(self, speed: float, modes: FloquetModes) -> _Start:
+    def _given(self, vectors: np.ndarray) -> np.ndarray:
+        """Return motions of the reduced model in those coordinates of :meth:`at` that it has."""
+        return vectors if self.others is None else self.others.T @ vectors
+
+    def _start(self, system: PeriodicSystem, modes: FloquetModes) -> _Start:
         """Return the motions of the reduced model in the coordinates of the finer one."""
-        system, lacking = self.at(speed)
         used = self._used(modes, system.step)
-        vectors = modes.vectors if self.others is None else self.others.T @ modes.vectors
-        shapes = np.zeros((np.count_nonzero(used), len(lacking), len(modes.values)), dtype=complex)
-        shapes[:, ~lacking] = vectors[used]
+        shape = np.count_nonzero(used), len(self._lacking), len(modes.values)
+        shapes = np.zeros(shape, dtype=complex)
+        shapes[:, ~self._lacking] = self._given(modes.vectors[used])
         return _Start(system, modes.orders[used], modes.values, shapes)
 
     @staticmethod

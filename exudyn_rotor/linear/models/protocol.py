@@ -100,6 +100,14 @@ class Space(Protocol):
     def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
         """Return all modes of equations that do not change in time; None where that cannot be."""
 
+    def constant_motions(
+        self, speeds: Sequence[float]
+    ) -> list[tuple[FloquetModes, PeriodicSystem]] | None:
+        """Return what :meth:`motions` does at all speeds of equations that do not change in time.
+
+        None where that cannot be, or is not faster.
+        """
+
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
     ) -> tuple[FloquetModes, PeriodicSystem]:

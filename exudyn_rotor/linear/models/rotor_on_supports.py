@@ -194,10 +194,13 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         return [(support, U) for support, U in both if support.varies]
 
     def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
-        """Return the equations at spin speeds [rad/s]; None where they change in time."""
+        """Return the equations at spin speeds [rad/s].
+
+        None where they change in time, or have to be made one by one.
+        """
         coupled = self.spin is not None and self.spin.coupled
         if coupled or self._varying or any(set(terms) > {0} for terms in self._constant):
-            return super().constant_at(speeds)
+            return None
         D, K, carried = (terms.get(0, 0.0) for terms in self._constant)
         speed = np.asarray(speeds)[:, None, None]
         D = D + self.terms.damping(speed)

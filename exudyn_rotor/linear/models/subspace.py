@@ -132,6 +132,9 @@ class Subspace:
     def constant_modes(self, speeds: Sequence[float]) -> None:
         """Return None: the subspace grows from speed to speed."""
 
+    def constant_motions(self, speeds: Sequence[float]) -> None:
+        """Return None, see :meth:`constant_modes`."""
+
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
     ) -> tuple[FloquetModes, PeriodicSystem]:

@@ -8,7 +8,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.exponents import constant_motions, motions
 from exudyn_rotor.linear.periodic.floquet_modes import (
     FloquetModes,
     constant_modes,
@@ -16,6 +16,8 @@ from exudyn_rotor.linear.periodic.floquet_modes import (
 )
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+
+_MOST_ENTRIES = 250_000  # of matrices of speeds that are solved at once
 
 
 class Equations(Protocol):
@@ -25,7 +27,10 @@ class Equations(Protocol):
         """Return the equations at a spin speed [rad/s]."""
 
     def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
-        """Return the equations at spin speeds [rad/s]; None where they change in time."""
+        """Return the equations at spin speeds [rad/s].
+
+        None where they change in time, or have to be made one by one.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +73,35 @@ class WholeSpace:
 
     def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
         """Return all modes at all speeds at once, which is faster; None where they are periodic."""
-        if self.others is None:
-            systems = self.equations.constant_at(speeds)
-        else:
-            systems = ConstantSystems.of(map(self.at, speeds))
-        return None if systems is None or len(systems.M) > 1 else constant_modes(systems)
+        systems = self._constant_at(speeds) or ConstantSystems.of(map(self.at, speeds))
+        if systems is None or len(systems.M) > 1:
+            return None
+        return [mode for few in systems.parts(_MOST_ENTRIES) for mode in constant_modes(few)]
+
+    def constant_motions(
+        self, speeds: Sequence[float]
+    ) -> list[tuple[FloquetModes, PeriodicSystem]] | None:
+        """Return all exponents with their motions, and the equations, at all speeds at once.
+
+        None where the equations are periodic, or have to be made one by one.
+        """
+        systems = self._constant_at(speeds)
+        if systems is None or len(systems.M) > 1:
+            return None
+        found = [mode for few in systems.parts(_MOST_ENTRIES) for mode in constant_motions(few)]
+        if self.others is not None:
+            found = map(self._whole, found)
+        return list(zip(found, map(self.at, speeds), strict=True))
+
+    def _constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
+        systems = self.equations.constant_at(speeds)
+        if systems is None or self.others is None:
+            return systems
+        return systems.projected(self.others)
+
+    def _whole(self, modes: FloquetModes) -> FloquetModes:
+        """Return motions in all coordinates."""
+        return replace(modes, vectors=self.others @ modes.vectors)
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True
@@ -81,7 +110,7 @@ class WholeSpace:
         system = self.at(speed)
         modes = motions(system, method, tolerance, shapes)
         if self.others is not None:
-            modes = replace(modes, vectors=self.others @ modes.vectors)
+            modes = self._whole(modes)
         return modes, system
 
     def steady_motion(
@@ -99,8 +128,8 @@ class InAllCoordinates:
     """Base of models that are solved in all coordinates."""
 
     def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
-        """Return the equations at spin speeds [rad/s]; None where they change in time."""
-        return ConstantSystems.of(map(self.at, speeds))
+        """Return None: the equations are made one by one."""
+        return None
 
     def space(
         self,
@@ -128,5 +157,5 @@ class _Tabulated:
     def at(self, speed: float) -> PeriodicSystem:
         return self.systems[float(speed)]
 
-    def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
-        return ConstantSystems.of(map(self.at, speeds))
+    def constant_at(self, speeds: Sequence[float]) -> None:
+        return None

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.periodic.companion import Companion
-from exudyn_rotor.linear.periodic.periodic_system import EPSILON, times
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON, ConstantSystems, times
 
 # a double root of a defective eigenvalue splits by the root of the rounding error
 _SPLIT = 4.0 * np.sqrt(EPSILON)
@@ -77,14 +77,46 @@ def quadratic_modes(
     values, bounds = (np.take_along_axis(X, chosen, axis=1) for X in (values, bounds))
     vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
+    _iterate_doubtful(found, chosen, values, vectors, M, D, K)
+    _set_free_motions(values == 0.0, vectors, M, K)
+    return list(zip(values, vectors, resolutions, bounds, strict=True))
+
+
+def all_quadratic_modes(
+    systems: ConstantSystems, shapes: bool = True
+) -> list[tuple[np.ndarray, np.ndarray, float, np.ndarray]]:
+    """Return what :func:`quadratic_modes` does, of all 2k eigenvalues, as they come.
+
+    The systems share their mass matrix. Without `shapes` vectors may err by rounding.
+    """
+    M, D, K = systems.M[0], systems.D, systems.K
+    companion, size = Companion.of(M, D, K, systems.rounding), len(M)
+    found, states = companion.modes()
+    errors, bounds = companion.errors
+    values = resolved(found, errors).astype(complex)
+    vectors = states[:, :size] / np.linalg.norm(states[:, :size], axis=1, keepdims=True)
+    if shapes:
+        everyone = np.broadcast_to(np.arange(2 * size), values.shape)
+        _iterate_doubtful(found, everyone, values, vectors, M, D, K)
+    return list(zip(values, vectors, resolution_of(found), bounds, strict=True))
+
+
+def _iterate_doubtful(
+    found: np.ndarray,
+    chosen: np.ndarray,
+    values: np.ndarray,
+    vectors: np.ndarray,
+    M: np.ndarray,
+    D: np.ndarray,
+    K: np.ndarray,
+) -> None:
+    """Replace vectors (s, k, j) that may be wrong; see :func:`_errors_of_vectors`."""
     doubtful = _errors_of_vectors(found, chosen, vectors, M, D, K) > _CLEAR
     doubtful[values == 0.0] = False
     for i in np.flatnonzero(np.any(doubtful, axis=1)):
         rest = doubtful[i]
         given = values[i, rest], vectors[i][:, rest]
         vectors[i][:, rest] = inverse_iterated(*given, M, D[i], K[i])
-    _set_free_motions(values == 0.0, vectors, M, K)
-    return list(zip(values, vectors, resolutions, bounds, strict=True))
 
 
 def _set_free_motions(free: np.ndarray, vectors: np.ndarray, M: np.ndarray, K: np.ndarray) -> None:

@@ -14,12 +14,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.linear.periodic.companion import Companion
-from exudyn_rotor.linear.periodic.eigenvalues import inverse_iterated, resolution_of, resolved
+from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
 from exudyn_rotor.linear.periodic.periodic_system import (
+    ConstantSystems,
     PeriodicSystem,
     UnconvergedError,
     fold,
@@ -65,9 +66,8 @@ def motions(
     but for multiples of the base, and a motion is what it is at θ = 0, as one harmonic.
     """
     check_eigen(system, method)
-    constant = system.is_constant or system.speed == 0.0
-    if constant and method != "floquet":
-        return _constant_motions(system, shapes)
+    if system.stands_still and method != "floquet":
+        return constant_motions(ConstantSystems.of([system]), shapes)[0]
     if method != "floquet":
         try:
             found = _solve_by_hill(system, tolerance)
@@ -82,16 +82,12 @@ def motions(
     return FloquetModes(resolved(values, bounds), shapes, np.array([0]), 0.0, bounds)
 
 
-def _constant_motions(system: PeriodicSystem, shapes: bool) -> FloquetModes:
-    matrices = system.matrices(0.0)
-    companion = Companion.of(*matrices, system.rounding)
-    values, states = companion.modes()
-    errors, bounds = companion.errors
-    resolution, values = resolution_of(values), resolved(values, errors).astype(complex)
-    vectors = states[: system.size]
-    if shapes:
-        vectors = inverse_iterated(values, vectors, *matrices)
-    return FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
+def constant_motions(systems: ConstantSystems, shapes: bool = True) -> list[FloquetModes]:
+    """Return what :func:`motions` does of systems that do not change in time."""
+    return [
+        FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
+        for values, vectors, resolution, bounds in all_quadratic_modes(systems, shapes)
+    ]
 
 
 def descending(values: np.ndarray) -> np.ndarray:
@@ -101,7 +97,7 @@ def descending(values: np.ndarray) -> np.ndarray:
 
 def check_eigen(system: PeriodicSystem, method: str) -> None:
     """Refuse the method 'eigen' where the system is periodic."""
-    if method == "eigen" and not (system.is_constant or system.speed == 0.0):
+    if method == "eigen" and not system.stands_still:
         raise ValueError(
             f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
             "supports or a foundation); use 'auto', 'hill' or 'floquet'"

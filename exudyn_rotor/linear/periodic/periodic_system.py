@@ -7,7 +7,7 @@ with the matrices given by their Fourier terms in θ; constant where only the te
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import gcd
@@ -145,6 +145,19 @@ class ConstantSystems:
             matrices.append(system.matrices(0.0))
         M, D, K = (np.array(each) for each in zip(*matrices, strict=True))
         return cls(M[:1] if np.all(M[0] == M) else M, D, K, *roundings)
+
+    def projected(self, basis: np.ndarray) -> ConstantSystems:
+        """Return the equations of motions in a real basis (k, r)."""
+        parts = (basis.T @ X @ basis for X in (self.M, self.D, self.K))
+        return ConstantSystems(*parts, self.rounding)
+
+    def parts(self, entries: int) -> Iterator[ConstantSystems]:
+        """Yield some at a time, of so few that D and K have not more than `entries` each."""
+        at_once = max(1, entries // self.D[0].size)
+        for first in range(0, len(self.D), at_once):
+            few = slice(first, first + at_once)
+            M = self.M if len(self.M) == 1 else self.M[few]
+            yield ConstantSystems(M, self.D[few], self.K[few], self.rounding)
 
 
 def times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -79,17 +80,34 @@ def growth_of(
     content: WhirlContent | None = None,
 ) -> Growth:
     """Return the growth of all motions of a system, in order."""
-    values, speed = modes.values, system.speed
-    bounds = np.maximum(modes.bounds, _drifts(values, system))
-    names: tuple[np.ndarray, ...] = ()
-    if content is not None:
-        names = content.named(modes, speed)[1:]
-    folded = fold(values, abs(system.base))
+    names = () if content is None else content.named(modes, system.speed)[1:]
+    return _growth(modes, system, names)
+
+
+@one_thread()
+def constant_growths(
+    space: Space, speeds: Sequence[float], content: WhirlContent
+) -> list[Growth] | None:
+    """Return the growth at all speeds at once; None where that cannot be, or is not faster."""
+    found = space.constant_motions(speeds)
+    if found is None:
+        return None
+    modes, systems = zip(*found, strict=True)
+    named = content.named_at(modes, speeds)
+    return [
+        _growth(entry, system, names)
+        for entry, system, (_, *names) in zip(modes, systems, named, strict=True)
+    ]
+
+
+def _growth(modes: FloquetModes, system: PeriodicSystem, names: Sequence[np.ndarray]) -> Growth:
+    """Return the growth of all motions, whose names are given in their order."""
+    bounds = np.maximum(modes.bounds, _drifts(modes.values, system))
+    folded = fold(modes.values, abs(system.base))
     order = descending(folded)
     names = tuple(name[order] for name in names)
     growth = Growth(folded[order], bounds[order], abs(system.base), names)
-    constant = system.is_constant or speed == 0.0
-    if not (constant or len(modes.orders) > 1):
+    if not (system.stands_still or len(modes.orders) > 1):
         return growth
     return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
 

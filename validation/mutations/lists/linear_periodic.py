@@ -227,8 +227,8 @@ LINEAR_PERIODIC = [
         ),
         (
             "free motions of another speed where they are none",
-            "left <= _STILL_NULL * np.linalg.norm(K)",
-            "left >= 0.0",
+            "forces <= _STILL_NULL * np.linalg.norm(K, axis=(1, 2))",
+            "forces >= 0.0",
         ),
     ),
     *mutations(
