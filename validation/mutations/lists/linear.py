@@ -278,8 +278,10 @@ LINEAR = [
         ),
         (
             "names of folded exponents",
-            "content.named(modes, speed)",
-            "content.named(replace(modes, values=fold(values, abs(system.base))), speed)",
+            "names = () if content is None else content.named(modes, system.speed)[1:]",
+            "folded = fold(modes.values, abs(system.base))\n"
+            "    modes = FloquetModes(folded, modes.vectors, modes.orders, 0.0, modes.bounds)\n"
+            "    names = () if content is None else content.named(modes, system.speed)[1:]",
         ),
     ),
     *mutations(
