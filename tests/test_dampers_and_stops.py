@@ -4,6 +4,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from point_rotors import ring_rotor
+from test_supports_in_scenes import rings
 
 from exudyn_rotor import (
     ClearanceStop,
@@ -54,6 +55,20 @@ def test_spring_carries_and_the_film_does_not():
     np.testing.assert_allclose(held.force([1e-5, 0.0], [0.0, 0.0]), [-50.0, 0.0])
     with pytest.raises(ValueError, match="a film carries no static load"):
         damper().equilibrium(100.0, [0.0, -1.0])
+
+
+def test_dampers_beside_springs_leave_them_the_weight():
+    """The rotor sags by its weight over both springs' stiffness, and stays there."""
+    rotor = rings(heavy=0.0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, spin=50.0, translation="none", gravity=[0.0, -9.81, 0.0])
+    for name in ("left", "right"):
+        add_supports(body, [Support(name, 2e6 * np.eye(3), 100.0), damper(name)])
+    mbs.Assemble()
+    sag = 0.5 * rotor.invariants.mass * 9.81 / 2e6
+    for name in ("left", "right"):
+        moved = steady_state(body).interface_motion(name)
+        np.testing.assert_allclose(moved[:2], [0.0, -sag], atol=1e-9 * sag)
 
 
 def test_stop_pushes_back_and_rubs():

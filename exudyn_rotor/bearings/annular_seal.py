@@ -87,6 +87,7 @@ class AnnularSeal(Bearing):
      [-2.96  4.62]]
     """
 
+    carries: ClassVar[bool] = False
     _unloaded: ClassVar[bool] = True
 
     radius: float

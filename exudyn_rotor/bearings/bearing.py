@@ -34,8 +34,11 @@ class LoadedBearing(ABC):
     load : ndarray, shape (2,), or None
         Static load on the journal [N], about whose equilibrium linear analyses take the bearing;
         see :func:`exudyn_rotor.bearing_loads`. Scenes do not need it.
+    carries : bool
+        Whether it takes a share of the rotor's weight.
     """
 
+    carries: ClassVar[bool] = True
     _unloaded: ClassVar[bool] = False  # whether no load counts as one of zero
 
     interface: str

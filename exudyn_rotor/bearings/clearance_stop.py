@@ -68,6 +68,7 @@ class ClearanceStop(Bearing):
     array([-1000.,  -100.])
     """
 
+    carries: ClassVar[bool] = False  # while it is open
     _unloaded: ClassVar[bool] = True
 
     radius: float

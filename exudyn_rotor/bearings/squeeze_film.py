@@ -77,6 +77,11 @@ class SqueezeFilmDamper(ShortFilmBearing):
         checks.keep_numbers(self, {"centring_stiffness": "N/m"}, least=0.0)
         checks.keep_numbers(self, {"orbit": ""}, least=0.0, below=1.0)
 
+    @property
+    def carries(self) -> bool:
+        """Whether it takes a share of the rotor's weight: by its spring alone."""
+        return self.centring_stiffness > 0.0
+
     def force(self, displacement: ArrayLike, velocity: ArrayLike) -> np.ndarray:
         """Return the force of film and spring on the journal [N], shape (2,).
 

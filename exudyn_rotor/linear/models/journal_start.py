@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
@@ -85,7 +84,7 @@ def _places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
 def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
     """Return bearings and their static loads: their own, or on two the weight by the lever rule."""
     bearings = [each.support for each in body.supports if isinstance(each.support, Bearing)]
-    bearings = [each for each in bearings if not isinstance(each, ClearanceStop)]
+    bearings = [bearing for bearing in bearings if bearing.carries]
     loads = [bearing.load for bearing in bearings]
     if len(bearings) == 2:
         loads = _weights(body, [bearing.interface for bearing in bearings])
