@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -86,14 +86,17 @@ def growth_of(
 
 @one_thread()
 def constant_growths(
-    space: Space, speeds: Sequence[float], content: WhirlContent
+    space: Space, speeds: Sequence[float], content: Callable[[], WhirlContent]
 ) -> list[Growth] | None:
     """Return the growth at all speeds at once; None where that cannot be, or is not faster."""
-    found = space.constant_motions(speeds)
+    try:
+        found = space.constant_motions(speeds)
+    except ValueError:  # solved one by one, the error names its speed
+        return None
     if found is None:
         return None
     modes, systems = zip(*found, strict=True)
-    named = content.named_at(modes, speeds)
+    named = content().named_at(modes, speeds)
     return [
         _growth(entry, system, names)
         for entry, system, (_, *names) in zip(modes, systems, named, strict=True)

@@ -20,7 +20,6 @@ from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.stability.growth import (
-    Growth,
     GrowthAt,
     check_options,
     constant_growths,
@@ -29,6 +28,7 @@ from exudyn_rotor.linear.stability.growth import (
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
+from exudyn_rotor.threads import meanwhile
 
 
 def stability(
@@ -111,8 +111,14 @@ def stability(
     space = held_space(model, values[-1], modes, residual)
     if executor is not None:
         space = space.prepared(values)
-    task = GrowthAt(space, method, tolerance, WhirlContent.of(model))
-    solved = _growths(task, values, executor, progress)
+    with meanwhile(WhirlContent.from_points, WhirlContent.points_of(model)) as content:
+        solved = None
+        if executor is None and not progress and method != "floquet":
+            solved = constant_growths(space, values, content)
+        if solved is None:
+            task = GrowthAt(space, method, tolerance, content())
+            workers = None if space.is_shared else executor
+            solved = sweep(task, values, executor=workers, progress=progress, label="stability")
     exponents, base = (np.array([getattr(s, name) for s in solved]) for name in ("values", "base"))
     names = ("frequencies_inertial", "whirl_codes", "nodal_diameters")
     periodic = np.where(base > 0.0, base, values)
@@ -135,21 +141,6 @@ def stability(
     )
     _warn_of_basis(basis, result)
     return result
-
-
-def _growths(
-    task: GrowthAt, speeds: np.ndarray, executor: Executor | None, progress: bool
-) -> list[Growth]:
-    """Return the growth at all speeds; at once where nothing changes in time."""
-    if executor is None and not progress and task.method != "floquet":
-        try:
-            growths = constant_growths(task.space, speeds, task.content)
-        except ValueError:
-            growths = None  # one by one below, so that the error names its speed
-        if growths is not None:
-            return growths
-    workers = None if task.space.is_shared else executor
-    return sweep(task, speeds, executor=workers, progress=progress, label="stability")
 
 
 def _warn_of_basis(basis: BasisError, result: Stability) -> None:
