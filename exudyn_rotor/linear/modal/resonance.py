@@ -270,14 +270,14 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
 
 
 def _bracketed(
-    stiffness: Callable[[float], np.ndarray], limit: float, count: int = _BRACKETS
+    stiffness: Callable[[float], np.ndarray], limit: float
 ) -> list[tuple[float, np.ndarray]]:
     """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit].
 
     What is a free motion at every speed, like a spin or an axial motion that nothing holds, is
     left out first: the sign of its eigenvalue is rounding.
     """
-    grid = np.linspace(limit / count, limit, count)
+    grid = np.linspace(limit / _BRACKETS, limit, _BRACKETS)
     rest = _never_free(stiffness, grid)
 
     def at(speed: float) -> np.ndarray:

@@ -67,8 +67,6 @@ class WhirlContent:
         Amplitudes of what stands still beside the rotor.
     rows : ndarray of int or None, shape (c,)
         Which coordinates count; all by default.
-    knows_diameters : bool
-        False where mode shapes are missing: then only n = −1, 0, 1 are seen.
     """
 
     orders: np.ndarray
@@ -79,7 +77,6 @@ class WhirlContent:
     whole: np.ndarray
     standing: np.ndarray
     rows: np.ndarray | None = None
-    knows_diameters: bool = True
 
     @classmethod
     def of(cls, model: LinearModel) -> WhirlContent:
@@ -108,7 +105,7 @@ class WhirlContent:
         orders, *each = zip(*map(_operators, coordinates, motions, still), strict=True)
         # the energies of several rotors add up
         operators = (np.concatenate(parts, axis=-2) for parts in each)
-        return cls(orders[0], *operators, standing, points.rows, points.is_mesh)
+        return cls(orders[0], *operators, standing, points.rows)
 
     def within(self, basis: np.ndarray | None) -> WhirlContent:
         """Return the content of a basis (c, r) of the coordinates; None for all of them."""
