@@ -10,6 +10,7 @@ from exudyn_rotor import (
     Support,
     add_rotor,
     add_supports,
+    bearing_loads,
     recommended_settings,
     spectra,
     stability,
@@ -201,3 +202,26 @@ def test_refused_input():
             bearing(**changes)
     with pytest.raises(ValueError, match="without one no element carries"):
         bearing().equilibrium(1.0, [0.0, 0.0])
+
+
+def test_cages_stand_in_the_linear_equations_of_a_scene():
+    """Its frequencies are those on the tangents of the contacts as they are at the start."""
+    gravity, reduced = [0.0, -9.81, 0.0], rotor()
+    loads = bearing_loads(reduced, ["left", "right"], gravity)
+    pair = [
+        bearing(name, load=load, damping=500.0, clearance=5e-6)
+        for name, load in zip(("left", "right"), loads, strict=True)
+    ]
+    thrust = Support("right", np.diag([0.0, 0.0, 1e6]), 100.0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=100.0, gravity=gravity)
+    add_supports(body, [*pair, thrust])
+    mbs.Assemble()
+    springs = [
+        Support(one.interface, one._tangent(one.equilibrium(0.0, angle=0.0), 0.0), 500.0)
+        for one in pair
+    ]
+    found = stability(mbs, [100.0], body=body, accuracy=None).exponents[0]
+    expected = stability(reduced, [100.0], supports=[*springs, thrust], accuracy=None).exponents[0]
+    oscillating = expected[expected.imag > 0.0]
+    assert np.abs(found - oscillating[:, None]).min(axis=1).max() < 1e-5 * np.abs(oscillating).max()

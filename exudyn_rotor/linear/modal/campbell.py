@@ -41,7 +41,7 @@ def campbell(
     speeds: ArrayLike,
     *,
     supports: Sequence[Support] = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     modes: int | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -68,8 +68,8 @@ def campbell(
         Ascending spin speeds [rad/s].
     supports : sequence of Support, optional
         Of a rotor.
-    body : RotorBody, optional
-        The rotor in a scene.
+    body : RotorBody or sequence of these, optional
+        The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
         speed, followed from there, overdamped ones last. All by default, 10 of a large SolidRotor;

@@ -134,7 +134,7 @@ def critical_speeds(
     target: Target,
     *,
     supports: Sequence[Support] = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (0, 1),
@@ -153,8 +153,8 @@ def critical_speeds(
         See :func:`linear_model`.
     supports : sequence of Support, optional
         Of a rotor.
-    body : RotorBody, optional
-        The rotor in a scene.
+    body : RotorBody or sequence of these, optional
+        The rotor in a scene, or all of several, see :func:`linear_model`.
     order : float, optional
         Excitation order p ≥ 0 in the inertial frame; 1 for unbalance, 0 for a load at rest.
     max_speed : float, optional

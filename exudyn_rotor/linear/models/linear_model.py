@@ -21,6 +21,7 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
@@ -41,7 +42,7 @@ def linear_model(
     *,
     supports: Sequence[Support] | Support = (),
     foundation: Foundation | None = None,
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     about: str = "steady",
     dense: bool | None = None,
@@ -60,8 +61,12 @@ def linear_model(
     foundation : Foundation, optional
         What carries all supports of a rotor, by points of their names; the ground by default. The
         rotor is a reduced one, or a SolidRotor of up to 600 degrees of freedom.
-    body : RotorBody, optional
-        The rotor in a scene, from :func:`exudyn_rotor.add_rotor`.
+    body : RotorBody or sequence of these, optional
+        The rotor in a scene, from :func:`exudyn_rotor.add_rotor`. Several make a
+        :class:`RotorTrain`: all rotors of a scene that has nothing beside them but what
+        :func:`exudyn_rotor.add_supports` put on the ground or between them, gears and flexible
+        couplings. Ratios are those of the speeds at which they start, and Ω is the speed of the
+        first.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
@@ -114,7 +119,10 @@ def linear_model(
     if isinstance(target, exudyn.MainSystem):
         if linear or controlled:
             raise ValueError("supports: are for a rotor; a scene has its own connectors")
-        how = "the rotor in the scene, which add_rotor returned"
+        if isinstance(body, list | tuple):
+            train, level = scene_train(target, body)
+            return LinearTrain.of(train, level)
+        how = "the rotor in the scene, which add_rotor returned; a list of several"
         return LinearScene.of(target, reduced_body(body, how=how), about=about)
     if body is not None:
         raise TypeError(

@@ -168,12 +168,15 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s], about the steady motion there.
 
+        Cages of rolling bearings stand where they are when the rotor starts.
+
         Raises
         ------
         UnconvergedError
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
-        with probing(self, checks.number(speed, "speed", "rad/s")) as probe:
+        checks.number(speed, "speed", "rad/s")
+        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
             return equations_about(self, probe)
 
     def steady_motion(self, speed: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:

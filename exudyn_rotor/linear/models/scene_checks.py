@@ -7,11 +7,12 @@ import exudyn
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
+from exudyn_rotor.multibody.mark import mark_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 
 
-def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
-    """Refuse a system that is not assembled, another one's rotor, and what has its own speed.
+def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse a system that is not assembled, another one's rotor, and coordinates of first order.
 
     Raises
     ------
@@ -27,12 +28,24 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
         raise ValueError("the system is not assembled: call mbs.Assemble() first")
     if mbs.systemData.ODE1Size():
         raise ValueError("linear scene: coordinates of first order (ODE1) are not supported")
-    other = _second_rotor(mbs, {int(node) for node in body.nodes.values()})
-    if other is not None:
+
+
+def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
+    """Refuse what :func:`check_body` does, a second rotor, and what has its own speed.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    check_body(mbs, body)
+    others = [n for number, n in rotors_in(mbs).items() if number != int(body.objects["physics"])]
+    if others:
         raise ValueError(
-            f"linear scene: a second rotor in this system, {other!r}; one revolution is a period "
-            "for one spin speed only. Give linear analyses a RotorTrain of the reduced rotors and "
-            "their supports, with gears and couplings as Link(…)"
+            f"linear scene: a second rotor in this system, {others[0]!r}; one revolution is a "
+            "period for one spin speed only. Give body=[…] with all rotors, on supports of "
+            "add_supports and linked by these and connect_rotors; or give linear analyses a "
+            "RotorTrain of the reduced rotors and their supports, with gears and couplings as "
+            "Link(…)"
         )
     for drive in body.drives:
         if isinstance(drive, SceneConnection):
@@ -43,16 +56,14 @@ def check_scene(mbs: exudyn.MainSystem, body: RotorBody) -> None:
             )
 
 
-def _second_rotor(mbs: exudyn.MainSystem, own: set[int]) -> str | None:
-    """Return the name of a rotor on other nodes than a rotor's own; None where there is none."""
-    names = {}
+def rotors_in(mbs: exudyn.MainSystem) -> dict[int, str | None]:
+    """Return the rotors of a scene: names by the numbers of the objects with their equations."""
+    names, found = {}, {}
     for number in range(mbs.systemData.NumberOfObjects()):
         item = mbs.GetObject(number)
         nodes = [int(node) for node in item.get("nodeNumbers", ())]
         if item["objectType"] == "FFRFreducedOrder":
             names[nodes[0]] = item["name"]
-        if item["objectType"] != "GenericODE2" or own & set(nodes):
-            continue
-        if str(mbs.GetNode(nodes[0])["nodeType"]) == "RigidBodyRxyz":
-            return names.get(nodes[0], item["name"])
-    return None
+        if item["objectType"] == "GenericODE2" and mark_of(mbs, exudyn.ObjectIndex(number)):
+            found[number] = names.get(nodes[0], item["name"])
+    return found

@@ -63,7 +63,7 @@ def unbalance_response(
     *,
     own: bool = True,
     supports: Sequence[Support] = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
@@ -94,8 +94,8 @@ def unbalance_response(
         Whether the rotor's own eccentricity counts: that of added point masses, and of the mesh.
     supports : sequence of Support, optional
         Of a rotor.
-    body : RotorBody, optional
-        The rotor in a scene.
+    body : RotorBody or sequence of these, optional
+        The rotor in a scene, or all of several, see :func:`linear_model`.
     at : sequence of str, int or position, optional
         Interfaces and mesh nodes to look at; all interfaces by default.
     frame : {'inertial', 'rotor'}
@@ -189,7 +189,7 @@ def harmonic_response(
     *,
     speed: float = 0.0,
     supports: Sequence[Support] = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     at: Sequence[At] | At | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",

@@ -36,7 +36,7 @@ def stability(
     speeds: ArrayLike,
     *,
     supports: Sequence[Support] = (),
-    body: RotorBody | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
     method: str = "auto",
     tolerance: float = 1e-9,
@@ -58,8 +58,8 @@ def stability(
     supports : sequence of Support
         For a rotor. A spin that no support holds follows θ = Ωt and gives no exponent, see the
         notes of :func:`campbell`.
-    body : RotorBody, optional
-        The rotor in a ``MainSystem``.
+    body : RotorBody or sequence of these, optional
+        The rotor in a ``MainSystem``, or all of several, see :func:`linear_model`.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         For a rotor; 'full' needs one with prestress.
     method : {'auto', 'floquet', 'hill', 'eigen'}

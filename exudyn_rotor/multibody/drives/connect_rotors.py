@@ -45,6 +45,10 @@ class SceneConnection:
     object : ObjectIndex
     nodes : tuple of NodeIndex
         Nodes whose coordinates it acts on.
+    other : RotorBody or FullRotorBody, optional
+        The second rotor; None for a shaft.
+    other_at : str, optional
+        Its interface.
     """
 
     connection: Connection
@@ -53,6 +57,8 @@ class SceneConnection:
     object: exudyn.ObjectIndex
     nodes: tuple[exudyn.NodeIndex, ...]
     state: State
+    other: Body | None = None
+    other_at: str | None = None
 
     @property
     def uses_python(self) -> bool:
@@ -179,7 +185,8 @@ def connect_rotors(
     state = _state(parts, other, first, connection.law.second_axis)
     item = _item(connection, parts, state)
     nodes = tuple(node for part in parts for node in part.nodes)
-    added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state)
+    end = ends[1][:2] if ends[1:] else ()
+    added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state, *end)
     for rotor, *_ in ends:
         rotor.drives.append(added)
     return added

@@ -134,4 +134,10 @@ TRAINS = [
             "element for element in self.held.elements",
         ),
     ),
+    *mutations(
+        "linear/models/scene_train.py",
+        "test_scene_trains.py",
+        ("all rotors at one speed", "spin_at_start(body)[1] / speed", "1.0"),
+        ("what stands in the scene beside", "number not in known and", "False and"),
+    ),
 ]
