@@ -7,6 +7,7 @@ import pytest
 from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
 from test_magnetic_bearing import DELAYED, MAGNETS, PD, bearing, pair, rigid
 from test_tilting_pad import SPEED, on_pads
+from train_models import left_of_modes
 
 from exudyn_rotor import (
     BaseAcceleration,
@@ -75,6 +76,13 @@ def oscillating(result):
     """Return growth + i inertial frequency of motions that are not overdamped."""
     values = result.growth[0] + 1j * result.frequencies_inertial[0]
     return values[values.imag > 20.0]  # which of the real exponents are listed is another matter
+
+
+def test_motions_of_controllers_and_pads_hold_in_turning_axes():
+    """Found in axes at rest, where the equations of pads and uneven magnets are constant."""
+    (first, magnets), (second, pads) = UNDER_WEIGHT, PADS
+    train = RotorTrain({"A": first, "B": second}, {"A": 1.0, "B": 1.6}, {"A": magnets, "B": pads})
+    assert left_of_modes(linear_model(train), SPEED) < 1e-9
 
 
 def test_responses_without_links_are_those_alone():

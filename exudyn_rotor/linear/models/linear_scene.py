@@ -11,7 +11,8 @@ Neglected: the change of mass matrices and constraint directions along small ste
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -21,7 +22,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
-from exudyn_rotor.linear.models.probe import probing
+from exudyn_rotor.linear.models.probe import Probe, probing
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene_checks import check_scene
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates, nullspace
@@ -175,8 +176,7 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         UnconvergedError
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
-        checks.number(speed, "speed", "rad/s")
-        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
+        with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
             return equations_about(self, probe)
 
     def steady_motion(self, speed: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
@@ -203,14 +203,18 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             As :meth:`at`, where loads do not repeat with every revolution, and where nothing holds
             the own spin of a rotor with an elastic drive against a torque.
         """
-        checks.number(speed, "speed", "rad/s")
-        angle = spin_at_start(self.body)[0]
-        with held_cages(self.body, angle), probing(self, speed) as probe:
+        with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
             check_period(self, probe)
             if speed == 0.0 and ModeKind.SPIN not in self.body.selection.kinds:
-                return motion_at_rest(self, probe, tolerance, angle)
+                return motion_at_rest(self, probe, tolerance, spin_at_start(self.body)[0])
             _, orders, harmonics = steady_motion(self, probe, tolerance)
         return orders, harmonics
+
+    @contextmanager
+    def _probing(self, speed: float) -> Iterator[Probe]:
+        """Open the scene for probing, its cages as they are when the rotor starts."""
+        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
+            yield probe
 
     def undamped(self) -> LinearScene:
         """Return the scene itself: its damping does not enter the Hermitian part of equations."""

@@ -258,8 +258,8 @@ LINEAR_MODELS = [
         "test_rolling_bearing.py::test_a_run_at_rest_starts_in_the_equilibrium_and_stays",
         (
             "cages held at another angle",
-            "angle = spin_at_start(self.body)[0]",
-            "angle = spin_at_start(self.body)[0] + 1.0",
+            "with held_cages(self.body, spin_at_start(self.body)[0])",
+            "with held_cages(self.body, spin_at_start(self.body)[0] + 1.0)",
         ),
     ),
     *mutations(
@@ -276,10 +276,9 @@ LINEAR_MODELS = [
         "test_rolling_bearing.py::test_cages_stand_in_the_linear_equations_of_a_scene",
         (
             "cages turn with the rotor",
-            'checks.number(speed, "speed", "rad/s")\n        with held_cages(self.body, '
-            "spin_at_start(self.body)[0]), probing(self, speed) as probe:\n            return",
-            'checks.number(speed, "speed", "rad/s")\n        with probing(self, speed) as probe:\n'
+            'with self._probing(checks.number(speed, "speed", "rad/s")) as probe:\n'
             "            return",
+            "with probing(self, speed) as probe:\n            return",
         ),
     ),
 ]

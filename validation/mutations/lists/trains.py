@@ -122,7 +122,7 @@ TRAINS = [
     ),
     *mutations(
         "linear/models/turning.py",
-        "test_controlled_trains.py::test_rotors_without_links_are_those_alone",
+        "test_controlled_trains.py::test_motions_of_controllers_and_pads_hold_in_turning_axes",
         ("controllers' pairs stand still", "np.tile([1, -1], pairs)", "np.tile([0, 0], pairs)"),
     ),
     *mutations(
