@@ -96,7 +96,7 @@ def lateral(result, row: int = -1) -> np.ndarray:
 
 
 def left_of_modes(model, speed: float) -> float:
-    """Return ``Σ_j (λ²_{m−j} M_j + λ_{m−j} D_j + K_j) X_{m−j}`` over K_0, λ_m = λ + imΩ."""
+    """Return ``Σ_j (λ²_{m−j} M_j + λ_{m−j} D_j + K_j) X_{m−j}`` over its terms, λ_m = λ + imΩ."""
     system, modes = model.at(speed), model.space(1, speed).modes(speed, 1e-8)
     top, largest = int(modes.orders.max()), 0.0
     given = dict(zip(modes.orders.tolist(), modes.vectors, strict=True))
@@ -109,7 +109,8 @@ def left_of_modes(model, speed: float) -> float:
                 left += system.K.get(j, 0.0 * system.M[0]) @ given[m - j]
                 left += (system.M[0] @ given[m - j]) * rate**2 if j == 0 else 0.0
         largest = max(largest, np.abs(left).max())
-    return largest / np.abs(system.K[0]).max()
+    sizes = [np.abs(X[0]).max() for X in (system.K, system.D, system.M)]
+    return largest / max(sizes @ np.abs(modes.values) ** np.arange(3)[:, None])
 
 
 def bar() -> ReducedRotor:
