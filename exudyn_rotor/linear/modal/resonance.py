@@ -15,14 +15,14 @@ of Rotating Systems (2005).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 import scipy.linalg as la
-from scipy.optimize import brentq
 
+from exudyn_rotor.linear.modal.hermitian_zeros import same_speed, zeros_of_eigenvalues
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
@@ -35,14 +35,12 @@ _SHARE = 0.4
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
 _MOST_STEPS = 8
-_SAME = 1e-7
 # share of the largest inertia; an uneven mesh leaves 1e-10 for the spin
 _NO_INERTIA = 1e-6
 # deviation from K − Ω²B, relative to K, that differences in a scene may leave
 _QUADRATIC = 1e-6
 # two critical speeds this close are looked at as a pair
 PAIR = 1e-2
-_BRACKETS = 200
 _MOST_ROUNDS = 20
 Entry = TypeVar("Entry")
 _MODES = 10  # that the subspace of a full rotor begins with
@@ -188,7 +186,9 @@ def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -
     """Return every speed with a singular dynamic stiffness, with the motion."""
     stiffness = _Stiffness(equations, multiples)
     if equations.vary(stiffness, limit):
-        pairs = _bracketed(stiffness, _needed(limit, "a system that varies with the speed"))
+        pairs = zeros_of_eigenvalues(
+            stiffness, _needed(limit, "a system that varies with the speed")
+        )
     else:
         at_rest = stiffness(0.0)
         scale = equations.scale(at_rest, limit)
@@ -269,64 +269,6 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
     return [(float(speed), vector) for speed, vector in pairs]
 
 
-def _bracketed(
-    stiffness: Callable[[float], np.ndarray], limit: float
-) -> list[tuple[float, np.ndarray]]:
-    """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit].
-
-    What is a free motion at every speed, like a spin or an axial motion that nothing holds, is
-    left out first: the sign of its eigenvalue is rounding.
-    """
-    grid = np.linspace(limit / _BRACKETS, limit, _BRACKETS)
-    rest = _never_free(stiffness, grid)
-
-    def at(speed: float) -> np.ndarray:
-        return rest.conj().T @ stiffness(speed) @ rest
-
-    branches = np.array([la.eigvalsh(at(speed)) for speed in grid])
-    zeros = []
-    for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
-        for low, high in _sign_changes(branches[:, branch]):
-            speed = grid[low]
-            if low != high:
-                speed = brentq(
-                    lambda s, b=branch: la.eigvalsh(at(s))[b],
-                    grid[low],
-                    grid[high],
-                    xtol=1e-12 * limit,
-                    rtol=1e-13,
-                )
-            zeros.append((float(speed), int(branch)))
-    crossings = []
-    for group in _same_speed(sorted(zeros), lambda zero: zero[0]):
-        # one decomposition for all: the vectors of a repeated zero are orthogonal only within it
-        _, vectors = la.eigh(at(group[0][0]))
-        crossings += [(speed, rest @ vectors[:, branch]) for speed, branch in group]
-    return crossings
-
-
-def _sign_changes(values: np.ndarray) -> list[tuple[int, int]]:
-    """Return the places (before, after) of every change of sign; both the same at a zero."""
-    zeros = [(int(i), int(i)) for i in np.flatnonzero(values == 0.0)]
-    changes = np.flatnonzero(values[1:] * values[:-1] < 0.0)
-    return zeros + [(int(i), int(i) + 1) for i in changes]
-
-
-def _never_free(stiffness: Callable[[float], np.ndarray], grid: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the motions that are not free at every speed of the grid.
-
-    An eigenvalue counts as zero below the rounding of its matrix, ``10 n ε ‖H‖``.
-    """
-    sizes = []
-    for speed in grid:
-        values = np.sort(np.abs(la.eigvalsh(stiffness(speed))))
-        sizes.append(values / (10.0 * len(values) * np.finfo(float).eps * max(values[-1], 1e-300)))
-    free = min(int(np.sum(entry <= 1.0)) for entry in sizes)
-    apart = [entry[free] if np.sum(entry <= 1.0) == free else 0.0 for entry in sizes]
-    values, vectors = la.eigh(stiffness(grid[int(np.argmax(apart))]))
-    return vectors[:, np.argsort(np.abs(values))[free:]]
-
-
 def _turning(
     candidates: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
 ) -> list[Resonance]:
@@ -337,7 +279,7 @@ def _turning(
     multiples = ascending[0].multiples
     vectors = np.stack([entry.vectors for entry in ascending], axis=2)
     vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(ascending)), axis=0)
-    for group in _same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
+    for group in same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
         if len(group) > 1:
             vectors[:, :, group] = content.polarised(vectors[:, :, group], multiples)
     seen = multiples[:, None] + content.orders[None, :]
@@ -383,18 +325,6 @@ def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
         return False
     vectors = entry.vectors[:, :, None], other.vectors[:, :, None]
     return bool(content.turn_both_ways(*vectors, entry.multiples)[0])
-
-
-def _same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
-    """Return ascending entries in groups of one speed."""
-    groups: list[list[Entry]] = []
-    for entry in entries:
-        speed = speed_of(entry)
-        if groups and speed - speed_of(groups[-1][-1]) <= _SAME * speed:
-            groups[-1].append(entry)
-        else:
-            groups.append([entry])
-    return groups
 
 
 def _needed(limit: float | None, what: str) -> float:
