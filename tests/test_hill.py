@@ -10,7 +10,7 @@ from test_stability import anisotropic, mathieu, random_system
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic import hill
+from exudyn_rotor.linear.periodic import hill, truncation
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
@@ -31,13 +31,13 @@ def weakly_periodic(seed: int) -> PeriodicSystem:
 @pytest.fixture
 def sizes_solved(monkeypatch):
     """Return a list that records how many harmonics each whole solution has."""
-    solve, sizes = hill._solved, []
+    solve, sizes = truncation._solved, []
 
     def recorded(system, orders):
         sizes.append(len(orders))
         return solve(system, orders)
 
-    monkeypatch.setattr(hill, "_solved", recorded)
+    monkeypatch.setattr(truncation, "_solved", recorded)
     return sizes
 
 

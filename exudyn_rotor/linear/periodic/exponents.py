@@ -18,13 +18,15 @@ from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolv
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
-from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
+from exudyn_rotor.linear.periodic.hill import solve_hill
+from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import (
     ConstantSystems,
     PeriodicSystem,
     UnconvergedError,
     fold,
 )
+from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # distance of exponents, over the base, and cosine of shapes, from which families are conjugate
 _SAME_FAMILY, _ALIKE = 1e-3, 0.7

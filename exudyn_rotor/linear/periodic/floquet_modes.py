@@ -18,12 +18,12 @@ from exudyn_rotor.linear.periodic.eigenvalues import (
     quadratic_modes,
     repeated,
 )
-from exudyn_rotor.linear.periodic.harmonics import shifted
-from exudyn_rotor.linear.periodic.hill import Chosen, HillMotions, HillSolution, solve_hill
+from exudyn_rotor.linear.periodic.families import one_of_each_pair
+from exudyn_rotor.linear.periodic.hill import solve_hill
+from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+from exudyn_rotor.linear.periodic.truncation import HillSolution
 
-# distance of the exponents of two members of a Floquet family, as a share of their step
-_SAME_FAMILY = 1e-3
 # decay over Ω above which a motion is gone before the coefficients change
 _GONE = 100.0
 
@@ -128,14 +128,20 @@ def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
 def _apart(
     solution: HillSolution, speed: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray]:
-    """Return all exponents, unit shapes, and the columns of :func:`_families`."""
+    """Return all exponents, unit shapes, and what :func:`families.one_of_each_pair` does."""
     orders, resolution = solution.orders, solution.resolution
     values = merged(solution.values, solution.states, resolution)
     lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
     shapes = solution.shapes / lengths
     for group in repeated(values, resolution):
         shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
-    return values, shapes, *_families(values, shapes, orders, solution.step * speed, resolution)
+    center = np.flatnonzero(orders == 0)[0]
+    share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
+    spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)
+    upper = np.flatnonzero(values.imag >= 0.0)
+    ranked = upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]
+    pairs = one_of_each_pair(values, shapes, ranked, solution.step * speed, resolution)
+    return values, shapes, *pairs
 
 
 def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray:
@@ -159,43 +165,6 @@ def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray
     return shapes
 
 
-def _families(
-    values: np.ndarray, shapes: np.ndarray, orders: np.ndarray, base: float, resolution: float
-) -> tuple[np.ndarray | None, np.ndarray]:
-    """Return the columns of one motion for each pair of families, and whether it is its own one.
-
-    None for the columns where some are not found. A family that is its own conjugate counts once.
-    Two of them may share their shape, as 0 and −c/m of a motion that only a damper resists.
-    """
-    size = shapes.shape[1]
-    center = np.flatnonzero(orders == 0)[0]
-    share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
-    spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)
-    upper, step = np.flatnonzero(values.imag >= 0.0), abs(base)
-    accepted: list[int] = []
-    alone: list[bool] = []  # where a family is its own conjugate
-    # those accepted, and their conjugates where these are other families
-    known_values = np.zeros(2 * size + 1, dtype=complex)
-    known_shapes = np.zeros((2 * size + 1, *shapes.shape[:2]), dtype=complex)
-    weight = 0
-    for index in upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]:
-        if weight >= 2 * size:
-            break
-        mode = values[index], shapes[:, :, index]
-        if _is_known(mode, known_values[:weight], known_shapes[:weight], base, _SAME_FAMILY * step):
-            continue
-        other = _conjugate(mode)
-        own_pair = mode[0].imag == 0.0 or _is_known(
-            other, mode[0], mode[1][None], base, min(resolution, _SAME_FAMILY * step)
-        )
-        for value, shape in [mode] if own_pair else [mode, other]:
-            known_values[weight], known_shapes[weight] = value, shape
-            weight += 1
-        accepted.append(int(index))
-        alone.append(own_pair)
-    return np.array(accepted) if weight == 2 * size else None, np.array(alone, dtype=bool)
-
-
 def _unmixed(vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
     """Part the copies of different families that share an eigenvalue by their mean harmonic."""
     flat = vectors.reshape(-1, vectors.shape[2])
@@ -205,32 +174,3 @@ def _unmixed(vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
     shaped = span.reshape(vectors.shape)
     _, turn = np.linalg.eigh(np.einsum("h,hci,hcj->ij", orders, shaped.conj(), shaped))
     return (span @ turn).reshape(vectors.shape)
-
-
-Mode = tuple[complex, np.ndarray]
-
-
-def _conjugate(mode: Mode) -> Mode:
-    """Return the conjugate motion: λ̄ with the harmonics conj(X_−m)."""
-    return np.conj(mode[0]), mode[1][::-1].conj()
-
-
-def _is_known(
-    mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float, distance: float
-) -> bool:
-    """Return whether a motion is in the span of known ones with shifted harmonics.
-
-    Their exponents may be `distance` apart. At the same eigenvalue, without a shift, it is another
-    motion: a repeated eigenvalue.
-    """
-    value, vector = mode
-    apart = np.atleast_1d(value - values)
-    steps = np.rint(apart.imag / base)
-    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= distance)
-    copies = [shifted(shapes[i], int(steps[i])).ravel() for i in np.flatnonzero(near)]
-    basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
-    if not basis:
-        return False
-    span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)
-    span = span[:, lengths > 0.1]
-    return np.linalg.norm(span.conj().T @ vector.ravel()) ** 2 > 0.5

@@ -63,6 +63,18 @@ def feedback(
     return result, answers
 
 
+def excitation(
+    system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
+) -> np.ndarray:
+    """Return what motions (h, k, j) do to the first harmonic left out on both sides, (2k, j)."""
+    step, result = spacing(orders), []
+    for place, n in ((0, -step), (-1, step)):
+        links = _links((system.M, system.D, system.K), n)
+        rate = values + 1j * orders[place] * system.speed
+        result.append(_applied(*links, rate, shapes[place]))
+    return np.vstack(result)
+
+
 def _links(terms: tuple, n: int) -> tuple | None:
     """Return the Fourier terms n of M, D, K; None where there is none."""
     entries = [X.get(int(n)) for X in terms]

@@ -15,15 +15,16 @@ Math. 8 (1886).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.companion import Companion
-from exudyn_rotor.linear.periodic.eigenvalues import resolution_of, resolved
-from exudyn_rotor.linear.periodic.harmonics import feedback, hill_matrices, shifted, slopes, spacing
+from exudyn_rotor.linear.periodic.harmonics import feedback, shifted, slopes
+from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
 from exudyn_rotor.linear.periodic.inverse_iteration import settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.periodic.truncation import HillSolution, Truncation
 
 MOST_UNKNOWNS = 1600  # in first-order form, beyond the first two harmonics
 _FOLLOWED = 2  # times as many where motions follow, which costs solutions of linear equations alone
@@ -39,127 +40,6 @@ _ALMOST = 0.1
 _SETTLED = 1e-6
 # relative distance of exponents, and cosine of shapes, that may be those of one motion
 _SAME, _ALIKE = 1e-6, 0.7
-
-
-@dataclass(frozen=True, eq=False)
-class HillSolution:
-    """Motions ``exp(λt) Σ_m X_m exp(i m Ω t)`` of one truncation.
-
-    Attributes
-    ----------
-    values : ndarray, shape (j,)
-        λ [1/s].
-    shapes : ndarray, shape (h, c, j)
-        Harmonics X_m.
-    states : ndarray, shape (2 h c, j)
-        The same as vectors of the companion form in cosine and sine terms, of unit length.
-    orders : ndarray of int, shape (h,)
-    resolution : float
-        Eigenvalues closer than this cannot be told apart [1/s].
-    bounds : ndarray, shape (j,)
-        By how much rounding can change the real parts [1/s].
-    """
-
-    values: np.ndarray
-    shapes: np.ndarray
-    states: np.ndarray
-    orders: np.ndarray
-    resolution: float
-    bounds: np.ndarray
-
-    @property
-    def step(self) -> int:
-        """Of the harmonics."""
-        return spacing(self.orders)
-
-
-@dataclass(frozen=True, eq=False)
-class Chosen:
-    """Motions chosen from a :class:`HillSolution`.
-
-    Attributes
-    ----------
-    columns : ndarray of int, shape (j,)
-        Where they stand there.
-    values, shapes : ndarray, shapes (j,), (h, c, j)
-        λ and harmonics, which may be better than those of the solution where copies coincide.
-    sizes : ndarray, shape (j,)
-        What the error of each λ is relative to [1/s]; infinite where none counts.
-    paired : ndarray of bool, shape (j,)
-        Which stand for their conjugates, too, of other families.
-    """
-
-    columns: np.ndarray
-    values: np.ndarray
-    shapes: np.ndarray
-    sizes: np.ndarray
-    paired: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class HillMotions:
-    """Motions with as many harmonics as they need.
-
-    Attributes
-    ----------
-    values, shapes : ndarray, shapes (j,), (h, c, j)
-        λ and harmonics.
-    orders : ndarray of int, shape (h,)
-    sizes : ndarray, shape (j,)
-        What the error of each λ is relative to [1/s].
-    resolution : float
-        Eigenvalues closer than this cannot be told apart [1/s].
-    rounding : ndarray, shape (j,)
-        By how much rounding can change the real parts [1/s].
-    shifts : ndarray, shape (j,)
-        By how much the first harmonics left out would change λ.
-    outer : mapping of int to ndarray, shape (c, j)
-        What these harmonics would be.
-    paired : ndarray of bool, shape (j,)
-        Which stand for their conjugates, too, of other families.
-    """
-
-    values: np.ndarray
-    shapes: np.ndarray
-    orders: np.ndarray
-    sizes: np.ndarray
-    resolution: float
-    rounding: np.ndarray
-    shifts: np.ndarray
-    outer: dict[int, np.ndarray]
-    paired: np.ndarray
-
-    @property
-    def bounds(self) -> np.ndarray:
-        """By how much rounding and the harmonics left out can change the real parts [1/s]."""
-        return self.rounding + np.abs(self.shifts)
-
-    @property
-    def errors(self) -> np.ndarray:
-        """Error of each λ by harmonics left out, relative to its size."""
-        return np.abs(self.shifts) / self.sizes
-
-    @property
-    def error(self) -> float:
-        """The largest of them."""
-        return float(np.max(self.errors, initial=0.0))
-
-    def with_conjugates(self) -> HillMotions:
-        """Return the motions, and then the conjugates for which they stand."""
-
-        def both(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
-            return np.concatenate([X, Y[..., self.paired].conj()], axis=-1)
-
-        each = {name: getattr(self, name) for name in ("values", "sizes", "rounding", "shifts")}
-        return replace(
-            self,
-            shapes=both(self.shapes, self.shapes[::-1]),
-            outer={n: both(X, self.outer[-n]) for n, X in self.outer.items()},
-            paired=np.zeros(len(self.paired) + self.paired.sum(), dtype=bool),
-            **{name: both(X, X) for name, X in each.items()},
-        )
-
-
 Choice = Callable[[HillSolution], Chosen | None]
 
 
@@ -185,18 +65,34 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         than two steps.
     """
     order, error = system.step, np.inf
-    while True:
-        companion, solution = _solved(system, system.harmonics(order))
-        chosen = choose(solution)
-        if chosen is not None:
-            motions = _started(system, companion, solution, chosen)
-            error = motions.error
-            shifts = np.abs(motions.shifts[np.isfinite(motions.sizes)])
-            near = np.all(shifts <= _NEAR * abs(system.base))
-            followed = _followed(system, motions, tolerance) if near else None
+    truncation = Truncation.halfway(system)
+    if truncation is not None:
+        with suppress(UnconvergedError):  # by motions that it does not have
+            followed, _ = _chosen(system, truncation, choose, tolerance)
             if followed is not None:
                 return followed
+    while True:
+        truncation = Truncation.of(system, system.harmonics(order))
+        followed, error = _chosen(system, truncation, choose, tolerance)
+        if followed is not None:
+            return followed
         order = _next(system, order, error, tolerance)
+
+
+def _chosen(
+    system: PeriodicSystem, truncation: Truncation, choose: Choice, tolerance: float
+) -> tuple[HillMotions | None, float]:
+    """Return motions chosen from a truncation, followed into larger ones, and their error there.
+
+    None where it is too small for that.
+    """
+    chosen = choose(truncation.solution)
+    if chosen is None:
+        return None, np.inf
+    motions = truncation.motions(system, chosen)
+    shifts = np.abs(motions.shifts[np.isfinite(motions.sizes)])
+    near = np.all(shifts <= _NEAR * abs(system.base))
+    return _followed(system, motions, tolerance) if near else None, motions.error
 
 
 def _next(
@@ -212,28 +108,6 @@ def _next(
         f"{order}, more than the tolerance {tolerance:.1e}: the speed is small against the "
         "frequencies that turning coefficients split; use a larger speed (or 0), or fewer "
         "high modes"
-    )
-
-
-def _started(
-    system: PeriodicSystem, companion: Companion, solution: HillSolution, chosen: Chosen
-) -> HillMotions:
-    """Return motions chosen from a truncation."""
-    columns, orders = chosen.columns, solution.orders
-    shapes = solution.shapes[:, :, columns]
-    load, outer = feedback(system, solution.values[columns], shapes, orders)
-    load = np.einsum("nh,hkj->nkj", _real_basis(len(orders)), load).reshape(-1, len(columns))
-    scale = np.sum(shapes.conj() * chosen.shapes, axis=(0, 1)) / _squares(shapes)
-    return HillMotions(
-        chosen.values,
-        chosen.shapes,
-        orders,
-        chosen.sizes,
-        solution.resolution,
-        solution.bounds[columns],
-        companion.shifts(load, columns),
-        {n: scale * answer for n, answer in outer.items()},
-        chosen.paired,
     )
 
 
@@ -311,38 +185,3 @@ def _differ(motions: HillMotions, columns: np.ndarray, base: float) -> bool:
         if abs(np.vdot(copy, one)) > _ALIKE * np.linalg.norm(copy) * np.linalg.norm(one):
             return False
     return True
-
-
-def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, HillSolution]:
-    """Return all motions of one truncation."""
-    u = _real_basis(len(orders))
-    matrices = (_turned(X, u) for X in hill_matrices(system, orders))
-    companion = Companion.of(*matrices, system.rounding)
-    values, states = companion.modes()
-    errors, bounds = companion.errors
-    half = len(states) // 2
-    shapes = np.einsum("nh,nkj->hkj", u.conj(), states[:half].reshape(len(orders), -1, 2 * half))
-    resolution, values = resolution_of(values), resolved(values, errors)
-    return companion, HillSolution(values, shapes, states, orders, resolution, bounds)
-
-
-def _real_basis(count: int) -> np.ndarray:
-    """Return the unitary matrix from harmonics −N … N to cosine and sine terms.
-
-    In these Hill's matrices are real, which is three times faster to solve.
-    """
-    middle = count // 2
-    u = np.zeros((count, count), dtype=complex)
-    u[middle, middle] = 1.0
-    for n in range(1, middle + 1):
-        u[middle + n, [middle + n, middle - n]] = np.sqrt(0.5)
-        u[middle - n, [middle + n, middle - n]] = -1j * np.sqrt(0.5), 1j * np.sqrt(0.5)
-    return u
-
-
-def _turned(matrix: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return a matrix of harmonics in cosine and sine terms."""
-    count, size = len(u), len(matrix) // len(u)
-    blocks = matrix.reshape(count, size, count, size)
-    turned = np.tensordot(u, np.tensordot(blocks, u.conj(), (2, 1)), (1, 0))  # n, a, b, m
-    return turned.transpose(0, 1, 3, 2).reshape(matrix.shape).real
