@@ -41,6 +41,36 @@ def sizes_solved(monkeypatch):
     return sizes
 
 
+def turning_rotor(seed: int) -> PeriodicSystem:
+    """Return random oscillators with gyroscopic terms and springs with harmonics ±2."""
+    rng = np.random.default_rng(seed)
+    skew = rng.normal(size=(4, 4))
+    term = 0.3 * (rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4)))
+    stiffness = {
+        0: np.diag(rng.uniform(5.0, 60.0, 4)),
+        2: term + term.T,
+        -2: (term + term.T).conj(),
+    }
+    damping = {0: 0.1 * np.eye(4) + skew - skew.T}
+    return PeriodicSystem((-1.0) ** seed * 8.0, {0: np.eye(4)}, damping, stiffness)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_motions_follow_from_two_harmonics_halfway(seed, sizes_solved):
+    """At both senses of the spin; as many as Floquet's exponents, and the same."""
+    system = turning_rotor(seed)
+    found, exact = motions(system, "hill", 1e-10), floquet_exponents(system, 1e-13)
+    assert sizes_solved == [2]
+    apart = np.abs(fold(found.values[:, None] - exact, system.base))
+    assert len(found.values) == len(exact)
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-9 * abs(system.speed)
+    modes = floquet_modes(system, tolerance=1e-10)
+    assert sizes_solved == [2, 2]
+    assert np.all(np.diff(modes.values.imag, prepend=0.0) >= 0.0)
+    central = np.linalg.norm(modes.central, axis=0)
+    assert np.all(central >= np.linalg.norm(modes.vectors, axis=1).max(axis=0) - 1e-6)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_motions_follow_from_the_smallest_truncation(seed, sizes_solved):
     """They meet Floquet's exponents, and the equations of all of their harmonics."""

@@ -177,10 +177,10 @@ def campbell(
 def _modes_at(
     space: Space, speeds: np.ndarray, tolerance: float, executor: Executor | None, progress: bool
 ) -> list[FloquetModes]:
-    """Return the modes at all speeds; at once where nothing changes in time."""
+    """Return the modes at all speeds; at once where nobody else is to compute them."""
     if executor is None and not progress:
         try:
-            modes = space.constant_modes(speeds)
+            modes = space.modes_at(speeds, tolerance)
         except ValueError:
             modes = None  # one by one below, so that the error names its speed
         if modes is not None:

@@ -97,8 +97,8 @@ class Space(Protocol):
     def modes(self, speed: float, tolerance: float) -> FloquetModes:
         """Return at least the modes asked for; `tolerance` is that of :func:`floquet_modes`."""
 
-    def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes] | None:
-        """Return all modes of equations that do not change in time; None where that cannot be."""
+    def modes_at(self, speeds: Sequence[float], tolerance: float) -> list[FloquetModes] | None:
+        """Return the modes at all speeds at once, which is faster; None where that is not so."""
 
     def constant_motions(
         self, speeds: Sequence[float]

@@ -129,7 +129,7 @@ class Subspace:
         """
         return self._converged(speed, lambda modes: np.arange(self.count), tolerance)
 
-    def constant_modes(self, speeds: Sequence[float]) -> None:
+    def modes_at(self, speeds: Sequence[float], tolerance: float) -> None:
         """Return None: the subspace grows from speed to speed."""
 
     def constant_motions(self, speeds: Sequence[float]) -> None:

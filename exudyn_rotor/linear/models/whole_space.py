@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import (
 )
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+from exudyn_rotor.threads import shared
 
 _MOST_ENTRIES = 250_000  # of matrices of speeds that are solved at once
 
@@ -102,6 +104,15 @@ class WholeSpace:
     def _whole(self, modes: FloquetModes) -> FloquetModes:
         """Return motions in all coordinates."""
         return replace(modes, vectors=self.others @ modes.vectors)
+
+    def modes_at(self, speeds: Sequence[float], tolerance: float) -> list[FloquetModes]:
+        """Return all modes at all speeds at once; periodic ones are shared among threads."""
+        modes = self.constant_modes(speeds)
+        if modes is not None:
+            return modes
+        return shared(
+            partial(floquet_modes, tolerance=tolerance), [self.at(speed) for speed in speeds]
+        )
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True

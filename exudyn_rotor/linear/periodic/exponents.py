@@ -127,7 +127,10 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     """Return one copy of all exponents with their motions, the most central where it is told."""
 
     def choose(solution: HillSolution) -> Chosen | None:
-        columns = _central(solution, system.step, 2 * system.size)
+        if solution.pairs is not None:
+            columns = np.arange(2 * system.size)
+        else:
+            columns = _central(solution, system.step, 2 * system.size)
         if columns is None:  # strongly damped motions hardly have a mean harmonic
             columns = one_of_each_family(solution, system.speed)
         if columns is None:

@@ -135,6 +135,8 @@ def _apart(
     shapes = solution.shapes / lengths
     for group in repeated(values, resolution):
         shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
+    if solution.pairs is not None:
+        return values, shapes, *solution.pairs
     center = np.flatnonzero(orders == 0)[0]
     share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
     spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)

@@ -132,7 +132,8 @@ def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) ->
 def _widened(motions: HillMotions, orders: np.ndarray) -> np.ndarray:
     """Return harmonics of the motions in a larger truncation, with the first ones left out."""
     wider = (len(orders) - len(motions.orders)) // 2
-    shapes = np.pad(motions.shapes, ((wider, wider), (0, 0), (0, 0)))
+    shapes = np.zeros((len(orders), *motions.shapes.shape[1:]), dtype=complex)
+    shapes[wider : len(orders) - wider] = motions.shapes
     for order, answer in motions.outer.items():
         shapes[np.flatnonzero(orders == order)] = answer
     return shapes

@@ -10,7 +10,7 @@ the harmonics left out tells these apart.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,8 @@ class HillSolution:
         Eigenvalues closer than this cannot be told apart [1/s].
     bounds : ndarray, shape (j,)
         By how much rounding can change the real parts [1/s].
+    pairs : tuple of ndarray, optional
+        What :func:`families.one_of_each_pair` gives where each family is there once.
     """
 
     values: np.ndarray
@@ -55,6 +57,7 @@ class HillSolution:
     orders: np.ndarray
     resolution: float
     bounds: np.ndarray
+    pairs: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def step(self) -> int:
@@ -109,7 +112,9 @@ class Truncation:
             return None
         columns = _with_conjugates(own, found, alone, system.speed)
         sides = _sides(own, columns, system.speed)
-        return cls(companion, _central(own, columns, sides, companion, system), own, columns, sides)
+        central = _central(own, columns, sides, companion, system)
+        firsts = np.cumsum(np.where(alone, 1, 2)) - np.where(alone, 1, 2)
+        return cls(companion, replace(central, pairs=(firsts, alone)), own, columns, sides)
 
     def motions(self, system: PeriodicSystem, chosen: Chosen) -> HillMotions:
         """Return chosen motions with what the first harmonics left out are and do."""

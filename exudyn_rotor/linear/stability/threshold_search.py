@@ -17,6 +17,8 @@ ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
 # motions that decay faster than this share of |λ| or Ω are not led into instability by another
 _DAMPED = 0.05
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
+# share of the last change of a root that the next one is where secants meet
+_MEETS = 0.2
 # of the range: by which rates of change are told; changes below a share of |λ| are not
 STEP, _NOISE = 1e-5, 1e-5
 
@@ -62,15 +64,18 @@ class Search:
         """Return where the verdict changes between two values.
 
         By secants through the growth on the unstable side, which is that of one motion; on the
-        stable side the largest real part is soon that of another. Every fourth step halves.
+        stable side the largest real part is soon that of another. Every fourth step halves where
+        the secants do not meet.
         """
-        last, root, steps = None, np.nan, 0
+        last, root, error, steps = None, np.nan, np.inf, 0
         while abs(unstable - stable) > accuracy:
             steps += 1
-            guess, before = np.nan, root
-            if last is not None and steps % 4:
+            guess, before, former = np.nan, root, error
+            if last is not None:
                 root = self._secant(last, unstable)
-                guess = self._beside(root, before, stable, unstable, accuracy)
+                error = abs(root - before)
+                if steps % 4 or error < _MEETS * former:
+                    guess = self._beside(root, before, stable, unstable, accuracy)
             if not min(stable, unstable) < guess < max(stable, unstable):
                 guess = 0.5 * (stable + unstable)
             if self.unstable(guess):

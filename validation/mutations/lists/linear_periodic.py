@@ -52,7 +52,26 @@ LINEAR_PERIODIC = [
         ),
     ),
     *mutations(
-        "linear/periodic/floquet_modes.py",
+        "linear/periodic/truncation.py",
+        "test_hill.py",
+        (
+            "copies that lack their other half taken",
+            "ranked = upper[np.argsort(",
+            "ranked = upper[np.argsort(-",
+        ),
+        (
+            "motions shifted the wrong way",
+            "own.values[columns] - 1j * sides",
+            "own.values[columns] + 1j * sides",
+        ),
+        (
+            "harmonics left out on the other side",
+            "below, above = (outer.get(n, nothing) for n in (-3, 3))",
+            "below, above = (outer.get(n, nothing) for n in (3, -3))",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/families.py",
         "test_hill.py::test_a_mass_that_one_direction_alone_holds",
         (
             "two free copies taken for a motion and its conjugate",
