@@ -1,53 +1,61 @@
-"""Zeros of the eigenvalues of a Hermitian matrix that depends on the speed, by bracketing."""
+"""Speeds at which a Hermitian matrix function is singular: zeros of its eigenvalues.
+
+Between two speeds with p and q negative eigenvalues, those from the smaller to the larger of these
+numbers, in ascending order, change their sign. How many are negative tells an ``LDLᴴ`` factor
+(Sylvester's law of inertia), in a fifth of the time of the eigenvalues.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
 import scipy.linalg as la
+from scipy.linalg.lapack import zhetrf
 from scipy.optimize import brentq
 
-_BRACKETS = 200  # over the range of speeds
-_SAME = 1e-7  # relative distance of speeds that count as one
+_BRACKETS = 200
+_SAME = 1e-7
+_BLOCK = 64  # of LAPACK's work, in columns
+Matrix = Callable[[float], np.ndarray]
 Entry = TypeVar("Entry")
 
 
-def zeros_of_eigenvalues(
-    stiffness: Callable[[float], np.ndarray], limit: float
-) -> list[tuple[float, np.ndarray]]:
-    """Find the zeros of the sorted eigenvalues of a Hermitian matrix function on (0, limit].
+def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.ndarray]]:
+    """Return the speeds on (0, limit] where `matrix` is singular, each with its null vector.
 
-    What is a free motion at every speed, like a spin or an axial motion that nothing holds, is
-    left out first: the sign of its eigenvalue is rounding.
+    The zeros of the sorted eigenvalues are bracketed at 200 speeds. What is a free motion at
+    every speed, like a spin or an axial motion that nothing holds, is left out first: the sign of
+    its eigenvalue is rounding.
     """
     grid = np.linspace(limit / _BRACKETS, limit, _BRACKETS)
-    rest = _never_free(stiffness, grid)
+    free, negative = _free_and_negative(matrix, grid)
 
     def at(speed: float) -> np.ndarray:
-        return rest.conj().T @ stiffness(speed) @ rest
+        return _held(matrix(speed), free)
 
-    branches = np.array([la.eigvalsh(at(speed)) for speed in grid])
+    zeros = []
+    for low, high, branch in _sign_changes(grid, negative):
+
+        @cache
+        def value(speed: float, branch: int = branch) -> float:
+            return la.eigh(at(speed), eigvals_only=True, subset_by_index=[branch, branch])[0]
+
+        ends = value(low), value(high)
+        if ends[0] * ends[1] < 0.0:
+            speed = brentq(value, low, high, xtol=1e-12 * limit, rtol=1e-13)
+        else:  # rounding of a zero there
+            speed = (low, high)[int(np.argmin(np.abs(ends)))]
+        zeros.append((float(speed), branch))
     found = []
-    for branch in np.flatnonzero(np.any(branches[1:] * branches[:-1] <= 0.0, axis=0)):
-        for low, high in _sign_changes(branches[:, branch]):
-            speed = grid[low]
-            if low != high:
-                speed = brentq(
-                    lambda s, b=branch: la.eigvalsh(at(s))[b],
-                    grid[low],
-                    grid[high],
-                    xtol=1e-12 * limit,
-                    rtol=1e-13,
-                )
-            found.append((float(speed), int(branch)))
-    crossings = []
-    for group in same_speed(sorted(found), lambda zero: zero[0]):
+    for group in same_speed(sorted(zeros), lambda zero: zero[0]):
         # one decomposition for all: the vectors of a repeated zero are orthogonal only within it
         _, vectors = la.eigh(at(group[0][0]))
-        crossings += [(speed, rest @ vectors[:, branch]) for speed, branch in group]
-    return crossings
+        found += [(speed, vectors[:, branch]) for speed, branch in group]
+    return found
 
 
 def same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
@@ -62,23 +70,43 @@ def same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> 
     return groups
 
 
-def _sign_changes(values: np.ndarray) -> list[tuple[int, int]]:
-    """Return the places (before, after) of every change of sign; both the same at a zero."""
-    at_zero = [(int(i), int(i)) for i in np.flatnonzero(values == 0.0)]
-    changes = np.flatnonzero(values[1:] * values[:-1] < 0.0)
-    return at_zero + [(int(i), int(i) + 1) for i in changes]
+def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, list[int]]:
+    """Return motions that are free at every speed, orthonormal, and negative eigenvalues of others.
 
-
-def _never_free(stiffness: Callable[[float], np.ndarray], grid: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the motions that are not free at every speed of the grid.
-
-    An eigenvalue counts as zero below the rounding of its matrix, ``10 n ε ‖H‖``.
+    A motion counts as free below the rounding of its matrix, ``10 n ε ‖H‖``.
     """
-    sizes = []
-    for speed in grid:
-        values = np.sort(np.abs(la.eigvalsh(stiffness(speed))))
-        sizes.append(values / (10.0 * len(values) * np.finfo(float).eps * max(values[-1], 1e-300)))
-    free = min(int(np.sum(entry <= 1.0)) for entry in sizes)
-    apart = [entry[free] if np.sum(entry <= 1.0) == free else 0.0 for entry in sizes]
-    values, vectors = la.eigh(stiffness(grid[int(np.argmax(apart))]))
-    return vectors[:, np.argsort(np.abs(values))[free:]]
+    free = np.eye(len(matrix(grid[-1])), dtype=complex)
+    negative: list[int] = []
+    while len(negative) < len(grid):
+        H = matrix(grid[len(grid) - 1 - len(negative)])
+        left = H @ free
+        limit = 10.0 * len(H) * np.finfo(float).eps * np.linalg.norm(H)
+        if np.linalg.norm(left) > limit:
+            _, sizes, rows = np.linalg.svd(left)
+            sizes = np.pad(sizes, (0, len(rows) - len(sizes)))
+            if sizes.max(initial=0.0) > limit:
+                # those that are free here, too; the others count from the first speed on
+                free, negative = free @ rows[sizes <= limit].conj().T, []
+                continue
+        negative.append(_count_negative(_held(H, free)))
+    return free, negative[::-1]
+
+
+def _held(H: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """Return a matrix with the free motions stiffer than all others."""
+    return H if free.shape[1] == 0 else H + np.linalg.norm(H) * (free @ free.conj().T)
+
+
+def _count_negative(H: np.ndarray) -> int:
+    """Return how many eigenvalues of a Hermitian matrix are negative."""
+    factor, pivots, _ = zhetrf(H, lower=1, lwork=_BLOCK * len(H))
+    # blocks of two rows, which have a negative number, have one of either sign
+    single = np.diagonal(factor).real[pivots > 0]
+    return int(np.count_nonzero(single < 0.0) + np.count_nonzero(pivots < 0) // 2)
+
+
+def _sign_changes(grid: np.ndarray, negative: list[int]) -> Iterator[tuple[float, float, int]]:
+    """Yield two speeds and the eigenvalue that changes its sign between them."""
+    for (low, before), (high, after) in pairwise(zip(grid, negative, strict=True)):
+        for branch in range(min(before, after), max(before, after)):
+            yield float(low), float(high), branch

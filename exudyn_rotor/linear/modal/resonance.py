@@ -9,15 +9,14 @@ are Hermitian and quadratic in Ω,
 one generalised eigenproblem for all critical speeds: for unbalance of an axisymmetric rotor f = 0
 and ``det K(Ω) = 0``. Supports that stand still and differ in their two directions couple f, f ± 2
 …: the same problem in harmonics. Supports that depend on the speed leave ``H(Ω) φ = 0`` with a
-Hermitian H; the zeros of its eigenvalues over Ω are found by bracketing. Source: Genta, Dynamics
-of Rotating Systems (2005).
+Hermitian H; the zeros of its eigenvalues over Ω are found by bracketing
+(:mod:`.hermitian_zeros`). Source: Genta, Dynamics of Rotating Systems (2005).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 import scipy.linalg as la
@@ -42,7 +41,6 @@ _QUADRATIC = 1e-6
 # two critical speeds this close are looked at as a pair
 PAIR = 1e-2
 _MOST_ROUNDS = 20
-Entry = TypeVar("Entry")
 _MODES = 10  # that the subspace of a full rotor begins with
 
 
@@ -166,19 +164,16 @@ def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarr
 
     Shape (h k, h k), harmonic by harmonic.
     """
-    size, rows = system.size, []
-    for f in multiples:
-        row = []
-        for g in multiples:
-            n, rate = round(f - g), 1j * g * system.speed
-            parts = (
-                system.K.get(n, 0.0),
-                rate * system.D.get(n, 0.0),
-                rate**2 * system.M.get(n, 0.0),
-            )
-            row.append(sum(parts) + np.zeros((size, size)))
-        rows.append(row)
-    dynamic = np.block(rows)
+    size, count = system.size, len(multiples)
+    dynamic = np.zeros((count, size, count, size), dtype=complex)
+    rates = 1j * multiples * system.speed
+    for terms, power in ((system.K, 0), (system.D, 1), (system.M, 2)):
+        for n, X in terms.items():
+            # from the harmonic g to f = g + n
+            rows, columns = np.nonzero(np.abs(multiples[:, None] - multiples - n) < 0.5)
+            for row, column in zip(rows, columns, strict=True):
+                dynamic[row, :, column] += rates[column] ** power * X
+    dynamic = dynamic.reshape(count * size, -1)
     return 0.5 * (dynamic + dynamic.conj().T)
 
 

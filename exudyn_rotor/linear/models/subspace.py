@@ -133,7 +133,7 @@ class Subspace:
         """Return None: the subspace grows from speed to speed."""
 
     def constant_motions(self, speeds: Sequence[float]) -> None:
-        """Return None, see :meth:`constant_modes`."""
+        """Return None, see :meth:`modes_at`."""
 
     def motions(
         self, speed: float, method: str, tolerance: float, shapes: bool = True

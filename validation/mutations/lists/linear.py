@@ -41,15 +41,25 @@ LINEAR = [
         "linear/modal/resonance.py",
         "test_critical.py::test_asymmetric_masses_order_1",
         (
-            "damping for half the rate",
-            "rate * system.D.get(n, 0.0)",
-            "0.5 * rate * system.D.get(n, 0.0)",
+            "gyroscopic terms without a rate",
+            "(system.D, 1), (system.M, 2)",
+            "(system.D, 0), (system.M, 2)",
         ),
         (
             "waves counted against the spin",
             "seen = multiples[:, None] + content.orders[None, :]",
             "seen = multiples[:, None] - content.orders[None, :]",
         ),
+    ),
+    *mutations(
+        "linear/modal/hermitian_zeros.py",
+        "test_hermitian_zeros.py test_critical.py",
+        (
+            "blocks of two rows counted twice",
+            "np.count_nonzero(pivots < 0) // 2",
+            "np.count_nonzero(pivots < 0)",
+        ),
+        ("free motions not held", "else H + np.linalg.norm(H)", "else H + 0.0 * np.linalg.norm(H)"),
     ),
     *mutations(
         "linear/modal/resonance.py",
