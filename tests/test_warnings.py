@@ -44,6 +44,13 @@ def beam():
     return SolidRotor.from_ngsolve(block_beam(), STEEL, "z", order=2)
 
 
+def small_rotor_in_millimetres(beam):
+    """A shaft of 6 mm × 30 mm, which would be of 6.7e6 kg."""
+    corners = np.array([[x, y, z] for x in (-3.0, 3.0) for y in (-3.0, 3.0) for z in (0.0, 30.0)])
+    mass = 7850.0 * np.pi * 3.0**2 * 30.0 / 8.0
+    SolidRotor.from_matrices(mass * np.eye(24), np.zeros((24, 24)), corners, "z", allow_parts=True)
+
+
 def stress_out_of_balance(beam):
     stress = np.zeros((beam.node_count, 6))
     stress[:, 0] = 1e8 * np.cos(20.0 * beam.nodes[:, 0])
@@ -240,6 +247,9 @@ PLACES = {
     ),
     "linear/models/basis_error.py:warn": (
         campbell_with_one_mode, UserWarning, "errs by about",
+    ),
+    "solid/units.py:check_model_units": (
+        small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm",
     ),
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.callers import user_level
 
 Material = Mapping[str, float]
 MATERIAL_KEYS = ("youngsModulus", "poissonsRatio", "density")
@@ -20,6 +22,8 @@ DENSITY_RANGE = (1.0, 1e5)
 MEAN_DENSITY_RANGE = (1e-2, 1e5)
 # Ten thousand tonnes [kg]; the heaviest turbine-generator rotors have about two thousand.
 LARGEST_MASS = 1e7
+# Few rotors but those of large hydroelectric generators are heavier [kg].
+USUAL_MASS = 5e5
 
 _ADVICE = (
     "convert to SI (m, kg, s, N, Pa), or pass check_units=False if the units of all inputs agree"
@@ -83,12 +87,19 @@ def check_material_units(name: str, material: Material) -> None:
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI units.
 
-    The mean density is not checked where the bounding box has no volume.
+    A warning tells where they hardly are: of a small rotor in mm. The mean density is not checked
+    where the bounding box has no volume.
     """
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {' × '.join(f'{side:.3g}' for side in extent)} m"
     if total_mass > LARGEST_MASS:
         raise ValueError(f"units: {size} cannot be a rotor; lengths in mm? {_ADVICE}")
+    if total_mass > USUAL_MASS:
+        warnings.warn(
+            f"units: {size}: few rotors are that heavy; lengths in mm? Arrays are in m, kg, s; "
+            "check_units=False takes them as they are",
+            stacklevel=user_level(),
+        )
     volume = float(np.prod(extent))
     if volume <= 1e-12 * np.max(extent) ** 3:
         return

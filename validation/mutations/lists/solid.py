@@ -4,6 +4,11 @@ from validation.mutations.mutation import mutations
 
 SOLID = [
     *mutations(
+        "solid/units.py",
+        "test_warnings.py::test_warning_fires",
+        ("small rotors in mm", "total_mass > USUAL_MASS", "total_mass > LARGEST_MASS"),
+    ),
+    *mutations(
         "solid/tensor.py",
         "test_strength.py::test_scalars_of_a_stress_with_all_six_components",
         (
