@@ -294,12 +294,8 @@ class Measures:
             kind = _KINDS.DisplacementLocal if local else _KINDS.Displacement
             place = self.body.mbs.GetObjectOutput(added.objects[0], kind)
             x, y = place[:2] if local else place @ axes[:, :2]
-            distance = np.hypot(x, y)
-            direction = np.array([x, y]) / distance if distance else np.array([1.0, 0.0])
-            reach = added.support._reach(direction)
-            if np.isfinite(reach):
-                shares.append(float(distance / reach))
-        return max(shares, default=None)
+            shares.append(added.support.film_use([x, y]))
+        return max((share for share in shares if share is not None), default=None)
 
     def explicit_step(self) -> float:
         """Return ``ω_max h`` over what an explicit solver bears; 0 for an implicit one."""

@@ -92,6 +92,21 @@ class Bearing(LoadedBearing):
         """
         return None
 
+    def film_use(self, displacement: ArrayLike) -> float | None:
+        """Return a displacement over the way to the end of the film there; None without a film.
+
+        Beyond 1 the force is no longer the film's: it goes on by its tangent.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (2,)
+            Of the journal from the centre of the bearing along (n1, n2) [m].
+        """
+        place = checks.vector(displacement, "displacement", "m", size=2)
+        distance = hypot(*place)
+        reach = self._reach(place / distance if distance else np.array([1.0, 0.0]))
+        return distance / reach if reach < inf else None
+
     def _reach(self, direction: np.ndarray) -> float:
         """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
         return inf

@@ -34,6 +34,7 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
     "*.current_for": lambda w: {"force": 100.0, "place": 1e-5},
     "*.eccentricity_ratio": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.equilibrium": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
+    "*.film_use": lambda w: {"displacement": [1e-5, 0.0]},
     "*.forces": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
     "*.LoadFromFile": lambda w: {"fileName": w.stored(w.reduced)},
     "*.orbit": lambda w: {"value": 10.0},

@@ -8,11 +8,11 @@ ADVICE = [
         "test_full_run_check.py::test_a_journal_out_of_its_film_fails_the_check",
         ("journal in other axes", "place @ axes[:, :2]", "place[:2]"),
         ("local axes turned", "x, y = place[:2] if local else", "x, y ="),
-        (
-            "way across the film's",
-            "added.support._reach(direction)",
-            "added.support._reach(-direction)",
-        ),
+    ),
+    *mutations(
+        "bearings/bearing.py",
+        "test_full_run_check.py::test_a_journal_out_of_its_film_fails_the_check",
+        ("the film's end on the other side", "place / distance", "-place / distance"),
     ),
     *mutations(
         "advice/unresisted.py",
