@@ -280,6 +280,25 @@ def test_a_film_of_finite_length_in_scene_and_linear_rotor():
     np.testing.assert_allclose(place, bearings[0].equilibrium(SPEED), rtol=1e-4)
 
 
+@pytest.mark.parametrize(("cavitation", "nodes"), [("reynolds", 36), ("half-sommerfeld", 60)])
+def test_films_in_a_scene_are_linearised_as_in_a_list(cavitation, nodes):
+    """Of an unbalanced rotor, whose orbit would lead the film's edge from node to node."""
+    ring = ring_rotor(0.1, 0.15, 107.0).add_point_mass([0.1, 0.0, 0.0], 0.1)
+    ring = ring.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    rotor = ring.reduce(0)
+    loads = bearing_loads(rotor, ["left", "right"], GRAVITY)
+    pairs = zip(("left", "right"), loads, strict=True)
+    options = {"cavitation": cavitation, "nodes": nodes}
+    bearings = [film_bearing(name, load, **options) for name, load in pairs]
+    mbs, body, _ = scene(rotor, bearings, spin=SPEED)
+    scene_model = linear_model(mbs, body=body, about="equilibrium")
+    growths = [
+        stability(model, [SPEED, 2.0 * SPEED]).growth_of("lateral")
+        for model in (scene_model, linear_model(rotor, supports=bearings))
+    ]
+    np.testing.assert_allclose(*growths, rtol=1e-6)
+
+
 def test_a_film_too_thin_goes_on_by_its_tangent():
     one = film_bearing(nodes=60)
     edge = one.film.clearance - one.film.thinnest

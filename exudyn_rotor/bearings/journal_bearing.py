@@ -64,8 +64,7 @@ class JournalBearing(Bearing):
 
     @property
     def _law(self) -> Law:
-        law = self.law_with_torque
-        return lambda *motion: law(*motion)[:2]
+        return self._film_law(torque=False)
 
     @property
     def law_with_torque(self) -> LawWithTorque:
@@ -79,12 +78,15 @@ class JournalBearing(Bearing):
         ValueError
             For a film that conserves mass: it has a memory of its own.
         """
+        return self._film_law(torque=True)
+
+    def _film_law(self, torque: bool) -> _FilmLaw:
         if self.film.cavitation == "mass-conserving":
             raise ValueError(
                 f"bearing at {self.interface!r}: a film with cavitation='mass-conserving' has no "
                 "force by place and velocity alone; scenes need another cavitation"
             )
-        return _FilmLaw(self.film)
+        return _FilmLaw(self.film, torque)
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -123,24 +125,66 @@ class JournalBearing(Bearing):
         return self._last[key]
 
 
-class _FilmLaw:
-    """Force and torque of a film, which remembers its voids."""
+class TangentFilm:
+    """Force of a journal bearing that goes on by its tangent, once held, from the next place.
 
-    def __init__(self, film: OilFilm) -> None:
-        self._film = film
+    The tangent is that of :meth:`FilmState.coefficients`: differences would cross the places at
+    which the film's edge moves to the next node.
+    """
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        self._film, self._whole = bearing.film, bearing.law_with_torque
+        self._tangent: tuple[FilmState, np.ndarray] | None = None
+        self._held = False
+
+    def hold(self, held: bool) -> None:
+        """Hold the force by the tangent from the next place on, or let it go."""
+        self._held, self._tangent = held, None
+
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force as :attr:`Bearing.law`."""
+        motion = np.array([x, y, vx, vy])
+        if self._held and self._tangent is None:
+            self._held = hypot(x, y) <= self._film.clearance - self._film.thinnest
+            if self._held:
+                state = self._film._state(motion[:2], motion[2:], speed)
+                self._tangent = state, np.hstack(state.coefficients())
+        if self._tangent is None:
+            return self._whole(x, y, vx, vy, angle, speed)[:2]
+        state, gradient = self._tangent
+        change = gradient @ (motion - np.append(state.position, state.velocity))
+        fx, fy = (state.force - change).tolist()
+        return fx, fy
+
+    def law_with_torque(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float, float]:
+        """Return force and torque as :attr:`Bearing.law_with_torque`; the torque has no tangent."""
+        torque = self._whole(x, y, vx, vy, angle, speed)[2]
+        return *self.law(x, y, vx, vy, angle, speed), torque
+
+
+class _FilmLaw:
+    """Force of a film and, where asked for, torque; it remembers its voids."""
+
+    def __init__(self, film: OilFilm, torque: bool) -> None:
+        self._film, self._torque = film, torque
         self._most = film.clearance - film.thinnest
         self._step = _STEP * film.clearance
         self._empty: np.ndarray | None = None
 
     def __call__(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float, float]:
+    ) -> tuple[float, ...]:
         rate = np.array([vx, vy])
 
-        def force(a: float, b: float) -> tuple[float, float, float]:
+        def force(a: float, b: float) -> tuple[float, ...]:
             state = self._film._state(np.array([a, b]), rate, speed, self._empty)
             self._empty = state.solution.empty
-            return *state.force.tolist(), -state.torque
+            torque = (-state.torque,) if self._torque else ()
+            return *state.force.tolist(), *torque
 
         distance = hypot(x, y)
         if distance <= self._most:

@@ -329,7 +329,7 @@ class Foundation:
         place = checks.vector(place, "place", "m")
         if checks.label(name, "name") not in self.points:
             raise ValueError(
-                f"foundation: has no point for the support at {name!r}, only for: "
+                f"name: the foundation has no point for the support at {name!r}, only for: "
                 f"{', '.join(self.points)}"
             )
         apart = np.linalg.norm(self.places.get(name, place) - place)

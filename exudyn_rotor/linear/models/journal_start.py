@@ -41,11 +41,14 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     resistance[scene.modal] = np.diag(scene.body.motion.invariants.K)
     W = 1.0 / (resistance + _SOFT * max(resistance.max(), 1.0))
     motion = scene.N.T @ (W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T))
-    turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
+    # where the origin is the centre of mass, its displacement is from its place at rest
+    apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
+    turned = [into_rotor_frame(np.array([*place, 0.0]) - apart) for place in places.values()]
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])
         harmonics[orders.tolist().index(n)] = motion @ target
     harmonics[orders.tolist().index(0)] = scene.N.T @ _tilts(scene, speed)
+    harmonics[orders.tolist().index(0)] += scene.N[: scene.count].T @ apart[: scene.count]
     return harmonics
 
 

@@ -71,9 +71,10 @@ def linear_model(
         Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
         a SolidRotor with elements, and 'tilt' without.
-    about : {'steady', 'given'}
+    about : {'steady', 'equilibrium', 'given'}
         Motion about which a scene is linearised: the periodic motion under its loads and the
-        rotor's own unbalance at each speed, or its current state with the rotor undeformed.
+        rotor's own unbalance at each speed, that without this unbalance, or its current state with
+        the rotor undeformed.
     dense : bool, optional
         Whether a SolidRotor is solved in all its coordinates by dense matrices, or for its lowest
         modes; by default dense up to 600 degrees of freedom.

@@ -41,7 +41,7 @@ from exudyn_rotor.multibody.supports.support_connectors import held_cages
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 
-ABOUT = ("steady", "given")
+ABOUT = ("steady", "equilibrium", "given")
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
     ----------
     body, free, N, rest
         See :class:`SceneCoordinates`.
-    about : {'steady', 'given'}
+    about : {'steady', 'equilibrium', 'given'}
         Motion about which the scene is linearised.
     """
 
@@ -78,11 +78,12 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         mbs : exudyn.MainSystem
         body : RotorBody
             From :func:`exudyn_rotor.add_rotor`.
-        about : {'steady', 'given'}
+        about : {'steady', 'equilibrium', 'given'}
             ``'steady'``: for every speed the periodic motion under the scene's loads and the
             rotor's own unbalance is found first, beginning from the current state, e.g. a static
-            solution; it matters where bearings are nonlinear. ``'given'``: the current state of
-            everything but the rotor, and the rotor undeformed.
+            solution; it matters where bearings are nonlinear. ``'equilibrium'``: the same without
+            the rotor's own unbalance, as bearings in a list of supports are linearised.
+            ``'given'``: the current state of everything but the rotor, and the rotor undeformed.
 
         Raises
         ------

@@ -10,9 +10,11 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
+from exudyn_rotor.bearings.journal_bearing import TangentFilm
 from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.supports.support_connectors import tangent_films
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
@@ -30,9 +32,13 @@ class Probe:
     """Exudyn's forces and masses at any state of a scene, spin Ω, beside the rotor's own terms."""
 
     def __init__(
-        self, scene: SceneCoordinates, speed: float, solver: exudyn.MainSolverStatic
+        self,
+        scene: SceneCoordinates,
+        speed: float,
+        solver: exudyn.MainSolverStatic,
+        films: tuple[TangentFilm, ...],
     ) -> None:
-        self.scene, self.speed, self.solver = scene, speed, solver
+        self.scene, self.speed, self.solver, self.films = scene, speed, solver, films
         self.mbs = scene.body.mbs
         body = scene.body
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
@@ -49,6 +55,22 @@ class Probe:
     def rounding(self) -> float:
         """Relative error of derivatives: of positions of order 1 m, and of the curvature left."""
         return EPSILON / self.step + _CURVATURE**2
+
+    @property
+    def straight(self) -> float:
+        """Motion [m] along which the forces are straight enough for their derivatives."""
+        return min(self.step, _STEPS[-1]) if self.films else self.step
+
+    @contextmanager
+    def tangents(self) -> Iterator[None]:
+        """Let films go on by their tangents from the next state on."""
+        for film in self.films:
+            film.hold(True)
+        try:
+            yield
+        finally:
+            for film in self.films:
+                film.hold(False)
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
@@ -135,8 +157,8 @@ class Probe:
 @contextmanager
 def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
     """Open a scene for probing and leave it as it was."""
-    with evaluating(scene.body.mbs) as solver:
-        yield Probe(scene, speed, solver)
+    with tangent_films(scene.body) as films, evaluating(scene.body.mbs) as solver:
+        yield Probe(scene, speed, solver, films)
 
 
 class LinearPoint(NamedTuple):
@@ -153,6 +175,13 @@ def linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> LinearPoint:
     """Return the scene linearised about y at one angle."""
+    with probe.tangents():
+        return _linearised(probe, theta, y, y_t, y_tt)
+
+
+def _linearised(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> LinearPoint:
     speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
     T1, T2 = speed * T1, speed**2 * T2
     x, v = T @ y, T @ y_t + T1 @ y

@@ -45,6 +45,8 @@ class Scene(Protocol):
     @property
     def interfaces(self) -> tuple[str, ...]: ...
     @property
+    def unit_unbalance(self) -> np.ndarray: ...
+    @property
     def structural_damping(self) -> np.ndarray | None: ...
     def interface_motion(self, name: str) -> np.ndarray: ...
 
@@ -79,8 +81,8 @@ def steady_motion(
     raise UnconvergedError(
         f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
         "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
-        "moves from node to node? linear_model(rotor, supports=…) takes bearings in equilibrium; "
-        "a damped run from rest shows the motion"
+        "moves from node to node? about='equilibrium' leaves the rotor's own unbalance out, as "
+        "linear_model(rotor, supports=…) does; a damped run from rest shows the motion"
     )
 
 
@@ -247,7 +249,10 @@ class _Search:
 
     def _residual(self, points: list[LinearPoint]) -> np.ndarray:
         """Return the harmonics (h, k) of what the forces leave unbalanced."""
-        return self.waves.conj().T @ np.array([point.residual for point in points]) / self.samples
+        found = self.waves.conj().T @ np.array([point.residual for point in points]) / self.samples
+        if self.scene.about == "equilibrium":
+            found[self.orders == 0] += self.probe.speed**2 * self.scene.unit_unbalance
+        return found
 
     def _start(self, found: np.ndarray | None) -> np.ndarray:
         if found is None:
@@ -299,7 +304,7 @@ class _Search:
     def _counts(self, sizes: np.ndarray) -> float:
         """Return the motion of which the tolerance is a share."""
         # what the equations need is the motion to a share of their step of differences
-        return self.probe.step if self.for_equations else max(sizes.max(), SMALLEST)
+        return self.probe.straight if self.for_equations else max(sizes.max(), SMALLEST)
 
     def _check_spin(self, torque: float) -> None:
         if self.spin is not None and not self.for_equations:

@@ -11,7 +11,7 @@ local angular velocity in axes of the frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 import exudyn
@@ -20,6 +20,7 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.journal_bearing import JournalBearing, TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
@@ -118,8 +119,27 @@ def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
         let(turning)
 
 
+@contextmanager
+def tangent_films(body: RotorItems) -> Iterator[tuple[TangentFilm, ...]]:
+    """Give the films of all journal bearings of finite length, whose tangents can be held."""
+    journals = [one for one in body.supports if isinstance(one.support, JournalBearing)]
+    films = tuple(TangentFilm(one.support) for one in journals)
+    spin = _spin_reader(body)
+
+    def let(laws: Iterable[Bearing | TangentFilm]) -> None:
+        for one, law in zip(journals, laws, strict=True):
+            function = _bearing_function(body, law, body.standing_axes, spin)
+            body.mbs.SetObjectParameter(one.objects[0], *function)
+
+    let(films)
+    try:
+        yield films
+    finally:
+        let(one.support for one in journals)
+
+
 def _bearing_function(
-    body: RotorItems, bearing: Bearing, axes: np.ndarray, spin: SpinReader
+    body: RotorItems, bearing: Bearing | TangentFilm, axes: np.ndarray, spin: SpinReader
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     if body.formulation.has_spin and bearing.law_with_torque is not None:
@@ -136,7 +156,7 @@ def _bearing_function(
     return "springForceUserFunction", force
 
 
-def _braking_function(bearing: Bearing, spin: SpinReader) -> Callable:
+def _braking_function(bearing: Bearing | TangentFilm, spin: SpinReader) -> Callable:
     """Return force and torque, in the axes of the connector's base."""
     law = bearing.law_with_torque
 

@@ -249,6 +249,25 @@ LINEAR_MODELS = [
         ("journals begin in the centre", "elif np.any(load) and speed", "elif False and speed"),
     ),
     *mutations(
+        "linear/models/journal_start.py",
+        "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
+        ("journals begin beside their places", "0.0]) - apart)", "0.0]) + apart)"),
+    ),
+    *mutations(
+        "linear/models/steady_motion.py",
+        "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
+        (
+            "unbalance stays",
+            "+= self.probe.speed**2 * self.scene",
+            "+= 0.0 * self.probe.speed**2 * self.scene",
+        ),
+    ),
+    *mutations(
+        "bearings/journal_bearing.py",
+        "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
+        ("a held film pushes the other way", "(state.force - change)", "(state.force + change)"),
+    ),
+    *mutations(
         "multibody/supports/support_connectors.py",
         "test_rolling_bearing.py::test_a_run_at_a_speed_starts_near_and_turns_its_cage",
         ("cages stay held", "        let(turning)", "        let(held)"),
