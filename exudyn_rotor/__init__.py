@@ -45,7 +45,7 @@ from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_s
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.links import Link
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.base_response import BaseResponse, base_response
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse

@@ -17,13 +17,13 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support, acts
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.linear_model import MODELS
-from exudyn_rotor.linear.models.linear_scene import LinearScene
-from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
-from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
+from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 

@@ -23,7 +23,7 @@ from exudyn_rotor.descriptions import DESCRIBED, SUPPORTS, described, described_
 from exudyn_rotor.export import csv_text
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.linear_model import MODELS
-from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.storage import write_text

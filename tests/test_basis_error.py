@@ -28,7 +28,7 @@ from exudyn_rotor import (
     unbalance_response,
     unstable_ranges,
 )
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, relative_errors
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, relative_errors
 from exudyn_rotor.linear.response.basis_check import looked_at
 from exudyn_rotor.reduction.inertial_modes import inertial_modes
 from exudyn_rotor.solvers.inertia_relief import inertia_relief

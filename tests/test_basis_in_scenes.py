@@ -20,7 +20,7 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN
 
 SKEW = Rotation.from_rotvec([0.3, -0.5, 0.9]).as_matrix()
 SPEEDS = [600.0, 1500.0]

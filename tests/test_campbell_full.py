@@ -6,7 +6,7 @@ from models import STEEL, block_beam
 
 from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.3], ids=["constant", "periodic"])

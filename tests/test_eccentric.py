@@ -19,8 +19,8 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.linear.models import linear_model as source
-from exudyn_rotor.linear.models.eccentricity import without_drive
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.eccentricity import without_drive
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 
 pytestmark = pytest.mark.filterwarnings("ignore:the centre of mass is")

@@ -9,8 +9,8 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models import subspace
-from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.full import subspace
+from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.unbalance import Unbalance

@@ -20,7 +20,7 @@ from exudyn_rotor import (
     critical_speeds,
     free_modes,
 )
-from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations
 from exudyn_rotor.theory.stiffening import stiffening

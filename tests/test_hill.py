@@ -9,7 +9,7 @@ from models import disc_rotor
 from test_stability import anisotropic, mathieu, random_system
 
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import hill, truncation
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes

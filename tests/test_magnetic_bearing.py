@@ -27,7 +27,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.bearings.given import linear_supports
-from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
+from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.reduction.mode_kind import ModeKind
 

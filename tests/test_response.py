@@ -8,7 +8,7 @@ from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import add_rotor
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import harmonic_balance
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce

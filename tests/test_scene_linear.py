@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models.linear_scene import LinearScene
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.periodic.exponents import constant_exponents, exponents
 from exudyn_rotor.linear.periodic.fundamental import monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold

@@ -9,8 +9,8 @@ from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
 from exudyn_rotor import SolidRotor
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.models import subspace
-from exudyn_rotor.linear.models.full_rotor import FullRotor
+from exudyn_rotor.linear.models.full import subspace
+from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
 

@@ -218,7 +218,7 @@ PLACES = {
     "prestress/static_solution.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress",
     ),
-    "linear/models/eccentricity.py:warn_of_eccentricity": (
+    "linear/models/rotor/eccentricity.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
     ),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
@@ -245,7 +245,7 @@ PLACES = {
     "linear/stability/thresholds.py:_warn_of_basis": (
         limit_that_a_finer_rotor_has_elsewhere, UserWarning, "is not known",
     ),
-    "linear/models/basis_error.py:warn": (
+    "linear/models/basis/basis_error.py:warn": (
         campbell_with_one_mode, UserWarning, "errs by about",
     ),
     "solid/units.py:check_model_units": (

@@ -12,8 +12,8 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.linear_scene import LinearScene
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.full.full_body import reduced_body

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.stiffening import stiffening
 from validation.extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rings

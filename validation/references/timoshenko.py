@@ -27,7 +27,7 @@ from exudyn_rotor import (
     craig_bampton_modes,
     critical_speeds,
 )
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 
 REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")

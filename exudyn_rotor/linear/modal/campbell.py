@@ -17,7 +17,7 @@ from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
 from exudyn_rotor.linear.modal.tracking import Tracks, track
 from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of, oscillates
-from exudyn_rotor.linear.models.basis_error import BasisError, judged
+from exudyn_rotor.linear.models.basis.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,

@@ -13,7 +13,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS

@@ -25,7 +25,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     warn_of_critical,
 )
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

@@ -15,7 +15,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, in_table
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,

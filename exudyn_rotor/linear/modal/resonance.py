@@ -23,7 +23,7 @@ import scipy.linalg as la
 
 from exudyn_rotor.linear.modal.hermitian_zeros import same_speed, zeros_of_eigenvalues
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.critical_shift import CriticalMotion
+from exudyn_rotor.linear.models.basis.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem

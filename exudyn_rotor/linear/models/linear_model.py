@@ -12,16 +12,16 @@ from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
-from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.full_rotor import FullRotor
-from exudyn_rotor.linear.models.linear_scene import ABOUT, LinearScene
-from exudyn_rotor.linear.models.linear_train import LinearTrain
+from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor_on_foundation import RotorOnFoundation
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.rotor_train import RotorTrain
-from exudyn_rotor.linear.models.scene_train import scene_train
+from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
+from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.scene.linear_scene import ABOUT, LinearScene
+from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
+from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.trains.scene_train import scene_train
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress

@@ -20,14 +20,14 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.response.places import At, Place, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS

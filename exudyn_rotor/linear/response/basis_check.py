@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from exudyn_rotor.linear.models.basis_error import BasisError
+from exudyn_rotor.linear.models.basis.basis_error import BasisError
 
 # of the largest motion at the same speed or frequency: smaller ones count as that
 _LEAST = 0.1

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.response.places import At, Place, place
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.theory.rotating_axes import FRAMES, into_rotor_frame

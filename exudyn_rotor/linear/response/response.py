@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
 from exudyn_rotor.linear.response.refinement import resolved_peak
 from exudyn_rotor.linear.response.run_start import RunStart

@@ -14,13 +14,13 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.linear_scene import LinearScene
-from exudyn_rotor.linear.models.own_coordinates import names_of_controllers
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
-from exudyn_rotor.linear.models.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.rotor.own_coordinates import names_of_controllers
+from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState

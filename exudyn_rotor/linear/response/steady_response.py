@@ -16,14 +16,14 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.basis_error import BasisError
-from exudyn_rotor.linear.models.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.basis.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.response.basis_check import (
     HARMONICS,
     looked_at,

@@ -24,11 +24,11 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.linear_train import LinearTrain
 from exudyn_rotor.linear.models.protocol import Space
-from exudyn_rotor.linear.models.rotor_train import RotorTrain
+from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
+from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
+from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.linear.stability.growth import GrowthAt, held_space
 from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.basis_error import BasisError
+from exudyn_rotor.linear.models.basis.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.stability.growth import (
     GrowthAt,

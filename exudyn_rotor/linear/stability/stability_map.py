@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, BasisError, relative_errors
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, relative_errors
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem

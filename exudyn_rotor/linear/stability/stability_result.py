@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
 from exudyn_rotor.linear.modal.whirl import WHIRLS, families
-from exudyn_rotor.linear.models.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
 

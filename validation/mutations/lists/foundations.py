@@ -6,7 +6,7 @@ _SCENE = "test_foundations.py::test_scene_and_linear_model_have_the_same_exponen
 
 FOUNDATIONS = [
     *mutations(
-        "linear/models/rotor_on_foundation.py",
+        "linear/models/rotor/rotor_on_foundation.py",
         _SCENE,
         ("the foundation turns with the rotor", "{-n: np.hstack", "{n: np.hstack"),
         (
@@ -17,7 +17,7 @@ FOUNDATIONS = [
         ("supports on the ground as well", "X[:6, :6] = 0.0", "X[:6, :6] *= 1.0"),
     ),
     *mutations(
-        "linear/models/rotor_on_foundation.py",
+        "linear/models/rotor/rotor_on_foundation.py",
         "test_foundations.py::test_unbalance_response_is_that_of_two_masses",
         ("supports push the foundation the other way", "np.eye(6), -R]", "np.eye(6), R]"),
     ),
@@ -32,7 +32,7 @@ FOUNDATIONS = [
         ("cross-coupling lost", "for sign in (1.0, -1.0):", "for sign in (1.0,):"),
     ),
     *mutations(
-        "linear/models/controlled_rotor.py",
+        "linear/models/rotor/controlled_rotor.py",
         "test_magnetic_on_foundation.py",
         (
             "sensors on the ground",
@@ -48,7 +48,7 @@ FOUNDATIONS = [
         ("a foundation starts at rest", "T @ x[:first], T @ x_t", "T @ x[:first], 0.0 * T @ x_t"),
     ),
     *mutations(
-        "linear/models/finer_model.py",
+        "linear/models/basis/finer_model.py",
         "test_basis_on_foundations.py",
         (
             "controllers held by their static stiffness beside a finer basis",
@@ -62,7 +62,7 @@ FOUNDATIONS = [
         ("sensors do not see the foundation", "in sensed.items()", "in [(0, sensed[0])]"),
     ),
     *mutations(
-        "linear/models/linear_scene.py",
+        "linear/models/scene/linear_scene.py",
         "test_magnetic_on_foundation.py::test_public_analyses_take_scene_and_list_alike",
         (
             "controllers have no sense of whirl in a scene",
@@ -71,7 +71,7 @@ FOUNDATIONS = [
         ),
     ),
     *mutations(
-        "linear/models/rotor_on_foundation.py",
+        "linear/models/rotor/rotor_on_foundation.py",
         "test_foundations.py::test_loads_on_the_foundation_and_its_ground",
         (
             "the ground shakes the foundation the other way",

@@ -180,7 +180,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/models/rotor_on_supports.py",
+        "linear/models/rotor/rotor_on_supports.py",
         "test_campbell_frames.py",
         (
             "dampers that stand still carry at rest",

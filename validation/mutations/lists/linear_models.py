@@ -4,13 +4,13 @@ from validation.mutations.mutation import mutations
 
 LINEAR_MODELS = [
     *mutations(
-        "linear/models/own_coordinates.py",
+        "linear/models/rotor/own_coordinates.py",
         "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
         ("controllers turn without Coriolis", "2.0 * rate * own", "0.0 * rate * own"),
         ("controllers pulled inwards", "= -(rate**2) * np.diag", "= rate**2 * np.diag"),
     ),
     *mutations(
-        "linear/models/controlled_rotor.py",
+        "linear/models/rotor/controlled_rotor.py",
         "test_magnetic_bearing.py::test_rigid_rotor_has_the_eigenvalues_of_its_state_space",
         (
             "damping of what stands still carries nothing",
@@ -19,12 +19,12 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/own_coordinates.py",
+        "linear/models/rotor/own_coordinates.py",
         "test_tilting_pad.py::test_scene_and_linear_analyses_agree",
         ("films do not see their pads", "- np.outer(turned, row)", "- 0.0 * np.outer(turned, row)"),
     ),
     *mutations(
-        "linear/models/left_out.py",
+        "linear/models/basis/left_out.py",
         "test_basis_error.py::test_estimates_are_the_errors_against_the_full_model",
         (
             "left-out shapes take no part",
@@ -33,7 +33,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/critical_shift.py",
+        "linear/models/basis/critical_shift.py",
         "test_basis_on_foundations.py test_basis_error.py::test_estimates_of_critical_speeds",
         (
             "dynamic stiffness changes half as fast with the speed",
@@ -43,7 +43,7 @@ LINEAR_MODELS = [
         ("one of a close pair taken for the other", "_CLOSE = 1e-2", "_CLOSE = 0.0"),
     ),
     *mutations(
-        "linear/models/critical_shift.py",
+        "linear/models/basis/critical_shift.py",
         "test_basis_on_foundations.py::test_what_the_rotor_does_not_feel_has_no_error",
         (
             "a motion at its own critical speed taken for a free one",
@@ -52,7 +52,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/own_spin.py",
+        "linear/models/scene/own_spin.py",
         "test_steady_state.py",
         (
             "bearings off the axis hold the own spin",
@@ -66,7 +66,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/steady_motion.py",
+        "linear/models/scene/steady_motion.py",
         "test_steady_state.py",
         (
             "own spin is not kept",
@@ -75,7 +75,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/eccentricity.py",
+        "linear/models/rotor/eccentricity.py",
         "test_growth_by_rounding.py::test_uneven_rotor_held_by_dampers_alone_does_not_grow",
         (
             "product of inertia does not couple spin and tilts",
@@ -98,7 +98,7 @@ LINEAR_MODELS = [
         ("rounding is smaller than it is", "EPSILON / min(self", "1e-6 * EPSILON / min(self"),
     ),
     *mutations(
-        "linear/models/equilibrium.py",
+        "linear/models/scene/equilibrium.py",
         "test_dampers_and_stops.py::test_rotor_at_rest_lies_in_its_stops",
         (
             "what nothing holds does not move with its load",
@@ -107,7 +107,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/steady_motion.py",
+        "linear/models/scene/steady_motion.py",
         "test_dampers_and_stops.py::test_uneven_rotor_that_lifts_off_its_stop_starts_in_its_steady_motion",
         (
             "angles see another motion",
@@ -116,12 +116,12 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/probe.py",
+        "linear/models/scene/probe.py",
         "test_dampers_and_stops.py::test_equilibrium_on_a_stop_a_thousand_times_stiffer_than_the_bearings",
         ("steps of differences beyond the contact", "_KINK = 1e-4", "_KINK = 1e4"),
     ),
     *mutations(
-        "linear/models/finer_scene.py",
+        "linear/models/basis/finer_scene.py",
         "test_basis_in_scenes.py::test_a_scene_errs_as_a_rotor_on_the_same_supports",
         (
             "rotor's own terms counted twice",
@@ -135,7 +135,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/basis_error.py",
+        "linear/models/basis/basis_error.py",
         "test_basis_error.py::test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning",
         (
             "warning at any error",
@@ -144,7 +144,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/rotor_on_supports.py",
+        "linear/models/rotor/rotor_on_supports.py",
         "test_campbell_frames.py",
         (
             "Coriolis forces left out",
@@ -158,7 +158,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/rotor_on_supports.py",
+        "linear/models/rotor/rotor_on_supports.py",
         "test_eccentric.py",
         (
             "steady forces of the supports forgotten",
@@ -172,7 +172,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/subspace.py",
+        "linear/models/full/subspace.py",
         "test_structural_damping.py::test_a_full_model_is_that_of_all_its_coordinates",
         (
             "structural damping drives in the residual",
@@ -181,7 +181,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/full_equations.py",
+        "linear/models/full/full_equations.py",
         "test_full_stiffening.py::test_full_equations_hold_the_change_of_shape",
         (
             "stiffness per fourth power of the speed subtracted in the full model",
@@ -190,7 +190,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/full_equations.py",
+        "linear/models/full/full_equations.py",
         "test_full_response.py::test_unbalance_response_is_that_of_all_modes",
         (
             "Coriolis forces halved in the full model",
@@ -199,7 +199,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/spin.py",
+        "linear/models/rotor/spin.py",
         "test_annular_seal.py::test_a_seal_that_repels_at_high_speed_does_not_hold_the_spin",
         (
             "springs that repel taken for some that hold the spin",
@@ -217,7 +217,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/rotor_on_supports.py",
+        "linear/models/rotor/rotor_on_supports.py",
         "test_campbell.py",
         (
             "stiffness by damping that stands still, against the spin",
@@ -235,7 +235,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/scene_coordinates.py",
+        "linear/models/scene/scene_coordinates.py",
         "test_steady_state.py",
         (
             "velocity of the turning axes reversed",
@@ -244,17 +244,17 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/journal_start.py",
+        "linear/models/scene/journal_start.py",
         "test_journal_bearing.py::test_steady_state_is_the_equilibrium_of_the_journals",
         ("journals begin in the centre", "elif np.any(load) and speed", "elif False and speed"),
     ),
     *mutations(
-        "linear/models/journal_start.py",
+        "linear/models/scene/journal_start.py",
         "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
         ("journals begin beside their places", "0.0]) - apart)", "0.0]) + apart)"),
     ),
     *mutations(
-        "linear/models/steady_motion.py",
+        "linear/models/scene/steady_motion.py",
         "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
         (
             "unbalance stays",
@@ -273,7 +273,7 @@ LINEAR_MODELS = [
         ("cages stay held", "        let(turning)", "        let(held)"),
     ),
     *mutations(
-        "linear/models/linear_scene.py",
+        "linear/models/scene/linear_scene.py",
         "test_rolling_bearing.py::test_a_run_at_rest_starts_in_the_equilibrium_and_stays",
         (
             "cages held at another angle",
@@ -282,7 +282,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/probe.py",
+        "linear/models/scene/probe.py",
         "test_journal_bearing.py::test_scene_and_linear_rotor_agree",
         (
             "films differentiated by large steps",
@@ -291,7 +291,7 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
-        "linear/models/linear_scene.py",
+        "linear/models/scene/linear_scene.py",
         "test_rolling_bearing.py::test_cages_stand_in_the_linear_equations_of_a_scene",
         (
             "cages turn with the rotor",

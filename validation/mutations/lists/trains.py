@@ -7,7 +7,7 @@ _DISCS = _TESTS + "test_two_rigid_discs_are_those_of_the_closed_form"
 _REFUSED = _TESTS + "test_what_does_not_repeat_is_refused"
 TRAINS = [
     *mutations(
-        "linear/models/turned_rotor.py",
+        "linear/models/trains/turned_rotor.py",
         _DISCS,
         (
             "drift of turned coordinates reversed",
@@ -44,13 +44,13 @@ TRAINS = [
         ),
     ),
     *mutations(
-        "linear/models/turning.py",
+        "linear/models/trains/turning.py",
         _DISCS,
         ("waves turn back", "(1j * self.waves)", "(-1j * self.waves)"),
         ("places turn with the waves", "n - self.waves[None, :]", "n + self.waves[None, :]"),
     ),
     *mutations(
-        "linear/models/turning.py",
+        "linear/models/trains/turning.py",
         _DUAL + "test_axisymmetric_part_and_what_is_left",
         ("unevenness of fast motions", "1.0 + (omega / first) ** 2", "1.0 + 0.0 * omega"),
     ),
@@ -65,23 +65,23 @@ TRAINS = [
         ("damping where places turn with a rotor", "1j * n * X", "-1j * n * X"),
     ),
     *mutations(
-        "linear/models/linear_train.py",
+        "linear/models/trains/linear_train.py",
         "test_train_responses.py::test_loads_that_turn_with_another_rotor_are_refused",
         ("unbalance of any rotor at the common speed", "if ratio != 1.0:", "if False:"),
     ),
     *mutations(
-        "linear/models/linear_train.py",
+        "linear/models/trains/linear_train.py",
         "test_geared_trains.py::test_geared_rotors_are_those_of_constant_equations_at_rest",
         ("free spins of geared rotors held", "values <= _HELD", "values < -_HELD"),
     ),
     *mutations(
-        "linear/models/standing_space.py",
+        "linear/models/trains/standing_space.py",
         _TESTS + "test_modes_from_axes_at_rest_hold_in_turning_ones",
         ("waves turn back", "- 1j * strongest * speed", "+ 1j * strongest * speed"),
         ("harmonics of the wrong wave", "+ strongest - n", "- strongest + n"),
     ),
     *mutations(
-        "linear/models/turning.py",
+        "linear/models/trains/turning.py",
         _DUAL + "test_estimates_are_the_errors_against_more_modes",
         (
             "shapes that lack stand still",
@@ -90,7 +90,7 @@ TRAINS = [
         ),
     ),
     *mutations(
-        "linear/models/left_out.py",
+        "linear/models/basis/left_out.py",
         _DUAL + "test_estimates_are_the_errors_against_more_modes",
         (
             "shapes that lack count in the central harmonics only",
@@ -100,18 +100,18 @@ TRAINS = [
         ("a large shift is found once", "move(found, shapes, far) - values", "found - values"),
     ),
     *mutations(
-        "linear/models/link_places.py",
+        "linear/models/trains/link_places.py",
         "test_rotor_trains.py::test_links_are_where_their_ends_are",
         ("rotors put on the wrong side", "at[first] - apart", "at[first] + apart"),
         ("rotors put back on the wrong side", "at[second] + apart", "at[second] - apart"),
     ),
     *mutations(
-        "linear/models/link_places.py",
+        "linear/models/trains/link_places.py",
         "test_geared_trains.py::test_gears_are_apart_by_their_centre_distance",
         ("centres the other way", "places[1] - places[0] - expected", "places[1] - places[0]"),
     ),
     *mutations(
-        "linear/models/own_coordinates.py",
+        "linear/models/rotor/own_coordinates.py",
         "test_controlled_trains.py::test_rotors_without_links_are_those_alone",
         ("films at the common speed", "film, 0.0, self.rates[index]", "film, 0.0, 1.0"),
         (
@@ -121,12 +121,12 @@ TRAINS = [
         ),
     ),
     *mutations(
-        "linear/models/turning.py",
+        "linear/models/trains/turning.py",
         "test_controlled_trains.py::test_motions_of_controllers_and_pads_hold_in_turning_axes",
         ("controllers' pairs stand still", "np.tile([1, -1], pairs)", "np.tile([0, 0], pairs)"),
     ),
     *mutations(
-        "linear/models/linear_train.py",
+        "linear/models/trains/linear_train.py",
         "test_controlled_trains.py::test_critical_speeds_and_free_motions_have_the_slow_stiffness",
         (
             "films not undamped",
@@ -135,7 +135,7 @@ TRAINS = [
         ),
     ),
     *mutations(
-        "linear/models/scene_train.py",
+        "linear/models/trains/scene_train.py",
         "test_scene_trains.py",
         ("all rotors at one speed", "spin_at_start(body)[1] / speed", "1.0"),
         ("what stands in the scene beside", "number not in known and", "False and"),

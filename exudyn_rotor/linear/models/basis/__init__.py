@@ -1,0 +1,1 @@
+"""What the basis of a reduced rotor leaves out."""

@@ -1,0 +1,1 @@
+"""Full finite-element rotors."""

@@ -1,0 +1,1 @@
+"""One rotor on supports, with or without a foundation."""

@@ -1,0 +1,245 @@
+"""Exudyn's forces and masses at chosen states of a scene, linearised at one angle of the spin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import NamedTuple
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.bearings.journal_bearing import TangentFilm
+from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.supports.support_connectors import tangent_films
+from exudyn_rotor.theory.formulation import ConstantSpeed
+from exudyn_rotor.theory.motion import Motion
+from exudyn_rotor.theory.stiffening import stiffening as second_order
+
+# root mean square displacement [m] of a difference step: as large as nonlinearity allows, because
+# Exudyn's forces are differences of positions of order 1 m
+_STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
+_CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
+_VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
+_SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
+_KINK = 1e-4  # relative second-order error of a step that tells so
+
+
+class Probe:
+    """Exudyn's forces and masses at any state of a scene, spin Ω, beside the rotor's own terms."""
+
+    def __init__(
+        self,
+        scene: SceneCoordinates,
+        speed: float,
+        solver: exudyn.MainSolverStatic,
+        films: tuple[TangentFilm, ...],
+    ) -> None:
+        self.scene, self.speed, self.solver, self.films = scene, speed, solver, films
+        self.mbs = scene.body.mbs
+        body = scene.body
+        self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
+        self.spin = scene.spin_coordinate
+        self.rotor = np.arange(scene.modal.stop)
+        self.step = self.velocity_step = None
+        self.constant = None
+        motion = body.plan.node_motion
+        if motion.is_constant:
+            zero = np.zeros(motion.size)
+            self.constant = motion.forces(0.0, zero, zero), *motion.jacobian(0.0, zero, zero)
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of derivatives: of positions of order 1 m, and of the curvature left."""
+        return EPSILON / self.step + _CURVATURE**2
+
+    @property
+    def straight(self) -> float:
+        """Motion [m] along which the forces are straight enough for their derivatives."""
+        return min(self.step, _STEPS[-1]) if self.films else self.step
+
+    @contextmanager
+    def tangents(self) -> Iterator[None]:
+        """Let films go on by their tangents from the next state on."""
+        for film in self.films:
+            film.hold(True)
+        try:
+            yield
+        finally:
+            for film in self.films:
+                film.hold(False)
+
+    def constraints(self, theta: float) -> np.ndarray:
+        """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
+        self._set(theta, np.zeros(len(self.scene.free)), np.zeros(len(self.scene.free)))
+        rows = constraint_rows(self.mbs, self.solver, len(self.scene.rest))
+        if not len(rows):
+            return np.zeros((0, len(self.scene.free)))
+        C = rows[:, self.scene.free] @ self.scene.turn(theta)[0]
+        return C[np.abs(C).max(axis=1) > 1e-14]
+
+    def mass(self) -> np.ndarray:
+        """Return the mass matrix of all but the rotor at the present state, free coordinates."""
+        self.solver.ComputeMassMatrix(self.mbs)
+        full = np.array(self.solver.GetSystemMassMatrix())
+        mass = full[np.ix_(self.scene.free, self.scene.free)]
+        mass[np.ix_(self.rotor, self.rotor)] = 0.0
+        return mass
+
+    def rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
+        body, size = self.scene.body, len(self.scene.free)
+        form = replace(body.motion.formulation, spin=ConstantSpeed(self.speed, theta))
+        if form.moves_origin:
+            form = replace(form, translation="none")
+        motion = Motion(
+            body.motion.invariants,
+            form,
+            second_order(body.motion.invariants, body.stiffening),
+            orientation=body.motion.orientation,
+            plane=body.motion.free_directions,
+            gravity=body.motion.gravity,
+        )
+        zero = np.zeros(motion.size)
+        by_q, by_v = motion.jacobian(0.0, zero, zero)
+        full = np.zeros((3, size, size))
+        matrices = motion.mass_matrix(0.0, zero), -by_v, -by_q
+        full[(slice(None), *np.ix_(self.rotor, self.rotor))] = matrices
+        return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+
+    def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the forces of all but the rotor's own equations, free coordinates."""
+        q, q_t = self._set(theta, x, v)
+        self.solver.ComputeODE2RHS(self.mbs)
+        total = np.array(self.solver.GetSystemResidual())[: len(q)]
+        total[self.physics] -= self._physics_force(q[self.physics], q_t[self.physics])
+        return total[self.scene.free]
+
+    def unbalanced(self, theta: float, y: np.ndarray) -> np.ndarray:
+        """Return what the forces lack for an equilibrium at rest (k,), as the residual of y."""
+        _, _, K, constant = self.rotor_terms(theta)
+        T = self.scene.turn(theta)[0]
+        x = T @ y
+        return T.T @ (K @ x - constant - self.force(theta, x, np.zeros_like(x)))
+
+    def _physics_force(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return what the rotor's object in the scene contributes at this state."""
+        body, unknowns = self.scene.body, self.scene.body.layout.unknowns
+        force = np.zeros(body.layout.size)  # locked coordinates are not looked at
+        if self.constant is not None:
+            rest, by_q, by_v = self.constant
+            force[unknowns] = rest + by_q @ q[unknowns] + by_v @ q_t[unknowns]
+            return force
+        t = self.mbs.systemData.GetTime()
+        force[unknowns] = body.plan.node_motion.forces(t, q[unknowns], q_t[unknowns])
+        return force
+
+    def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Put a deviation x of the free coordinates and their velocity v into the scene."""
+        data = self.mbs.systemData
+        q, q_t = self.scene.rest.copy(), np.zeros(len(self.scene.rest))
+        q[self.scene.free] += x
+        q_t[self.scene.free] = v
+        if self.spin is not None:
+            sign = self.scene.spin_sign
+            q[self.spin], q_t[self.spin] = sign * theta, sign * self.speed
+        data.SetODE2Coordinates(q)
+        data.SetODE2Coordinates_t(q_t)
+        data.SetTime(theta / self.speed if self.speed else 0.0)
+        if self.solver.GetAEsize():  # as every implicit solver does: some forces rely on it
+            self.solver.ComputeAlgebraicEquations(self.mbs, False)
+        return q, q_t
+
+
+@contextmanager
+def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
+    """Open a scene for probing and leave it as it was."""
+    with tangent_films(scene.body) as films, evaluating(scene.body.mbs) as solver:
+        yield Probe(scene, speed, solver, films)
+
+
+class LinearPoint(NamedTuple):
+    """M, D, K (k, k) at one angle, the residual of y, and the forces of all but the rotor (k,)."""
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    residual: np.ndarray
+    forces: np.ndarray
+
+
+def linearised(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> LinearPoint:
+    """Return the scene linearised about y at one angle."""
+    with probe.tangents():
+        return _linearised(probe, theta, y, y_t, y_tt)
+
+
+def _linearised(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> LinearPoint:
+    speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
+    T1, T2 = speed * T1, speed**2 * T2
+    x, v = T @ y, T @ y_t + T1 @ y
+    rotor_M, rotor_D, rotor_K, rotor_force = probe.rotor_terms(theta)
+    force = probe.force(theta, x, v)
+    M = rotor_M + probe.mass()
+    residual = (
+        M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + rotor_D @ v + rotor_K @ x - rotor_force - force
+    )
+    sizes = probe.scene.metre(np.diag(T.T @ M @ T))
+
+    def moved(x_i: np.ndarray) -> np.ndarray:
+        return probe.force(theta, x + x_i, v)
+
+    def sped_up(v_i: np.ndarray) -> np.ndarray:
+        return probe.force(theta, x, v + v_i)
+
+    if probe.step is None:
+        probe.step = _chosen_step(moved, T * sizes, _STEPS)
+        probe.velocity_step = _chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
+    rest_K = -_slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
+    faster = probe.velocity_step
+    rest_D = -_differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
+    carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
+    return LinearPoint(
+        T.T @ M @ T,
+        T.T @ (2.0 * M @ T1 + rotor_D @ T + rest_D),
+        T.T @ (M @ T2 + rotor_D @ T1 + rotor_K @ T + rest_K + carried),
+        T.T @ residual,
+        T.T @ force,
+    )
+
+
+def _differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return central differences along the columns of `moves`, and their curvature error.
+
+    The steps h and 2h are extrapolated; the error is that of h alone.
+    """
+    near, far = (
+        np.array([(function(n * move) - function(-n * move)) / (2 * n) for move in moves.T]).T
+        for n in (1, 2)
+    )
+    error = np.abs(near - far).max() / 3.0 / max(np.abs(near).max(), 1e-300)
+    return near + (near - far) / 3.0, float(error)
+
+
+def _slopes(function: Callable, moves: np.ndarray) -> np.ndarray:
+    """Return differences along `moves`, of smaller ones where the forces have a kink within."""
+    for share in _SHARES:
+        slopes, error = _differences(function, share * moves)
+        if error < _KINK:
+            break
+    return slopes / share
+
+
+def _chosen_step(function: Callable, moves: np.ndarray, steps: tuple[float, ...]) -> float:
+    """Return the largest step [m] or [m/s] at which the forces are straight enough."""
+    for step in steps:
+        if _differences(function, step * moves)[1] < _CURVATURE:
+            return step
+    return steps[-1]

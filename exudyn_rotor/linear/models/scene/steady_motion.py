@@ -1,0 +1,343 @@
+"""Steady motion of a scene over one revolution, and the equations about it.
+
+Newton's method on the motion's harmonics y_n of ``y(θ) = Re Σ y_n exp(inθ)``: the scene is
+linearised at several angles of a revolution, and Hill's matrix of these equations turns what the
+forces leave unbalanced into a change of all harmonics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_rotor.linear.models.scene.equilibrium import (
+    FAR,
+    NOISE,
+    SMALLEST,
+    UNHELD,
+    equilibrium,
+    solved,
+)
+from exudyn_rotor.linear.models.scene.journal_start import journal_start
+from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
+from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised, probing
+from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
+
+_FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
+_REST_SAMPLES = 7  # an odd number: the harmonics are exact at all of them
+_MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
+_ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
+_SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
+_FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the start
+_MOST_FOLLOWED = 12  # iterations for each
+_MOST_ITERATIONS = 40
+_RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
+_LEAST_SHARE = 2e-3  # of a step
+_AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
+_PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
+_CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
+
+
+class Scene(Protocol):
+    """What the search needs of a scene beside the members of :class:`SceneCoordinates`."""
+
+    about: str
+
+    @property
+    def interfaces(self) -> tuple[str, ...]: ...
+    @property
+    def unit_unbalance(self) -> np.ndarray: ...
+    @property
+    def structural_damping(self) -> np.ndarray | None: ...
+    def interface_motion(self, name: str) -> np.ndarray: ...
+
+
+def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
+    """Return the equations about the steady motion; raises as :func:`steady_motion`."""
+    return steady_motion(scene, probe, _AT_REST)[0]
+
+
+def steady_motion(
+    scene: Scene, probe: Probe, tolerance: float
+) -> tuple[PeriodicSystem, np.ndarray, np.ndarray]:
+    """Return equations, orders (h,) and harmonics (h, k), at as many angles as needed.
+
+    Raises
+    ------
+    UnconvergedError
+        Where no steady motion is found, or 192 angles do not resolve the coefficients.
+    """
+    samples, found = _FIRST_SAMPLES, None
+    while samples <= _MOST_SAMPLES:
+        search = _Search(scene, probe, samples, tolerance)
+        try:
+            system, found = search.found(found)
+        except UnconvergedError:
+            if found is not None or not probe.speed:
+                raise
+            system, found = search.followed()
+        if system is not None:
+            return system, search.orders, found
+        samples *= 2
+    raise UnconvergedError(
+        f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
+        "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
+        "moves from node to node? about='equilibrium' leaves the rotor's own unbalance out, as "
+        "linear_model(rotor, supports=…) does; a damped run from rest shows the motion"
+    )
+
+
+def motion_at_rest(
+    scene: Scene, probe: Probe, tolerance: float, angle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
+
+    Exact at the start's angle [rad] and those of the same distance from it.
+
+    Raises
+    ------
+    UnconvergedError
+        Where there is no equilibrium.
+    """
+    start = journal_start(scene, 0.0, np.arange(-1, 2))
+    count = _REST_SAMPLES
+    while True:
+        angles = angle + 2.0 * np.pi * np.arange(count) / count
+        orders = np.arange(-(count // 2), count // 2 + 1)
+        values = []
+        for theta in angles:
+            near = values[-1] if values else (np.exp(1j * theta * np.arange(-1, 2)) @ start).real
+            values.append(equilibrium(scene, probe, theta, near, tolerance))
+        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
+        sizes = np.abs(harmonics).max(axis=1)
+        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _REST_SAMPLES:
+            return orders, harmonics
+        count = 2 * count + 1
+
+
+def check_period(scene: SceneCoordinates, probe: Probe) -> None:
+    """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
+    still = np.zeros(len(scene.free))
+    for theta in (0.5, 2.5, 4.5):
+        first = probe.force(theta, still, still)
+        loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
+        for turns in (1.0, 2.0):
+            later = probe.force(theta + 2.0 * np.pi * turns, still, still)
+            if np.abs(later - first).max() > _PERIODIC * loads + UNHELD * scene.mass:
+                raise UnconvergedError(
+                    f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
+                    "revolution of the rotor, so there is no steady motion; leave out loads and "
+                    "motions that vary in time"
+                )
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """The steady motion by its values at `samples` angles.
+
+    `tolerance` counts relative to the motion, but for a step of differences in the equations. The
+    motion alone does not need resolved equations: Newton's method then takes more steps.
+    """
+
+    scene: Scene
+    probe: Probe
+    samples: int
+    tolerance: float
+
+    @property
+    def for_equations(self) -> bool:
+        return self.tolerance == _AT_REST
+
+    @cached_property
+    def angles(self) -> np.ndarray:
+        return 2.0 * np.pi * np.arange(self.samples) / self.samples
+
+    @cached_property
+    def orders(self) -> np.ndarray:
+        return np.arange(-self.samples // 2 + 2, self.samples // 2 - 1)
+
+    @cached_property
+    def waves(self) -> np.ndarray:
+        return np.exp(1j * np.outer(self.angles, self.orders))
+
+    @cached_property
+    def spin(self) -> OwnSpin | None:
+        names = self.scene.interfaces
+        return OwnSpin.of(self.scene, [self.scene.interface_motion(name) for name in names])
+
+    def found(self, start: np.ndarray | None) -> tuple[PeriodicSystem | None, np.ndarray]:
+        """Return the equations, None where more samples are needed, and the harmonics.
+
+        It begins with those of fewer samples.
+        """
+        return self._newton(self._start(start), 0.0, _MOST_ITERATIONS)
+
+    def followed(self) -> tuple[PeriodicSystem | None, np.ndarray]:
+        """Return as :meth:`found`, beginning with the equilibria at rest where there are any.
+
+        What is unbalanced there at the speed is taken away in steps.
+        """
+        Y = self._start(None)
+        try:
+            with probing(self.scene, 0.0) as at_rest:
+                orders, still = motion_at_rest(self.scene, at_rest, _AT_REST, 0.0)
+        except UnconvergedError:
+            pass  # films carry nothing at rest
+        else:
+            common = np.intersect1d(orders, self.orders)
+            Y[np.isin(self.orders, common)] = still[np.isin(orders, common)]
+        first = self._residual(self._points(Y))
+        left, stride = 1.0, _FIRST_STRIDE
+        for _ in range(_MOST_STRIDES):
+            goal = max(left - stride, 0.0)
+            try:
+                system, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
+            except UnconvergedError:
+                stride *= 0.5
+                continue
+            left, stride = goal, 2.0 * stride
+            if not left:
+                return system, Y
+        raise self._lost()
+
+    def _newton(
+        self, Y: np.ndarray, wanted: np.ndarray | float, most: int
+    ) -> tuple[PeriodicSystem | None, np.ndarray]:
+        """Return equations and harmonics whose residual is the one wanted, beginning at Y."""
+        change, share, before = np.zeros_like(Y), 1.0, np.inf
+        for iteration in range(most):
+            points = self._points(Y)
+            system, resolved = self._system(points)
+            if self.scene.about == "given":
+                return system if resolved else None, Y
+            if not resolved and (self.for_equations or self.samples > _MOST_UNRESOLVED):
+                return None, Y
+            metres = 1.0 / self.scene.metre(np.diag(points[0].M))
+            residual = self._residual(points) - wanted
+            size = np.linalg.norm(residual / metres)
+            if size > _RISE * before and share > _LEAST_SHARE:
+                change, share = 0.5 * change, 0.5 * share
+                Y = Y - change
+                continue
+            before, share = size, 1.0
+            K = hill_matrices(self._discrete(points), self.orders)[2]
+            change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
+            # there are no forces before the first step
+            torque, twist = self._own_spin(system, points if iteration else None, K, Y + change)
+            change = change - torque * twist
+            Y = Y + change
+            sizes = np.abs(Y * metres).max(axis=1)
+            unheld = np.abs(left / metres).max() > UNHELD * self.scene.mass
+            if unheld or sizes.max() > FAR * self.scene.length:
+                break
+            tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
+            limit = self.tolerance * max(sizes.max(), self._counts(sizes))
+            goal = max(self.tolerance * self._counts(sizes), _SOLVED * (tail - limit))
+            if np.abs(change * metres).max() < goal:
+                self._check_spin(torque)
+                if not resolved and self.samples == _MOST_UNRESOLVED:
+                    limit = max(limit, _ROUGH * sizes.max())
+                return system if tail <= limit else None, Y
+        raise self._lost()
+
+    def _lost(self) -> UnconvergedError:
+        return UnconvergedError(
+            f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
+            "that nothing holds, a resonance without damping, or a stop or a bearing with "
+            "clearance that the rotor leaves and hits? A damped run from rest shows what it does "
+            "there; about='given' needs no steady motion"
+        )
+
+    def _residual(self, points: list[LinearPoint]) -> np.ndarray:
+        """Return the harmonics (h, k) of what the forces leave unbalanced."""
+        found = self.waves.conj().T @ np.array([point.residual for point in points]) / self.samples
+        if self.scene.about == "equilibrium":
+            found[self.orders == 0] += self.probe.speed**2 * self.scene.unit_unbalance
+        return found
+
+    def _start(self, found: np.ndarray | None) -> np.ndarray:
+        if found is None:
+            return journal_start(self.scene, self.probe.speed, self.orders)
+        more = (len(self.orders) - len(found)) // 2
+        return np.pad(found, ((more, more), (0, 0)))
+
+    def _points(self, Y: np.ndarray) -> list[LinearPoint]:
+        """Return the scene linearised at all angles of the motion."""
+        rates = 1j * self.orders[:, None] * self.probe.speed
+        motion = [(self.waves @ (Y * rates**n)).real for n in range(3)]
+        return [linearised(self.probe, *at) for at in zip(self.angles, *motion, strict=True)]
+
+    def _system(self, points: list[LinearPoint]) -> tuple[PeriodicSystem, bool]:
+        """Return the equations, and whether the samples resolve their coefficients."""
+        terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
+        speed, rounding = self.probe.speed, self.probe.rounding
+        system = PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
+        return system, all(resolved)
+
+    def _discrete(self, points: list[LinearPoint]) -> PeriodicSystem:
+        """Return the equations whose Hill matrix is the derivative of the residual at the angles.
+
+        Their Fourier terms n and n + samples are the same: so the angles see them.
+        """
+        terms = []
+        for X, scale, size in _scaled(points):
+            spectrum = np.fft.fft(X, axis=0) / self.samples
+            kept = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2)) > NOISE * size
+            reach = range(2 * self.orders[0], 2 * self.orders[-1] + 1)
+            kept[0] = True
+            terms.append({n: spectrum[n % self.samples] for n in reach if kept[n % self.samples]})
+        return PeriodicSystem(self.probe.speed, *terms)
+
+    def _own_spin(
+        self, system: PeriodicSystem, points: list[LinearPoint] | None, K: np.ndarray, Y: np.ndarray
+    ) -> tuple[float, np.ndarray]:
+        """Return the drive's torque, and the change of harmonics that a unit of it takes back."""
+        if self.spin is None:
+            return 0.0, np.zeros_like(Y)
+        least = np.inf
+        if points is not None:
+            forces = np.mean([point.forces for point in points], axis=0)
+            least = self.spin.least_stiffness(system.K[0], forces, self.probe.rounding)
+        middle = np.flatnonzero(self.orders == 0)[0]
+        twist = solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
+        return self.spin.drive_torque(twist[middle], Y[middle], least), twist
+
+    def _counts(self, sizes: np.ndarray) -> float:
+        """Return the motion of which the tolerance is a share."""
+        # what the equations need is the motion to a share of their step of differences
+        return self.probe.straight if self.for_equations else max(sizes.max(), SMALLEST)
+
+    def _check_spin(self, torque: float) -> None:
+        if self.spin is not None and not self.for_equations:
+            most = UNHELD * np.sqrt(self.scene.mass)
+            self.spin.check_held(torque, most, self.probe.speed)
+
+
+def _scaled(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    """Yield samples of M, D, K (n, k, k), the scale of coordinates, and what counts as zero."""
+    M, D, K = (np.array([point[i] for point in points]) for i in range(3))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))
+    largest = [np.abs(X * np.outer(scale, scale)).max() for X in (M, D, K)]
+    largest[1] = max(largest[1], np.sqrt(largest[2]))
+    for X, size in zip((M, D, K), largest, strict=True):
+        yield X, scale, size
+
+
+def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
+    """Return the Fourier terms of samples over a revolution, and whether these resolve it."""
+    count = len(samples)
+    spectrum = np.fft.fft(samples, axis=0) / count
+    sizes = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2))
+    top = count // 2
+    resolved = bool(sizes[top - 1 : top + 2].max() <= _CONVERGED * largest)
+    terms = {0: spectrum[0].real}
+    for n in range(1, top - 1):
+        if sizes[n] > NOISE * largest:
+            terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
+    return terms, resolved

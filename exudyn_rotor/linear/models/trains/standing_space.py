@@ -1,0 +1,97 @@
+"""Modes of several rotors by the constant equations of axes that stand still.
+
+Where all rotors are axisymmetric and what is uneven stands still, as unlike bearings and gears do,
+coefficients are constant in inertial axes. A motion ``v exp(λt)`` there has in axes that turn with
+Ω the harmonics of its waves, ``Σ_n P_n v exp((λ − inΩ)t)``, with the projectors P_n on waves of n
+nodal diameters (:mod:`.turning`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from exudyn_rotor.linear.models.trains.turning import Turning
+from exudyn_rotor.linear.models.waves import HIGHEST
+from exudyn_rotor.linear.models.whole_space import Equations, WholeSpace
+from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, constant_modes
+from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StandingSpace(WholeSpace):
+    """All coordinates of several rotors; modes from inertial axes where only these are constant.
+
+    Attributes
+    ----------
+    standing : Equations
+        In inertial axes, constant.
+    turnings : sequence of Turning
+        Of the rotors, in the order of the coordinates.
+    """
+
+    standing: Equations
+    turnings: Sequence[Turning]
+
+    def modes(self, speed: float, tolerance: float) -> FloquetModes:
+        """Return all modes."""
+        if self.at(speed).stands_still:
+            return super().modes(speed, tolerance)
+        found = self._turned(
+            constant_modes(ConstantSystems.of([self.standing.at(speed)]))[0], speed
+        )
+        negative = found.values.imag < 0.0
+        values = np.where(negative, found.values.conj(), found.values)
+        vectors = np.where(negative, found.vectors[::-1].conj(), found.vectors)
+        order = np.argsort(values.imag, kind="stable")
+        return replace(found, values=values, vectors=vectors).columns(order)
+
+    def constant_modes(self, speeds: Sequence[float]) -> list[FloquetModes]:
+        """Return all modes at all speeds."""
+        found = super().constant_modes(speeds)
+        return found or [self.modes(float(speed), 0.0) for speed in speeds]
+
+    def motions(
+        self, speed: float, method: str, tolerance: float, shapes: bool = True
+    ) -> tuple[FloquetModes, PeriodicSystem]:
+        """Return all exponents with their motions, and the equations."""
+        system = self.at(speed)
+        if method != "auto" or system.stands_still:
+            return super().motions(speed, method, tolerance, shapes)
+        standing = self.standing.at(speed)
+        if self.others is not None:
+            standing = standing.projected(self.others)
+        found = motions(standing, method, tolerance, shapes)
+        if self.others is not None:
+            found = replace(found, vectors=self.others @ found.vectors)
+        return self._turned(found, speed), system
+
+    def _turned(self, modes: FloquetModes, speed: float) -> FloquetModes:
+        """Return motions as seen from axes that turn with Ω, their strongest wave as harmonic 0."""
+        central = modes.central
+        parts = np.zeros((2 * HIGHEST + 1, *central.shape), dtype=complex)
+        start = 0
+        for turning in self.turnings:
+            end = start + len(turning.waves)
+            amplitudes = turning.inverse @ central[start:end]
+            for n in np.unique(turning.waves):
+                wave = turning.waves == n
+                parts[HIGHEST + n, start:end] = turning.T[:, wave] @ amplitudes[wave]
+            start = end
+        strongest = np.argmax(np.linalg.norm(parts, axis=1), axis=0) - HIGHEST
+        orders = np.arange(-2 * HIGHEST, 2 * HIGHEST + 1)
+        vectors = np.zeros((len(orders), *central.shape), dtype=complex)
+        columns = np.arange(central.shape[1])
+        for n in range(-HIGHEST, HIGHEST + 1):
+            vectors[2 * HIGHEST + strongest - n, :, columns] = parts[HIGHEST + n].T
+        values = modes.values - 1j * strongest * speed
+        used = np.flatnonzero(np.any(vectors, axis=(1, 2)))
+        top = int(np.abs(orders[used]).max(initial=0))
+        kept = slice(2 * HIGHEST - top, 2 * HIGHEST + top + 1)
+        lengths = np.linalg.norm(vectors.reshape(-1, central.shape[1]), axis=0)
+        return FloquetModes(
+            values, (vectors / lengths)[kept], orders[kept], modes.resolution, modes.bounds
+        )
