@@ -17,6 +17,7 @@ def one_of_each_pair(
     order: np.ndarray,
     base: float,
     resolution: float,
+    own: np.ndarray | None = None,
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """Return the columns of one motion for each pair of families, and whether it is its own one.
 
@@ -33,6 +34,8 @@ def one_of_each_pair(
         pΩ [rad/s].
     resolution : float
         Eigenvalues closer than this cannot be told apart [1/s].
+    own : ndarray of bool, shape (j,), optional
+        Motions known to be of families that are their own conjugates.
     """
     size, step = shapes.shape[1], abs(base)
     accepted: list[int] = []
@@ -48,8 +51,10 @@ def one_of_each_pair(
         if _is_known(mode, known_values[:weight], known_shapes[:weight], base, _SAME_FAMILY * step):
             continue
         other = _conjugate(mode)
-        own_pair = mode[0].imag == 0.0 or _is_known(
-            other, mode[0], mode[1][None], base, min(resolution, _SAME_FAMILY * step)
+        own_pair = (
+            mode[0].imag == 0.0
+            or (own is not None and own[index])
+            or _is_known(other, mode[0], mode[1][None], base, min(resolution, _SAME_FAMILY * step))
         )
         for value, shape in [mode] if own_pair else [mode, other]:
             known_values[weight], known_shapes[weight] = value, shape

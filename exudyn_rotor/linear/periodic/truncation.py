@@ -105,8 +105,10 @@ class Truncation:
         left_out = np.linalg.norm(excitation(system, own.values, own.shapes, own.orders), axis=0)
         inertia = np.maximum(np.abs(own.values) + abs(system.speed), own.resolution) * lengths
         ranked = upper[np.argsort((left_out / inertia)[upper])]
+        # copies of real exponents, whose vectors may be complex where they are repeated
+        real = np.abs(np.abs(own.values.imag) - abs(system.speed)) <= own.resolution
         found, alone = one_of_each_pair(
-            own.values, own.shapes / lengths, ranked, system.base, own.resolution
+            own.values, own.shapes / lengths, ranked, system.base, own.resolution, real
         )
         if found is None:
             return None
