@@ -170,6 +170,16 @@ SOLVERS = [
         ("bare Ritz vectors", "self.basis @ turn + self._block @ (", "self.basis @ turn + 0.0 * ("),
     ),
     *mutations(
+        "solvers/pardiso.py",
+        "test_pardiso.py::test_ordering_tells_what_the_factor_takes",
+        ("operations in other units", "1e6 * million", "1e3 * million"),
+    ),
+    *mutations(
+        "solvers/choice.py",
+        "test_pardiso.py::test_choice_with_pardiso",
+        ("operations for nothing", "_PARDISO_PER_OPERATION * ordered.operations +", "0.0 +"),
+    ),
+    *mutations(
         "solvers/fill.py",
         "test_iterative.py::test_fill_is_estimated",
         ("separators without the earlier ones", "own * (own + 2 * border)", "own * own"),
