@@ -45,7 +45,7 @@ def turning_rotor(seed: int) -> PeriodicSystem:
     """Return random oscillators with gyroscopic terms and springs with harmonics ±2."""
     rng = np.random.default_rng(seed)
     skew = rng.normal(size=(4, 4))
-    term = 0.3 * (rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4)))
+    term = rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4))
     stiffness = {
         0: np.diag(rng.uniform(5.0, 60.0, 4)),
         2: term + term.T,

@@ -56,8 +56,8 @@ LINEAR_PERIODIC = [
         "test_hill.py",
         (
             "copies that lack their other half taken",
-            "ranked = upper[np.argsort(",
-            "ranked = upper[np.argsort(-",
+            "ranked = upper[np.argsort((left_out / inertia)[upper])]",
+            "ranked = upper[np.argsort(-(left_out / inertia)[upper])]",
         ),
         (
             "motions shifted the wrong way",
