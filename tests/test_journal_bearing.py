@@ -21,6 +21,7 @@ from exudyn_rotor import (
     steady_state,
 )
 from exudyn_rotor.bearings.film.reynolds import Equation
+from exudyn_rotor.linear.models.scene.journal_start import journal_start
 
 SIZE = {"radius": 0.05, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
 SPEED = 1500.0 * np.pi / 30.0
@@ -297,6 +298,10 @@ def test_films_in_a_scene_are_linearised_as_in_a_list(cavitation, nodes):
         for model in (scene_model, linear_model(rotor, supports=bearings))
     ]
     np.testing.assert_allclose(*growths, rtol=1e-6)
+    # a rigid rotor is there from the start of the search
+    orders, found = scene_model.steady_motion(SPEED, 1e-7)
+    start = journal_start(scene_model, SPEED, orders)
+    np.testing.assert_allclose(start, found, atol=1e-6 * np.abs(found).max())
 
 
 def test_a_film_too_thin_goes_on_by_its_tangent():
