@@ -217,6 +217,18 @@ def test_modes_from_axes_at_rest_hold_in_turning_ones():
     assert left_of_modes(linear_model(two_discs(1.7, UNEVEN)), 300.0) < 1e-9
 
 
+def test_table_of_a_link_tells_whose_speed_it_needs():
+    rotors, ratios = dict.fromkeys("AB", rigid(*FIRST)), {"A": 1.0, "B": 1.5}
+    table = Support("a", ([0.0, 100.0], [1e5, 2e5]))
+    there, back = (
+        RotorTrain(rotors, ratios, links=[Link(*ends, table)])
+        for ends in (("A:a", "B:a"), ("B:a", "A:a"))
+    )
+    with pytest.raises(ValueError, match=r"not -50 rad/s.* speed of 'A' less that of 'B', which"):
+        linear_model(there).at(100.0)
+    linear_model(back).at(100.0)
+
+
 def test_links_are_where_their_ends_are():
     """Two links put the second rotor at two places; given positions are checked along every axis.
 

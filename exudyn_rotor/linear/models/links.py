@@ -151,8 +151,21 @@ class Element:
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping of the motion of the ends at Ω, in the element's axes."""
         if isinstance(self.connection, Support):
-            self.connection.check_range(self.rate * speed)
+            self._check_range(self.rate * speed)
         return self._matrices(speed)
+
+    def _check_range(self, rate: float) -> None:
+        """Refuse a speed beyond a table; that of a link is the first rotor's less the second's."""
+        try:
+            self.connection.check_range(rate)
+        except ValueError as error:
+            if len(self.ends) == 1:
+                raise
+            (first, _), (second, _) = self.ends
+            raise ValueError(
+                f"{error}; it is the speed of {first!r} less that of {second!r}, which the other "
+                "order of the link's ends turns round"
+            ) from None
 
     def undamped(self) -> Element:
         """Return it as :meth:`Support.undamped`; gears as they are."""
