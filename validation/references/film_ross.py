@@ -68,6 +68,6 @@ def solved(case: dict, circumferential: int, axial: int) -> dict:
 if __name__ == "__main__":
     path = Path(__file__).with_name("film_ross.json")
     found = [
-        solved(case, *((120, 14) if case["geometry"] == "lobe" else (40, 10))) for case in CASES
+        solved(case, *((80, 10) if case["geometry"] == "lobe" else (40, 10))) for case in CASES
     ]
     path.write_text(json.dumps(found, indent=1) + "\n")
