@@ -3,11 +3,11 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn_rotor.linear.models.linear_scene import LinearScene
 from point_rotors import SKEW_AXIS
 from test_tilting_pad import SPEED, on_pads, scene
 
 from exudyn_rotor import AnnularSeal, Support, recommended_settings, stability, steady_state
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.multibody.rotor.start_state import StartState
 
