@@ -50,7 +50,8 @@ class CodeLine(SphinxRole):
 def pages(app: Sphinx) -> Iterator[tuple[str, dict, str]]:
     """Yield a page for every file that is linked."""
     formatter = HtmlFormatter(linenos="inline", lineanchors="line", anchorlinenos=True)
-    for path in sorted(getattr(app.env, "code_files", ())):
+    linked = getattr(app.env, "code_files", ())  # of earlier builds, too: some may be gone
+    for path in sorted(path for path in linked if (PACKAGE / path).is_file()):
         source = (PACKAGE / path).read_text(encoding="utf-8")
         body = f"<h1>{path}</h1>{highlight(source, PythonLexer(), formatter)}"
         yield f"_code/{path.removesuffix('.py')}", {"title": path, "body": body}, "page.html"
