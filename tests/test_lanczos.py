@@ -47,3 +47,15 @@ def test_pairs_and_fewer_masses_than_coordinates():
     np.testing.assert_allclose(modes.T @ (mass @ modes), np.eye(6), atol=1e-13)
     with pytest.raises(ValueError, match="only 6 of 7 modes converged to 1e-10; ask for more"):
         lanczos_modes(mass, inverse, 7, 1e-10)
+
+
+@pytest.mark.parametrize(("copies", "count"), [(3, 4), (5, 6), (9, 11), (13, 18)])
+def test_more_copies_than_a_block_has_columns(copies, count):
+    """Blades alike, or a rotor on springs that are equal in all directions."""
+    springs = np.sort(
+        np.concatenate([np.full(copies, 2.0), np.arange(1.0, SIZE - copies + 1) ** 2])
+    )
+    mass, inverse = oscillators(springs, np.ones(SIZE))
+    values, modes = lanczos_modes(mass, inverse, count, 1e-10)
+    np.testing.assert_allclose(values, springs[:count], rtol=1e-12)
+    np.testing.assert_allclose(modes.T @ (mass @ modes), np.eye(count), atol=1e-12)

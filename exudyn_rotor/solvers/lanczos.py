@@ -24,6 +24,12 @@ _ROOM = 5
 # columns that are thin, whose products with the mass are faster one by one
 _THIN = 2
 _MOST_STEPS = 1000
+# steps of a look for motions that the basis has no part of, and columns of each
+_LOOK_STEPS, _LOOK_WIDTH = 3, 2
+# shares of an eigenvalue within which its copies are as good as one another
+_COPIES = 1e-6
+# share of the basis in a motion that is orthogonal to it
+_ORTHOGONAL = 1e-6
 # a block more is added between two looks at what has converged, for so many blocks
 _BLOCKS_APART = 40
 # length of what is new in columns, relative to them, that is rounding, and squares of one another
@@ -96,8 +102,10 @@ def lanczos_modes(
 
     Notes
     -----
-    Blocks of two, as bending modes come in pairs, and two threads can solve for them. The start
-    vectors are seeded, so that results repeat. With ``K⁻¹MQ = QT + R`` a Ritz vector ``φ = Qs`` of
+    Blocks of two, as bending modes come in pairs, and two threads can solve for them. A block
+    finds no more copies of an eigenvalue than it has columns; so some steps from other vectors look
+    for modes to which the whole basis is orthogonal, and these widen the block. The start vectors
+    are seeded, so that results repeat. With ``K⁻¹MQ = QT + R`` a Ritz vector ``φ = Qs`` of
     the value ``θ`` leaves ``Rs``; returned are ``K⁻¹Mφ/θ = φ + Rs/θ``, one inverse iteration
     further, which leave smooth forces ``MRs/θ²`` instead of ``KRs/θ``. Sources: of the
     transformation, Ericsson, Ruhe, "The spectral transformation Lanczos method", Math. Comp. 35
@@ -114,7 +122,10 @@ def lanczos_modes(
             values, turn, errors = space.ritz_values()
             converged = errors[:count] <= tolerance * values[:count]
             if len(converged) == count and np.all(converged):
-                return 1.0 / values[:count], space.modes(values[:count], turn[:, :count])
+                missed = space.missed((1.0 + _COPIES) * values[count - 1])
+                if missed.shape[1] == 0:
+                    return 1.0 / values[:count], space.modes(values[:count], turn[:, :count])
+                space.widen(missed)
             if not space.extend(values, turn, count):
                 break
     raise ValueError(
@@ -137,6 +148,8 @@ class _Krylov:
         self._basis, self._momenta = (np.empty((len(start), room), order="F") for _ in range(2))
         self._projected = np.zeros((room, room))
         self._count = 0
+        # each look needs vectors of its own: the basis has the motions of earlier ones by then
+        self._others = np.random.default_rng(_SEED + 1)
         self._next(inverse(mass @ start))
         self._add()
 
@@ -154,6 +167,42 @@ class _Krylov:
     def modes(self, values: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """Return the Ritz vectors of some values after an inverse iteration."""
         return self.basis @ turn + self._block @ (self._left(turn) / values)
+
+    def missed(self, least: float) -> np.ndarray:
+        """Return motions orthogonal to the basis with Ritz values above `least`, shape (n, k)."""
+        size = len(self._basis)
+        if size - self._count < _LOOK_WIDTH:
+            return np.empty((size, 0))
+
+        def inverse(load: np.ndarray) -> np.ndarray:
+            return self._without_basis(self._inverse(load))[0]
+
+        start = self._others.standard_normal((size, _LOOK_WIDTH))
+        left = _Krylov(self._mass, inverse, _LOOK_STEPS * _LOOK_WIDTH, start)
+        while left._has_room and left._add():
+            pass
+        values, turn, _ = left.ritz_values()
+        found = left.basis @ turn[:, values > least]
+        # where nothing is left, rounding is taken for motions, which the basis has already
+        new = np.linalg.norm(self._momenta[:, : self._count].T @ found, axis=0) < _ORTHOGONAL
+        return found[:, new]
+
+    def widen(self, columns: np.ndarray) -> None:
+        """Add columns that are orthogonal to the basis to the next block."""
+        block, momentum, rest = self._block, self._momentum, self._rest
+        self._next(columns - block @ (momentum.T @ columns))
+        none = np.zeros((self._block.shape[1], rest.shape[1]))
+        self._block = np.hstack([block, self._block])
+        self._momentum = np.hstack([momentum, self._momentum])
+        self._rest = np.vstack([rest, none])
+
+    def _without_basis(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what the basis has no part of, and the shares of the basis."""
+        shares = np.zeros((self._count, columns.shape[1]))
+        for _ in range(2):  # one Gram–Schmidt pass loses orthogonality
+            share = self._momenta[:, : self._count].T @ columns
+            columns, shares = columns - self.basis @ share, shares + share
+        return columns, shares
 
     def _left(self, turn: np.ndarray) -> np.ndarray:
         """Return the residuals of Ritz vectors in the next block."""
@@ -192,10 +241,7 @@ class _Krylov:
 
     def _next(self, columns: np.ndarray) -> np.ndarray:
         """Take what is new in some columns as the next block; return their shares of the basis."""
-        shares = np.zeros((self._count, columns.shape[1]))
-        for _ in range(2):  # one Gram–Schmidt pass loses orthogonality
-            share = self._momenta[:, : self._count].T @ columns
-            columns, shares = columns - self.basis @ share, shares + share
+        columns, shares = self._without_basis(columns)
         weighted = _product(self._mass, columns)
         self._rest = np.eye(columns.shape[1])
         for _ in range(2):  # columns that are nearly alike are not orthogonal after the first

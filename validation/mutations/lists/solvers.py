@@ -68,6 +68,16 @@ SOLVERS = [
             "basis @ share, shares + share",
             "basis @ share, share",
         ),
+        (
+            "motions that the basis has no part of not looked for",
+            "turn[:, values > least]",
+            "turn[:, values > 2.0 * values[0]]",
+        ),
+        (
+            "every look from the same vectors",
+            "self._others.standard_normal",
+            "np.random.default_rng(_SEED + 1).standard_normal",
+        ),
     ),
     *mutations(
         "solvers/lanczos.py",
