@@ -10,6 +10,7 @@ from models import STEEL
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, stability
+from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 from exudyn_rotor.linear.periodic.exponents import constant_exponents, motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.growth import growth_of
@@ -180,3 +181,25 @@ def test_uneven_rotor_held_by_dampers_alone_does_not_grow(damping, masses):
     pushed = [Support(name, np.diag([-5.0, -5.0, 0.0])) for name in ("left", "right")]
     pushed = stability(rotor, [30.0, 300.0], supports=[*dampers, *pushed], stiffening="tilt")
     assert not np.any(pushed.stable)  # springs that push away, 5 N/m beside 1e3 N s/m
+
+
+@given(st.integers(0, 10**6), st.floats(-1.0, 5.0))
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_free_motions_turn_with_the_axes(seed, exponent):
+    """Two free translations seen from axes of Ω: iΩ twice, with one vector, beside stiff springs.
+
+    Rounding splits them by the root of ‖A‖‖E‖, which is no reason to take them for zero.
+    """
+    rng, speed = np.random.default_rng(seed), 10.0**exponent
+    size = int(rng.integers(2, 9))
+    turn = np.linalg.qr(rng.standard_normal((size, size)))[0] if seed % 2 else np.eye(size)
+    D, K = np.zeros((size, size)), np.diag(10.0 ** rng.uniform(4, 12, size))
+    D[:2, :2] = 2.0 * speed * np.array([[0, -1], [1, 0]])
+    K[:2, :2] = -(speed**2) * np.eye(2)
+    D, K = turn @ D @ turn.T, turn @ K @ turn.T
+    system = np.eye(size), 0.5 * (D - D.T)[None], 0.5 * (K + K.T)[None]
+    values = quadratic_modes(*system)[0][0]
+    # 16 ε for the split of what is 1e6 rad/s at most
+    split = np.sqrt(16.0 * np.finfo(float).eps) * max(1e6, speed)
+    slow = 3.0 * split > speed  # may be zero as far as rounding tells
+    assert slow or np.count_nonzero(np.abs(np.abs(values) - speed) <= split) >= 2

@@ -153,8 +153,9 @@ class Companion:
         To first order, with the left eigenvectors w of unit product with z: the eigensolver's own
         error is that of a matrix ``A + E``, ``‖E‖ ≤ 2kε‖A‖``, and counts by the condition
         ``‖w‖‖z‖``; source: LAPACK Users' Guide, Sect. 4.8. Rounding of K₊, ``w ΔK q``, is
-        symmetric but for its last digit: it changes no real part of an undamped motion. No error is
-        larger than ``‖A‖``.
+        symmetric but for its last digit: it changes no real part of an undamped motion. Where
+        copies of an eigenvalue have one vector, as those of a free motion, the first order has no
+        end; a double one moves by no more than the root of ``‖A‖‖E‖``.
         """
         z, left, count = self._solved[1], self._left, self.sizes.shape[-1]
         most, amounts = np.linalg.norm(self.A, axis=(-2, -1))[..., None], self._amounts
@@ -164,9 +165,11 @@ class Companion:
             condition = np.linalg.norm(left, axis=-1) * np.linalg.norm(z, axis=-2)
             whole = np.linalg.norm(forced, axis=-2) * np.linalg.norm(amounts, axis=-2)
             real = _symmetric_norm(forced, amounts) if self.rounding == EPSILON else whole
-            solver = 2.0 * count * self.rounding * most * condition
-            solver += (damped * np.abs(self.values()) + stored) * whole
-            whole, real = (np.minimum(solver + stiff * each, most) for each in (whole, real))
+            relative = 2.0 * count * self.rounding
+            unsymmetric = damped * np.abs(self.values()) + stored
+            solver = relative * most * condition + unsymmetric * whole
+            double = np.sqrt(relative) * most + np.sqrt(unsymmetric + stiff)
+            whole, real = (np.minimum(solver + stiff * each, double) for each in (whole, real))
         # of what may be zero, the first order in the error says nothing about the sign of λ²
         return whole, np.where(np.abs(self.values()) <= whole, whole, real)
 

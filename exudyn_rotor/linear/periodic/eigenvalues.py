@@ -195,9 +195,9 @@ def inverse_iterated(
         if value != 0.0:
             shifted = value * (1.0 + _OFF_ROOT)
             dynamic = np.array([shifted**2, shifted, 1.0]) @ terms
-            lu, pivots, _ = factorise(dynamic.reshape(size, size).T, overwrite_a=True)
+            lu, pivots, zero_pivot = factorise(dynamic.reshape(size, size).T, overwrite_a=True)
             vector = refined[:, column]
-            for _ in range(2):
+            for _ in range(0 if zero_pivot else 2):
                 vector, _ = solve(lu, pivots, mass @ vector)
                 vector = vector / max(np.sqrt(np.vdot(vector, vector).real), 1e-300)
             refined[:, column] = vector

@@ -217,8 +217,13 @@ LINEAR_PERIODIC = [
         ),
         (
             "condition of eigenvalues left out",
-            "solver = 2.0 * count * self.rounding * most * condition",
-            "solver = 1e-3 * self.rounding * most * np.minimum(condition, 1.0)",
+            "solver = relative * most * condition",
+            "solver = 1e-3 * relative * most * np.minimum(condition, 1.0)",
+        ),
+        (
+            "errors of double eigenvalues as large as the matrix",
+            "double = np.sqrt(relative) * most",
+            "double = most",
         ),
         (
             "rounding of the stiffness left out",

@@ -95,7 +95,6 @@ class Subspace:
     def _lowest(self, count: int) -> np.ndarray:
         """Return the lowest modes of the shifted stiffness."""
         mass = self.full.invariants.M
-        # the small ones may have eigenvalues of any multiplicity, which blocks do not find
         if is_small(self.full.size, count):
             return dense_modes(self._shifted.toarray(), mass.toarray(), count)[1]
         width = WIDE if self._factor.by_blocks else 2
