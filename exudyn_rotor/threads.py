@@ -25,8 +25,13 @@ _WORTH = 30_000  # entries of matrices from which on their eigenproblems are sha
 
 @cache
 def _libraries() -> ThreadpoolController:
-    """Return what is loaded; the search takes as long as two eigenvalue problems."""
-    return ThreadpoolController().select(user_api="blas")
+    """Return what is loaded; the search takes as long as two eigenvalue problems.
+
+    MKL beside another one is Pardiso's, not numpy's.
+    """
+    loaded = ThreadpoolController().select(user_api="blas")
+    names = {each.internal_api for each in loaded.lib_controllers}
+    return loaded.select(internal_api=sorted(names - {"mkl"} or names))
 
 
 class _Limit:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import nullcontext
 
 import numpy as np
 import scipy.linalg as la
@@ -115,8 +114,8 @@ def lanczos_modes(
     """
     size = mass.shape[0]
     start = np.random.default_rng(_SEED).standard_normal((size, min(width, size)))
-    # of thin matrices, threads would wait for one another between the solutions
-    with one_thread() if width <= _THIN else nullcontext():
+    # threads of products of thin matrices would wait for those of the solutions
+    with one_thread():
         space = _Krylov(mass, inverse, min(size, _ROOM * (count + width)), start)
         for _ in range(_MOST_STEPS):
             values, turn, errors = space.ritz_values()
