@@ -28,6 +28,8 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 # difference of shares that rounding leaves
 _TIE = 1e-6
+# relative coupling of harmonics below which rounding mixes copies of a motion
+_WEAK = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +99,7 @@ class Truncation:
     @classmethod
     def halfway(cls, system: PeriodicSystem) -> Truncation | None:
         """Return the harmonics ±p/2; None where they do not do, or some family is not told."""
-        if system.step != 2 or system.order != 2:
+        if system.step != 2 or system.order != 2 or _is_weak(system):
             return None
         companion, own = _solved(system, np.array([-1, 1]))
         lengths = np.linalg.norm(own.shapes.reshape(-1, len(own.values)), axis=0)
@@ -141,6 +143,15 @@ class Truncation:
             outer,
             chosen.paired,
         )
+
+
+def _is_weak(system: PeriodicSystem) -> bool:
+    """Return whether the harmonics are hardly coupled, as on supports that are nearly isotropic."""
+    for terms in (system.D, system.K):
+        outer = sum(np.linalg.norm(X) for n, X in terms.items() if n != 0)
+        if outer > _WEAK * np.linalg.norm(terms.get(0, 0.0)):
+            return False
+    return True
 
 
 def _with_conjugates(
