@@ -10,6 +10,7 @@ from models import STEEL
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, stability
+from exudyn_rotor.linear.periodic import eigenvalues
 from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 from exudyn_rotor.linear.periodic.exponents import constant_exponents, motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -203,3 +204,13 @@ def test_free_motions_turn_with_the_axes(seed, exponent):
     split = np.sqrt(16.0 * np.finfo(float).eps) * max(1e6, speed)
     slow = 3.0 * split > speed  # may be zero as far as rounding tells
     assert slow or np.count_nonzero(np.abs(np.abs(values) - speed) <= split) >= 2
+
+
+def test_inverse_iteration_at_a_root_keeps_the_vector():
+    """Where the shift that keeps off the root meets another one, to the last bit."""
+    value = 3.0
+    shifted = value * (1.0 + eigenvalues._OFF_ROOT)
+    vectors = np.array([[0.6], [0.8]])
+    K = -(np.array([shifted**2, shifted, 1.0]) @ [1.0, 0.0, 0.0]) * np.eye(2)
+    found = eigenvalues.inverse_iterated(np.array([value]), vectors, np.eye(2), np.zeros((2, 2)), K)
+    np.testing.assert_array_equal(found, vectors)

@@ -71,6 +71,15 @@ def test_motions_follow_from_two_harmonics_halfway(seed, sizes_solved):
     assert np.all(central >= np.linalg.norm(modes.vectors, axis=1).max(axis=0) - 1e-6)
 
 
+@pytest.mark.parametrize(("share", "first"), [(1.0, 2), (1e-11, 3)])
+def test_harmonics_that_hardly_couple_are_not_told_apart_halfway(share, first, sizes_solved):
+    """Copies mix by ε over the coupling, which every processor rounds in its own way."""
+    given = turning_rotor(0)
+    stiffness = {n: X if n == 0 else share * X for n, X in given.K.items()}
+    motions(replace(given, K=stiffness), "hill", 1e-10)
+    assert sizes_solved[0] == first
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_motions_follow_from_the_smallest_truncation(seed, sizes_solved):
     """They meet Floquet's exponents, and the equations of all of their harmonics."""

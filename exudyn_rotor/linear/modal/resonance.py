@@ -26,6 +26,7 @@ from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.threads import one_thread
 
@@ -159,24 +160,6 @@ def _converged(
     )
 
 
-def dynamic_stiffness(system: PeriodicSystem, multiples: np.ndarray) -> np.ndarray:
-    """Return the Hermitian part of the dynamic stiffness at the frequencies `multiples`·Ω.
-
-    Shape (h k, h k), harmonic by harmonic.
-    """
-    size, count = system.size, len(multiples)
-    dynamic = np.zeros((count, size, count, size), dtype=complex)
-    rates = 1j * multiples * system.speed
-    for terms, power in ((system.K, 0), (system.D, 1), (system.M, 2)):
-        for n, X in terms.items():
-            # from the harmonic g to f = g + n
-            rows, columns = np.nonzero(np.abs(multiples[:, None] - multiples - n) < 0.5)
-            for row, column in zip(rows, columns, strict=True):
-                dynamic[row, :, column] += rates[column] ** power * X
-    dynamic = dynamic.reshape(count * size, -1)
-    return 0.5 * (dynamic + dynamic.conj().T)
-
-
 def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
     """Return every speed with a singular dynamic stiffness, with the motion."""
     stiffness = _Stiffness(equations, multiples)
@@ -203,7 +186,7 @@ class _Stiffness:
     multiples: np.ndarray
 
     def __call__(self, speed: float) -> np.ndarray:
-        return dynamic_stiffness(self.equations.at(speed), self.multiples)
+        return dynamic_stiffness(self.equations.at(speed), self.multiples)[0]
 
 
 @dataclass(frozen=True, eq=False)

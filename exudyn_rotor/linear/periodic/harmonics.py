@@ -18,7 +18,8 @@ def hill_matrices(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (M, D, K) of ``(λ²M + λD + K) X = F`` for the harmonics `orders`.
 
-    Shape (h k, h k), complex, harmonic by harmonic in the order given.
+    Shape (h k, h k), complex, harmonic by harmonic in the order given. Orders are whole numbers
+    apart.
     """
     if len(orders) == 1 and orders[0] == 0:
         return tuple(terms[0].astype(complex) for terms in (system.M, system.D, system.K))
@@ -27,12 +28,23 @@ def hill_matrices(
     return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
 
 
+def dynamic_stiffness(
+    system: PeriodicSystem, multiples: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the Hermitian part of the dynamic stiffness at the frequencies `multiples`·Ω, and M.
+
+    Shape (h k, h k), harmonic by harmonic. The multiples are whole numbers apart.
+    """
+    M, _, H = hill_matrices(system, multiples)
+    return 0.5 * (H + H.conj().T), M
+
+
 def _blocks(terms: Terms, orders: np.ndarray, size: int) -> np.ndarray:
     """Return the block matrix with ``terms[n − m]`` at row n, column m."""
     blocks = np.zeros((len(orders), size, len(orders), size), dtype=complex)
     for i, n in enumerate(orders):
         for j, m in enumerate(orders):
-            term = terms.get(int(n - m))
+            term = terms.get(round(n - m))
             if term is not None:
                 blocks[i, :, j, :] = term
     return blocks.reshape(len(orders) * size, -1)

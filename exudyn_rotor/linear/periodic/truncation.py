@@ -193,7 +193,7 @@ def _central(
         [np.where(up, nothing, low), np.where(up, low, high), np.where(up, high, nothing)]
     )
     values = own.values[columns] - 1j * sides * system.speed
-    # errors of copies of a defective eigenvalue have no bound
+    # copies of a free motion are split by no more than what cannot be told apart
     errors = np.minimum(companion.errors[0][columns], own.resolution)
     return HillSolution(
         resolved(values, errors),

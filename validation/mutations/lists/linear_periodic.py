@@ -7,7 +7,7 @@ LINEAR_PERIODIC = [
         "linear/periodic/harmonics.py",
         "test_stability.py",
         ("rate of a harmonic once", "D + 2.0 * M * rate, K", "D + M * rate, K"),
-        ("blocks transposed", "terms.get(int(n - m))", "terms.get(int(m - n))"),
+        ("blocks transposed", "terms.get(round(n - m))", "terms.get(round(m - n))"),
         (
             "harmonics left out are not answered",
             "answer = -np.linalg.solve(dynamic",
@@ -63,6 +63,11 @@ LINEAR_PERIODIC = [
             "motions shifted the wrong way",
             "own.values[columns] - 1j * sides",
             "own.values[columns] + 1j * sides",
+        ),
+        (
+            "copies that rounding mixes told apart",
+            "or _is_weak(system):",
+            "or False:",
         ),
         (
             "harmonics left out on the other side",

@@ -20,7 +20,7 @@ from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.linear.models.basis.left_out import LeftOut
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.periodic.harmonics import hill_matrices
+from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
 from exudyn_rotor.linear.periodic.inverse_iteration import OFF_ROOT, nearest_root
 
 _FREE = 1e-6  # of the inertia at the speed: a stiffness that leaves a motion free
@@ -95,14 +95,9 @@ def _around(
     equations: LinearModel, multiples: np.ndarray, fastest: float
 ) -> Callable[[float], _Dynamic]:
     """Return the dynamic stiffness as a function of the speed."""
-    middle = multiples[len(multiples) // 2]
-    orders = np.round(multiples - middle).astype(int)
 
     def at(speed: float) -> tuple[np.ndarray, np.ndarray]:
-        M, D, K = hill_matrices(equations.at(speed), orders)
-        rate = 1j * middle * speed
-        H = rate**2 * M + rate * D + K
-        return 0.5 * (H + H.conj().T), M
+        return dynamic_stiffness(equations.at(speed), multiples)
 
     if equations.stiffness_varies:
         return lambda speed: _by_differences(at, speed)
