@@ -7,6 +7,7 @@ import ngsolve
 import numpy as np
 import pytest
 import scipy.linalg
+from exponent_methods import constant_exponents
 from netgen.occ import Box, OCCGeometry, Pnt, Y, Z
 from test_foundations import BLOCK, HELD, POINTS, SPEED
 from test_supports_in_scenes import KINDS, distance, rings
@@ -23,7 +24,6 @@ from exudyn_rotor import (
     linear_model,
     unbalance_response,
 )
-from exudyn_rotor.linear.periodic.exponents import constant_exponents
 
 
 def test_modes_of_a_block_are_the_block():

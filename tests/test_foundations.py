@@ -6,6 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg
+from exponent_methods import constant_exponents
 from point_rotors import ring_rotor
 from test_supports_in_scenes import KINDS, SKEW, TO_X, TO_Y, distance, rings
 
@@ -31,7 +32,6 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from exudyn_rotor.linear.periodic.exponents import constant_exponents
 from exudyn_rotor.reduction.mode_kind import ModeKind
 
 SPEED = 200.0

@@ -4,6 +4,7 @@ import netgen.occ as occ
 import ngsolve as ngs
 import numpy as np
 import pytest
+from exponent_methods import constant_exponents
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import STEEL
@@ -12,7 +13,7 @@ from point_rotors import ring_rotor
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, stability
 from exudyn_rotor.linear.periodic import eigenvalues
 from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
-from exudyn_rotor.linear.periodic.exponents import constant_exponents, motions
+from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.growth import growth_of
 

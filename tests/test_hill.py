@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
+from exponent_methods import floquet_exponents
 from models import disc_rotor
 from test_stability import anisotropic, mathieu, random_system
 
@@ -13,7 +14,6 @@ from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import hill, truncation
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
-from exudyn_rotor.linear.periodic.fundamental import floquet_exponents
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes

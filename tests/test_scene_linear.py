@@ -6,6 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from asymmetric import LENGTH, asymmetric_shaft
+from exponent_methods import constant_exponents
 from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from models import disc_rotor
@@ -16,7 +17,7 @@ from exudyn_rotor import Formulation, PrescribedMotion, add_rotor, select_modes
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.periodic.exponents import constant_exponents, exponents
+from exudyn_rotor.linear.periodic.exponents import exponents
 from exudyn_rotor.linear.periodic.fundamental import monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.linear.stability.stability import stability

@@ -345,6 +345,29 @@ def test_fem_interface_without_surface_and_weights():
     assert rotor.triangles.shape == (0, 3)
 
 
+def test_fem_interface_of_parts_that_nothing_connects():
+    fem = fem_interface(stiffnessMatrix=sp.csr_matrix(np.diag([1e6] * 6 + [0.0] * 3)))
+    with pytest.raises(ValueError, match=r"falls into 3 parts .*allow_parts"):
+        SolidRotor.from_fem_interface(fem, "x")
+    rotor = SolidRotor.from_fem_interface(fem, "x", allow_parts=True)
+    np.testing.assert_array_equal(rotor.stiffness.diagonal(), [1e6] * 6 + [0.0] * 3)
+
+
+@pytest.mark.parametrize(("grounded", "free"), [(False, 6), (True, 0)])
+def test_fem_interface_that_lost_digits(beam, grounded, free):
+    data = np.array([float(f"{value:.6e}") for value in beam.stiffness.data])
+    lossy = sp.csr_matrix((data, beam.stiffness.indices, beam.stiffness.indptr))
+    fem = fem_interface(
+        nodes={"Position": beam.nodes},
+        massMatrix=sp.csr_matrix(beam.mass),
+        stiffnessMatrix=lossy,
+    )
+    with pytest.raises(ValueError, match=r"lost digits.*grounded=False.*soft springs"):
+        SolidRotor.from_fem_interface(fem, "z")
+    rotor = SolidRotor.from_fem_interface(fem, "z", grounded=grounded)
+    assert rotor.rigid_motions == free
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

@@ -1,8 +1,11 @@
 """Exponents of constant and periodic systems against closed forms and other methods."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from asymmetric import DISC, END, SHAFT, asymmetric_shaft
+from exponent_methods import constant_exponents, floquet_exponents, hill_exponents
 from point_rotors import ring_rotor
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -10,13 +13,8 @@ from scipy.special import mathieu_a, mathieu_b
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic.exponents import (
-    constant_exponents,
-    exponents,
-    hill_exponents,
-    motions,
-)
-from exudyn_rotor.linear.periodic.fundamental import _magnus, floquet_exponents, monodromy
+from exudyn_rotor.linear.periodic.exponents import exponents, motions
+from exudyn_rotor.linear.periodic.fundamental import _magnus, monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.stability_map import stability_map
@@ -266,6 +264,35 @@ def test_map_over_two_parameters(tmp_path):
     assert result.plot().get_ylabel() == "Ω"
     result.save(tmp_path / "map.npz")
     assert np.array_equal(load_result(tmp_path / "map.npz").growth, result.growth)
+
+
+@pytest.mark.parametrize("as_system", [True, False])
+def test_map_by_each_method_and_elsewhere(as_system):
+    """Exponents by Floquet's method agree with Hill's; what is computed elsewhere is the same."""
+
+    def build(across: float, speed: float):
+        supports = [Support(name, np.diag([3e5, across, 1e6]), 20.0) for name in ("left", "right")]
+        model = LinearRotor.of(asymmetric_shaft(), supports)
+        return model.at(speed) if as_system else (model, speed)
+
+    class Counting(ThreadPoolExecutor):
+        tasks = 0
+
+        def submit(self, *task):
+            self.tasks += 1
+            return super().submit(*task)
+
+    grid = [4e5, 5e5], [120.0, 156.0]
+    hill = stability_map(build, *grid, method="hill")
+    floquet = stability_map(build, *grid, method="floquet", tolerance=1e-11)
+    assert not np.array_equal(floquet.growth, hill.growth)
+    np.testing.assert_allclose(floquet.growth, hill.growth, rtol=0.0, atol=1e-9 * grid[1][-1])
+    with pytest.raises(ValueError, match="method='eigen': at 120 rad/s the system is periodic"):
+        stability_map(build, *grid, method="eigen")
+    with Counting(2) as threads:
+        there = stability_map(build, *grid, method="hill", executor=threads)
+    assert threads.tasks == 4
+    assert np.array_equal(there.growth, hill.growth)
 
 
 def test_result_is_stored_drawn_and_printed(tmp_path):

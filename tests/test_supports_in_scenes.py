@@ -5,6 +5,7 @@ from dataclasses import replace
 import exudyn as exu
 import numpy as np
 import pytest
+from exponent_methods import constant_exponents
 from exudyn.itemInterface import MarkerBodyRigid, MarkerNodePosition, NodePoint
 from exudyn.rigidBodyUtilities import InertiaCuboid
 from point_rotors import ring_rotor
@@ -25,7 +26,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic.exponents import constant_exponents, exponents
+from exudyn_rotor.linear.periodic.exponents import exponents
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew

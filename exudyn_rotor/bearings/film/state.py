@@ -72,11 +72,6 @@ class FilmState:
         return float(self.heights.min())
 
     @property
-    def maximum_pressure(self) -> float:
-        """Largest pressure at the nodes [Pa]."""
-        return float(self.pressure.max())
-
-    @property
     def pressure(self) -> np.ndarray:
         """Pressure at the angles and axial places of the grid, (n, k) [Pa]."""
         return self.solution.bearing @ self.film.grid.axial.shapes.T

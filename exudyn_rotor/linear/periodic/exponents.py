@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.companion import Companion
 from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
@@ -104,23 +103,6 @@ def check_eigen(system: PeriodicSystem, method: str) -> None:
             f"method='eigen': at {system.speed:g} rad/s the system is periodic (anisotropic "
             "supports or a foundation); use 'auto', 'hill' or 'floquet'"
         )
-
-
-def constant_exponents(system: PeriodicSystem) -> np.ndarray:
-    """Return the 2k eigenvalues of ``λ²M + λD + K`` with the matrices at θ = 0 [1/s]."""
-    return Companion.of(*system.matrices(0.0)).values()
-
-
-def hill_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.ndarray, float]:
-    """Return the 2k exponents by Hill's method [1/s], and their error relative to Ω.
-
-    Raises
-    ------
-    UnconvergedError
-        If the error does not fall below `tolerance`.
-    """
-    found = _solve_by_hill(system, tolerance)
-    return fold(found.values, system.base), found.error
 
 
 def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:

@@ -87,11 +87,6 @@ def _commutator(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     return A @ B - B @ A
 
 
-def floquet_exponents(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
-    """Return the 2k exponents from the fundamental matrix [1/s], see :func:`monodromy`."""
-    return floquet_motions(system, tolerance)[0]
-
-
 def floquet_motions(
     system: PeriodicSystem, tolerance: float = 1e-9
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
