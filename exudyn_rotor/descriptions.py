@@ -80,10 +80,11 @@ def _train(train: RotorTrain, unevenness: dict[str, float] | None = None) -> str
     for name, ratio in train.ratios.items():
         share = 0.0 if unevenness is None else unevenness[name]
         uneven = f", {share:.2g} of its matrices uneven" if share > _ROUNDING else ""
+        driven = ", driven" if name in train.driven else ""
         rotor = train.rotors[name]
         lines.append(
             f"rotor {name}: {ratio:.6g} times the speed, {rotor.invariants.mass:.6g} kg, "
-            f"{rotor.size} coordinates{uneven}"
+            f"{rotor.size} coordinates{uneven}{driven}"
         )
     given = [
         (f"{name}:{one.interface}", one) for name, each in train.supports.items() for one in each

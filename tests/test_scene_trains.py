@@ -30,6 +30,7 @@ from exudyn_rotor import (
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.response.run_start import _in_body
 from exudyn_rotor.multibody.evaluation import evaluating
+from exudyn_rotor.reduction.driven import _others
 
 SPEED, ANGLE = 90.0, 0.7
 INERTIA = InertiaCuboid(1000.0, [0.1, 0.1, 0.1])
@@ -58,21 +59,28 @@ def scene(ratio, axis="z", rotation=None, **options):
 
 
 def accelerations_left(mbs, bodies, model, rates):
-    """Return ``M q̈ − f`` of the scene where the train's equations hold, over the largest force."""
+    """Return ``M q̈ − f`` of the scene where the train's equations hold, over the largest force.
+
+    Half the difference of a motion and its mirror image, free of terms of second order.
+    """
     rng = np.random.default_rng(3)
     y, y_t = 1e-5 * rng.normal(size=model.size), 1e-3 * rng.normal(size=model.size)
-    for name, body in zip(model.parts, bodies, strict=True):  # a prescribed spin is none
-        own = np.arange(model.size)[model._slices[name]]
-        spin = [i for i, kind in enumerate(body.selection.source.kinds) if "spin" in kind.value]
-        y[own[spin]] = y_t[own[spin]] = 0.0
-    system = model.at(SPEED)
-    M, D, K = system.matrices(ANGLE)
+    M, D, K = model.at(SPEED).matrices(ANGLE)
     y_tt = -la.solve(M, D @ y_t + K @ y)
+    (upper, rows), (lower, _) = (
+        forces(mbs, bodies, model, rates, sign * np.array([y, y_t, y_tt])) for sign in (1.0, -1.0)
+    )
+    inertia, force = 0.5 * (upper - lower)[:, rows]
+    return np.abs(inertia - force).max() / np.abs(force).max()
+
+
+def forces(mbs, bodies, model, rates, motion):
+    """Return ``M q̈`` and f (2, n) of a motion (3, k) with its derivatives, and the unknowns."""
+    y, y_t, y_tt = motion
     size = mbs.systemData.ODE2Size()
     q, q_t, q_tt, looked_at = np.zeros(size), np.zeros(size), np.zeros(size), []
     for (name, part), body, rate in zip(model.parts.items(), bodies, rates, strict=True):
-        own, alone = model._slices[name], [y[model._slices[name]], y_t[model._slices[name]]]
-        alone.append(y_tt[own])
+        alone = list(motion[:, model._slices[name]])
         if part.turning is not None:  # x = exp(−Gα) y, α = wθ
             G, w = part.turning.generator, part.drift * SPEED
             turn = la.expm(-G * part.drift * ANGLE)
@@ -81,13 +89,21 @@ def accelerations_left(mbs, bodies, model, rates):
                 turn @ (alone[1] - w * G @ alone[0]),
                 turn @ (alone[2] - 2.0 * w * G @ alone[1] + w**2 * G @ G @ alone[0]),
             ]
-        x, x_t, x_tt = (_in_body(body, one)[0] for one in alone)
+        if name in model.train.driven:
+            alone = [_others(body.selection.source) @ one for one in alone]
+        (x, x_t, x_tt), spins = zip(*(_in_body(body, one) for one in alone), strict=True)
         given = SceneCoordinates.of(body)
         T, T1, T2 = given.turn(rate * ANGLE)
         T1, T2 = rate * SPEED * T1, (rate * SPEED) ** 2 * T2
         q[given.free], q_t[given.free] = T @ x, T @ x_t + T1 @ x
         q_tt[given.free] = T @ x_tt + 2.0 * T1 @ x_t + T2 @ x
         looked_at.append(given.free)
+        at = given.spin_coordinate
+        if at is not None:
+            turned = np.array([rate * ANGLE, rate * SPEED, 0.0]) + spins
+            q[at], q_t[at], q_tt[at] = given.spin_sign * turned
+        if body.formulation.has_spin:
+            looked_at.append([at])
     pairs = {int(i): n for body in bodies for s in body.supports
              for n, i in enumerate(s.own_coordinates(mbs))}  # fmt: skip
     places = np.array(sorted(pairs, key=pairs.get))
@@ -102,11 +118,6 @@ def accelerations_left(mbs, bodies, model, rates):
         looked_at.append(places)
     with evaluating(mbs) as solver:
         data = mbs.systemData
-        for body, rate in zip(bodies, rates, strict=True):
-            spin = SceneCoordinates.of(body).spin_coordinate
-            if spin is not None:
-                sign = SceneCoordinates.of(body).spin_sign
-                q[spin], q_t[spin] = sign * rate * ANGLE, sign * rate * SPEED
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
         data.SetTime(ANGLE / SPEED)
@@ -114,8 +125,7 @@ def accelerations_left(mbs, bodies, model, rates):
         solver.ComputeODE2RHS(mbs)
         force = np.array(solver.GetSystemResidual())[:size]
         inertia = np.array(solver.GetSystemMassMatrix()) @ q_tt
-    rows = np.concatenate(looked_at)
-    return np.abs(inertia - force)[rows].max() / np.abs(force[rows]).max()
+    return np.array([inertia, force]), np.concatenate(looked_at)
 
 
 @pytest.mark.filterwarnings("ignore:rotor '.P'. no node of Exudyn turns")
@@ -132,17 +142,21 @@ def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
 
-def geared(connection, other=None, **options):
-    """Return two rotors, each on two springs, and what connects them."""
+def geared(connection, other=None, driven="", turned=None, speed=SPEED, **options):
+    """Return two rotors, each on two springs, and what connects them; A and B may be driven."""
     mbs = exudyn.SystemContainer().AddSystem()
     apart = getattr(connection, "center_distance", 0.0)
     place = [apart, 0.0, 0.0] if apart else [0.0, 0.0, 2.0 * FIRST[1]]
+    turned = np.eye(3) if turned is None else turned
     rotor = rings(*FIRST).reduce(0)
-    rates = (SPEED, -0.5 * SPEED) if apart else (SPEED, SPEED)
+    rates = (speed, -0.5 * speed) if apart else (speed, speed)
     bodies = [
-        add_rotor(mbs, rotor, name=name, initial_speed=rate, position=position, **options)
+        add_rotor(
+            mbs, rotor, name=name, position=turned @ position, rotation=turned,
+            **{"spin" if name in driven else "initial_speed": rate}, **options,
+        )
         for name, rate, position in zip("AB", rates, ([0.0, 0.0, 0.0], place), strict=True)
-    ]
+    ]  # fmt: skip
     for body in bodies:
         add_supports(body, [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"])
     ends = ("a", "a") if apart else ("b", "a")
@@ -151,15 +165,61 @@ def geared(connection, other=None, **options):
     return mbs, bodies
 
 
+GEARS = GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0)
+COUPLING = FlexibleCoupling(
+    torsion=2e3, lateral=2e5, angular=50.0, damping=[9.0, 9.0, 0.1, 0.1], axial=1e5
+)
+
+
+@pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")
+@pytest.mark.parametrize("driven", ["", "A", "B", "AB"])
+@pytest.mark.parametrize(
+    ("connection", "turned"), [(GEARS, None), (GEARS, SKEW), (COUPLING, None)],
+    ids=["gears", "gears, skew", "coupling"],
+)  # fmt: skip
+def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, turned, driven):
+    """Torsion is that of the spins that are free in the scene, through gears and couplings."""
+    mbs, bodies = geared(connection, driven=driven, turned=turned)
+    model = linear_model(mbs, body=bodies)
+    assert model.train.driven == tuple(driven)
+    assert model.size == 12 - len(driven)
+    assert accelerations_left(mbs, bodies, model, [*model.train.ratios.values()]) < 1e-8
+
+
+@pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")
+def test_a_coupling_to_a_shaft_of_constant_speed_holds_torsion():
+    """A's, through gears B's, too; damping across the axis turns with the shaft."""
+    mbs, bodies = geared(GEARS)
+    connect_rotors(COUPLING, bodies[0], "b", ConstantSpeed(SPEED))
+    mbs.Assemble()
+    model = linear_model(mbs, body=bodies)
+    assert model.free_motions == ()
+    assert accelerations_left(mbs, bodies, model, [1.0, -0.5]) < 1e-8
+
+
+@pytest.mark.parametrize("driven", ["", "A", "AB"])
+@pytest.mark.parametrize("connection", [GEARS, COUPLING], ids=["gears", "coupling"])
+def test_frequencies_of_a_train_at_rest_are_exudyns(connection, driven):
+    """Of the scene's own linearisation, torsion included; its 4 locked tilts are 1 rad/s."""
+    mbs, bodies = geared(connection, driven=driven, speed=1e-6)  # undamped, no gyroscopics
+    M, _, K = linear_model(mbs, body=bodies).at(1e-6).matrices(0.0)
+    squares = (
+        la.eigh(K, M, eigvals_only=True),
+        np.sort(mbs.ComputeODE2Eigenvalues(convert2Frequencies=False)[0]),
+    )
+    found, expected = (given[given > 10.0] for given in squares)
+    assert len(found) == (10 if driven == "AB" else 11)
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
 def test_gears_and_couplings_of_a_scene_are_links():
     """The same numbers as of the train that is written by hand."""
-    mesh = GearMesh(radii=[0.1, 0.2], stiffness=3e6, damping=30.0)
     coupling = FlexibleCoupling(
         torsion=2e3, lateral=[2e5, 1e5], angular=50.0, damping=[9.0, 9.0, 0.1, 0.1]
     )
     rotor, held = rings(*FIRST).reduce(0), [Support(n, np.diag([3e5, 3e5, 1e5]), 9.0) for n in "ab"]
     for connection, ratio, link in (
-        (mesh, -0.5, Link("A:a", "B:a", mesh)),
+        (GEARS, -0.5, Link("A:a", "B:a", GEARS)),
         (coupling, 1.0, Link("A:b", "B:a", coupling.support("b"))),
     ):
         mbs, bodies = geared(connection)
@@ -200,8 +260,11 @@ def test_what_a_train_does_not_have_is_refused():
         "stands on a body or a foundation": lambda mbs, one, other: add_supports(
             one, Support("b", 1e5), mbs.CreateRigidBody(inertia=INERTIA)
         ),
-        "is not linear, or its shaft is no rotor": lambda mbs, one, other: connect_rotors(
-            FlexibleCoupling(torsion=1e3), one, "b", ConstantSpeed(SPEED)
+        "is to a shaft and no flexible coupling": lambda mbs, one, other: connect_rotors(
+            GEARS, one, "b", ConstantSpeed(SPEED)
+        ),
+        "the shaft of its FlexibleCoupling at b by": lambda mbs, one, other: connect_rotors(
+            COUPLING, one, "b", ConstantSpeed(2.0 * SPEED)
         ),
     }  # fmt: skip
     for match, change in changes.items():
@@ -252,4 +315,4 @@ def test_a_rotor_without_marker_body_is_a_second_one():
     for body in bodies:
         with pytest.raises(ValueError, match=r"a second rotor in this system.*body=\[…\]"):
             linear_model(mbs, body=body)
-    assert linear_model(mbs, body=bodies).size == 12
+    assert linear_model(mbs, body=bodies).size == 10  # without the spins

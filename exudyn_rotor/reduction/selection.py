@@ -178,9 +178,12 @@ def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarra
         held = (*held, ModeKind.SPIN)
     columns = [i for i, kind in enumerate(reduced.kinds) if kind not in held]
     T = identity[:, columns]
-    if holds_spin:
-        T = _orthogonal_to(_mean_rotation(reduced), T)
-    return T, columns
+    return (without_mean_rotation(reduced, T) if holds_spin else T), columns
+
+
+def without_mean_rotation(reduced: ReducedRotor, T: np.ndarray) -> np.ndarray:
+    """Make columns T of a basis free of mean rotation about the axis, and orthonormal again."""
+    return _orthogonal_to(_mean_rotation(reduced), T)
 
 
 def _mean_rotation(reduced: ReducedRotor) -> np.ndarray:

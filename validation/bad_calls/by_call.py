@@ -189,6 +189,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("RotorBody", "nodes"): v.MAPPING,
     ("RotorBody.add_interface_sensor", "interface"): v.KNOWN,
     ("RotorBody.marker", "interface"): v.KNOWN,
+    ("RotorTrain", "driven"): v.KNOWN,
     ("RotorTrain", "largest_unevenness"): v.NOT_NEGATIVE.but(beyond=1.5),
     ("RotorTrain", "links"): v.OBJECTS,
     ("RotorTrain", "positions"): v.MAPPING,

@@ -49,6 +49,8 @@ class SceneConnection:
         The second rotor; None for a shaft.
     other_at : str, optional
         Its interface.
+    shaft : ConstantSpeed or PrescribedMotion, optional
+        The angle of a shaft in place of a second rotor.
     """
 
     connection: Connection
@@ -59,6 +61,7 @@ class SceneConnection:
     state: State
     other: Body | None = None
     other_at: str | None = None
+    shaft: ConstantSpeed | PrescribedMotion | None = None
 
     @property
     def uses_python(self) -> bool:
@@ -185,7 +188,7 @@ def connect_rotors(
     state = _state(parts, other, first, connection.law.second_axis)
     item = _item(connection, parts, state)
     nodes = tuple(node for part in parts for node in part.nodes)
-    end = ends[1][:2] if ends[1:] else ()
+    end = ends[1][:2] if ends[1:] else (None, None, other)
     added = SceneConnection(connection, body, at, body.mbs.AddObject(item), nodes, state, *end)
     for rotor, *_ in ends:
         rotor.drives.append(added)

@@ -139,5 +139,16 @@ TRAINS = [
         "test_scene_trains.py",
         ("all rotors at one speed", "spin_at_start(body)[1] / speed", "1.0"),
         ("what stands in the scene beside", "number not in known and", "False and"),
+        (
+            "prescribed spins left free",
+            "return not body.formulation.has_spin and",
+            "return False and",
+        ),
+        ("a shaft without its torsion", "X @ torsion for n", "0.0 * X for n"),
+    ),
+    *mutations(
+        "reduction/driven.py",
+        "test_scene_trains.py",
+        ("another motion than the spin left out", "kind is not ModeKind.SPIN]", "i != 0]"),
     ),
 ]

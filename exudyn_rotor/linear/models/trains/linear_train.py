@@ -41,6 +41,7 @@ from exudyn_rotor.linear.models.trains.turned_rotor import TurnedRotor
 from exudyn_rotor.linear.models.trains.turning import Turning
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.reduction.driven import without_spin
 from exudyn_rotor.theory.stiffening import LEVELS
 
 _HELD = 1e-10  # share of the largest torsional stiffness per unit mass that counts as none
@@ -77,7 +78,8 @@ class LinearTrain(InAllCoordinates):
         elements, own = elements_of(train)
         parts = {}
         for name, rotor in train.rotors.items():
-            alone = LinearRotor.of(rotor, (), stiffening)
+            given = without_spin(rotor) if name in train.driven else rotor
+            alone = LinearRotor.of(given, (), stiffening)
             check_rotor(name, alone, held_elements(elements, own))
             at = places_of(name, elements)
             parts[name] = TurnedRotor.of(

@@ -38,6 +38,10 @@ class RotorTrain:
     positions : mapping of str to array_like, each (3,), optional
         Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
         checked. Without them a rotor stands where its links put it.
+    driven : sequence of str, optional
+        Rotors whose drive holds their speed: the mean rotation about the axis is the angle of Ω
+        times the ratio, and no coordinate. The spins of all others are, and what nothing holds of
+        them is free.
 
     Raises
     ------
@@ -80,6 +84,7 @@ class RotorTrain:
     links: Sequence[Link] = ()
     largest_unevenness: float = 0.05
     positions: Mapping[str, np.ndarray] = field(default_factory=dict)
+    driven: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         rotors = checks.mapping(self.rotors, "rotors", "ReducedRotor")
@@ -118,6 +123,7 @@ class RotorTrain:
             _known(name, rotors, "positions")
             positions[name] = checks.vector(given, f"positions[{name!r}]", "m", size=3)
         check_places(rotors, links, positions)
+        driven = checks.labels(self.driven, "driven", rotors)
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
@@ -126,6 +132,7 @@ class RotorTrain:
             "links": links,
             "largest_unevenness": uneven,
             "positions": checks.read_only_mapping(positions),
+            "driven": driven,
         }.items():
             object.__setattr__(self, name, value)
 
