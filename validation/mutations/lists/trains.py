@@ -144,7 +144,11 @@ TRAINS = [
             "return not body.formulation.has_spin and",
             "return False and",
         ),
-        ("a shaft without its torsion", "X @ torsion for n", "0.0 * X for n"),
+        (
+            "a shaft without its torsion",
+            "Support(one.at, **{n: X @",
+            "Support(one.at, **{n: 0.0 * X @",
+        ),
     ),
     *mutations(
         "reduction/driven.py",
