@@ -55,9 +55,10 @@ def test_ci_calls_the_readme_command():
     subprocess.run(["bash", "-n", str(ROOT / ".ci/run")], check=True)
 
 
-def test_command_line_names_the_demo():
-    answer = subprocess.run(
-        [sys.executable, "-m", "exudyn_rotor", "--help"],
-        capture_output=True, text=True, check=True, cwd=ROOT,
-    )  # fmt: skip
-    assert "demo" in answer.stdout
+def test_command_line_names_the_demo(monkeypatch, capsys):
+    monkeypatch.delitem(sys.modules, "exudyn_rotor.__main__", raising=False)
+    monkeypatch.setattr(sys, "argv", ["exudyn_rotor", "--help"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module("exudyn_rotor", run_name="__main__")
+    assert ended.value.code == 0
+    assert "demo" in capsys.readouterr().out

@@ -2,7 +2,7 @@
 
 import importlib
 import re
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
@@ -28,7 +28,8 @@ def test_every_script_is_listed():
         if re.search(r"^def main\(", path.read_text(encoding="utf-8"), re.MULTILINE)
     }
     assert found - own == {script.module for script in SCRIPTS.values()}
-    assert all(f"{name} " in listing() for name in SCRIPTS)
+    listed = listing()
+    assert all(f"{name} " in listed for name in SCRIPTS)
 
 
 def test_documents_name_scripts_that_exist():
@@ -39,12 +40,13 @@ def test_documents_name_scripts_that_exist():
     assert len(named) > 10
 
 
-def test_options_reach_the_script():
-    command = [sys.executable, "-m", "validation"]
-    answer = subprocess.run(
-        [*command, "savers", "--help"], cwd=ROOT, capture_output=True, text=True
-    )
-    assert "usage: python -m validation savers" in answer.stdout
-    answer = subprocess.run([*command, "sabers"], cwd=ROOT, capture_output=True, text=True)
-    assert answer.returncode != 0
-    assert "'sabers' is unknown; there are: speed" in answer.stderr
+def test_options_reach_the_script(monkeypatch, capsys):
+    monkeypatch.delitem(sys.modules, "validation.__main__")  # it is run as a program
+    monkeypatch.setattr(sys, "argv", ["validation", "savers", "--help"])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module("validation", run_name="__main__")
+    assert ended.value.code == 0
+    assert "usage: python -m validation savers" in capsys.readouterr().out
+    monkeypatch.setattr(sys, "argv", ["validation", "sabers"])
+    with pytest.raises(SystemExit, match="'sabers' is unknown; there are: speed"):
+        runpy.run_module("validation", run_name="__main__")
