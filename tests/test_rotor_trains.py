@@ -1,5 +1,7 @@
 """Several rotors in linear analyses: against closed forms and one rotor of their parts."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scipy.linalg as la
@@ -73,6 +75,32 @@ def test_critical_speeds_by_unbalance_of_either_rotor(order):
     if order != 1.0:
         again = critical_speeds(train.relative_to("B"), nodal_diameters=[1]).speeds
         np.testing.assert_allclose(again / order, found, rtol=1e-8)
+
+
+@pytest.mark.parametrize(("order", "tables"), [(1.0, True), (1.7, False), (2.0, True)])
+def test_critical_speeds_on_uneven_supports_are_zeros_in_axes_at_rest(order, tables):
+    """Of ``K − p²Ω²M + ip Ω D`` by hand, whose negative eigenvalues count them; tables by speed."""
+    over, uneven = np.linspace(0.0, 400.0, 9), 0.5 * (UNEVEN + UNEVEN.T)
+
+    def ground(speed):
+        return uneven * (1.0 + tables * speed / 500.0)
+
+    def dynamic(speed):
+        M, D, K = by_hand(1.7, speed, ground(speed), damped=False)
+        return K - (order * speed) ** 2 * M + 1j * order * speed * D
+
+    given = two_discs(1.7, uneven)
+    if tables:
+        held = [
+            Support(n, (over, [f * ground(speed) for speed in over]))
+            for n, f in (("a", 1.0), ("b", 1.3))
+        ]
+        given = dataclasses.replace(given, supports={**given.supports, "A": held})
+    found = critical_speeds(given, order=order, nodal_diameters=[1], max_speed=400.0).speeds
+    sizes = [np.abs(la.eigvalsh(dynamic(speed))) for speed in found]
+    assert max(size.min() / size.max() for size in sizes) < 1e-10
+    counts = [np.sum(la.eigvalsh(dynamic(speed)) < 0.0) for speed in np.linspace(0.0, 400.0, 200)]
+    assert np.abs(np.diff(counts)).sum() == len(found) >= 2
 
 
 def test_rotors_of_one_speed_are_one_rotor():

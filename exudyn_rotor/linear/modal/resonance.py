@@ -10,7 +10,9 @@ one generalised eigenproblem for all critical speeds: for unbalance of an axisym
 and ``det K(Ω) = 0``. Supports that stand still and differ in their two directions couple f, f ± 2
 …: the same problem in harmonics. Supports that depend on the speed leave ``H(Ω) φ = 0`` with a
 Hermitian H; the zeros of its eigenvalues over Ω are found by bracketing
-(:mod:`.hermitian_zeros`). Source: Genta, Dynamics of Rotating Systems (2005).
+(:mod:`.hermitian_zeros`). Several axisymmetric rotors are looked at in axes at rest, where uneven
+supports couple nothing: one problem of the frequency pΩ. Source: Genta, Dynamics of Rotating
+Systems (2005).
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from exudyn_rotor.linear.modal.hermitian_zeros import same_speed, zeros_of_eigen
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.trains.standing_space import StandingSpace
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -124,6 +127,8 @@ def _resonances(
             critical += _turning(
                 _solved(equations, np.array([order - n]), limit), content, order, waves
             )
+    elif isinstance(equations.space, StandingSpace):
+        critical = _turning(_standing(equations, order, limit), content, order, waves)
     else:
         # with a step of one all harmonics, those of the conjugate motions too, are in one row
         starts = {n % step: n for n in waves}.values() if step > 1 else [round(order)]
@@ -132,6 +137,23 @@ def _resonances(
                 equations, content, order, waves, order - start, step, limit, tolerance
             )
     return sorted(critical, key=lambda entry: entry.speed)
+
+
+def _standing(equations: _Equations, order: float, limit: float | None) -> list[Resonance]:
+    """Return every critical speed by equations that are constant in axes at rest, with its motion.
+
+    There the excitation has the frequency pΩ and no other.
+    """
+    space = equations.space
+    still = replace(equations, space=space.standing, known={})
+    found = _solved(still, np.array([order]), limit)
+    if not found:
+        return []
+    vectors, orders = space.turned_harmonics(np.column_stack([entry.vectors[0] for entry in found]))
+    return [
+        replace(entry, multiples=order + orders, vectors=vectors[..., column])
+        for column, entry in enumerate(found)
+    ]
 
 
 def _converged(

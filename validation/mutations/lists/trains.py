@@ -135,6 +135,15 @@ TRAINS = [
         ),
     ),
     *mutations(
+        "linear/models/trains/standing_space.py",
+        _TESTS + "test_critical_speeds_on_uneven_supports_are_zeros_in_axes_at_rest",
+        (
+            "waves turn the wrong way at critical speeds",
+            "self._waves(motions)[::-1]",
+            "self._waves(motions)",
+        ),
+    ),
+    *mutations(
         "linear/models/trains/scene_train.py",
         "test_scene_trains.py",
         ("all rotors at one speed", "spin_at_start(body)[1] / speed", "1.0"),

@@ -149,7 +149,8 @@ class LinearTrain(InAllCoordinates):
     @property
     def unevenness(self) -> dict[str, float]:
         """Share of each rotor's matrices that differs around its axis; 0 where it plays no part."""
-        return {name: part.unevenness for name, part in self.parts.items()}
+        parts = (self._standing or self).parts
+        return {name: part.unevenness for name, part in parts.items()}
 
     @cached_property
     def mass_matrix(self) -> np.ndarray:

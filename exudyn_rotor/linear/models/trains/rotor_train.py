@@ -32,9 +32,10 @@ class RotorTrain:
     links : sequence of Link, optional
         Between rotors.
     largest_unevenness : float, optional
-        A rotor of another ratio than 1 counts as axisymmetric, by its mean over a turn, where no
-        larger share of its matrices and of the motions of its places, as slow motions see them,
-        differs around the axis: that is the mesh.
+        A rotor of another ratio than 1, or any beside gears and uneven supports that stand still,
+        counts as axisymmetric, by its mean over a turn, where no larger share of its matrices and
+        of the motions of its places, as slow motions see them, differs around the axis: that is
+        the mesh.
     positions : mapping of str to array_like, each (3,), optional
         Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
         checked. Without them a rotor stands where its links put it.

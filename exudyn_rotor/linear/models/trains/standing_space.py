@@ -69,18 +69,34 @@ class StandingSpace(WholeSpace):
             found = replace(found, vectors=self.others @ found.vectors)
         return self._turned(found, speed), system
 
-    def _turned(self, modes: FloquetModes, speed: float) -> FloquetModes:
-        """Return motions as seen from axes that turn with Ω, their strongest wave as harmonic 0."""
-        central = modes.central
-        parts = np.zeros((2 * HIGHEST + 1, *central.shape), dtype=complex)
+    def turned_harmonics(self, motions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what motions (k, c) of one frequency are in axes that turn with Ω.
+
+        Harmonics (h, k, c), and by which multiple of Ω the frequency of each differs, (h,).
+        """
+        parts = self._waves(motions)[::-1]
+        orders = np.arange(-HIGHEST, HIGHEST + 1)
+        top = int(np.abs(orders[np.any(parts, axis=(1, 2))]).max(initial=0))
+        kept = np.abs(orders) <= top
+        return parts[kept], orders[kept]
+
+    def _waves(self, motions: np.ndarray) -> np.ndarray:
+        """Return the parts of motions (k, c) that are waves of −4 to 4 nodal diameters."""
+        parts = np.zeros((2 * HIGHEST + 1, *motions.shape), dtype=complex)
         start = 0
         for turning in self.turnings:
             end = start + len(turning.waves)
-            amplitudes = turning.inverse @ central[start:end]
+            amplitudes = turning.inverse @ motions[start:end]
             for n in np.unique(turning.waves):
                 wave = turning.waves == n
                 parts[HIGHEST + n, start:end] = turning.T[:, wave] @ amplitudes[wave]
             start = end
+        return parts
+
+    def _turned(self, modes: FloquetModes, speed: float) -> FloquetModes:
+        """Return motions as seen from axes that turn with Ω, their strongest wave as harmonic 0."""
+        central = modes.central
+        parts = self._waves(central)
         strongest = np.argmax(np.linalg.norm(parts, axis=1), axis=0) - HIGHEST
         orders = np.arange(-2 * HIGHEST, 2 * HIGHEST + 1)
         vectors = np.zeros((len(orders), *central.shape), dtype=complex)
