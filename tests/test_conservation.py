@@ -70,7 +70,7 @@ def test_conservation_over_1000_revolutions(translation):
     assert np.abs(invariants.h).max() > 1e-3  # the unbalance tilts the body
     start = np.array([*np.zeros(count + 1), *zeta])
     rate = np.array([*[0.3, -0.2, 0.1][:count], speed, *zeta_t])
-    assert max(drifts(motion, 1000, start, rate, 1e-8)) < 1e-8  # the integrator's tolerance
+    assert max(drifts(motion, 1000, start, rate, 1e-7)) < 1e-8  # 5e-10, falls with the tolerance
 
 
 def slow_wobble(invariants: Invariants, speed: float, amplitude: float) -> tuple:

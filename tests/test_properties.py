@@ -26,7 +26,7 @@ SPEED = 0.7
 seeds = st.integers(0, 2**32 - 1)
 counts = st.integers(4, 8)
 factors = st.floats(0.05, 20.0)
-examples = settings(max_examples=25, deadline=None, derandomize=True)
+examples = settings(max_examples=15, deadline=None, derandomize=True)
 FREE_SPIN = pytest.mark.parametrize("translation", ["free", "in-plane", "none"])
 LEVELS = pytest.mark.parametrize("level", ["none", "tilt"])
 
