@@ -14,6 +14,8 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
+_REST = 1e-6  # of c Ω: the velocity of a journal at rest
+_AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -24,7 +26,8 @@ class JournalBearing(Bearing):
     every evaluation, with one axial profile (``axial_nodes=0``) twenty times as long as that of a
     :class:`ShortJournalBearing`. In scenes the journal's centre has its film where it
     is thicker all around than ``film.thinnest``, which the grid resolves; beyond, the force goes on
-    by its tangent, so that Newton's method comes back.
+    by its tangent, so that Newton's method comes back. A film that conserves mass goes on with the
+    voids of the last accepted step; a run begins with those of a journal that rests where it is.
 
     Parameters
     ----------
@@ -32,6 +35,9 @@ class JournalBearing(Bearing):
         Interface of the rotor that is the journal.
     film : OilFilm
         With the directions n1 and n2 of the rotor at rest.
+    whirl_ratio : float, optional
+        Frequency of the whirl over the spin speed, 1 for unbalance, at which linear analyses take
+        a film that conserves mass; see :meth:`FilmState.coefficients`.
     load : array_like, shape (2,), optional
         Static load on the journal along (n1, n2) [N], which linear analyses need.
 
@@ -53,11 +59,18 @@ class JournalBearing(Bearing):
     """
 
     film: OilFilm
+    whirl_ratio: float = 1.0
     _last: dict[tuple[float, ...], FilmState] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
+        checks.keep_numbers(self, {"whirl_ratio": ""}, above=0.0)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the film's force depends on the motion before, as its voids do."""
+        return self.film.cavitation == "mass-conserving"
 
     def _reach(self, direction: np.ndarray) -> float:
         return self.film._reach(direction)
@@ -80,13 +93,13 @@ class JournalBearing(Bearing):
         """
         return self._film_law(torque=True)
 
-    def _film_law(self, torque: bool) -> _FilmLaw:
-        if self.film.cavitation == "mass-conserving":
+    def _film_law(self, torque: bool) -> FilmLaw:
+        if self.remembers:
             raise ValueError(
                 f"bearing at {self.interface!r}: a film with cavitation='mass-conserving' has no "
-                "force by place and velocity alone; scenes need another cavitation"
+                "force by place and velocity alone; add_supports gives it to a scene"
             )
-        return _FilmLaw(self.film, torque)
+        return FilmLaw(self.film, torque)
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
@@ -112,7 +125,7 @@ class JournalBearing(Bearing):
 
         Parameters and errors are those of :meth:`equilibrium`.
         """
-        return self._state(speed, load).coefficients()
+        return self._state(speed, load).coefficients(self.whirl_ratio)
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
         """Return the film in equilibrium; the last one is kept, for several ask for it in turn."""
@@ -133,7 +146,8 @@ class TangentFilm:
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
-        self._film, self._whole = bearing.film, bearing.law_with_torque
+        self._bearing, self._film = bearing, bearing.film
+        self._whole = FilmLaw(bearing.film, torque=True)
         self._tangent: tuple[FilmState, np.ndarray] | None = None
         self._held = False
 
@@ -150,8 +164,9 @@ class TangentFilm:
             self._held = hypot(x, y) <= self._film.clearance - self._film.thinnest
             if self._held:
                 state = self._film._state(motion[:2], motion[2:], speed)
-                self._tangent = state, np.hstack(state.coefficients())
+                self._tangent = state, np.hstack(state.coefficients(self._bearing.whirl_ratio))
         if self._tangent is None:
+            self._check_rest(vx, vy, speed)
             return self._whole(x, y, vx, vy, angle, speed)[:2]
         state, gradient = self._tangent
         change = gradient @ (motion - np.append(state.position, state.velocity))
@@ -165,9 +180,18 @@ class TangentFilm:
         torque = self._whole(x, y, vx, vy, angle, speed)[2]
         return *self.law(x, y, vx, vy, angle, speed), torque
 
+    def _check_rest(self, vx: float, vy: float, speed: float) -> None:
+        """Refuse the motion of a film with a memory."""
+        if self._bearing.remembers and hypot(vx, vy) > _REST * self._film.clearance * abs(speed):
+            raise ValueError(
+                f"bearing at {self._bearing.interface!r}: a film with cavitation="
+                "'mass-conserving' has no force by place and velocity alone, so that a moving "
+                "journal is found in a run only; leave the unbalance out (about='equilibrium')"
+            )
 
-class _FilmLaw:
-    """Force of a film and, where asked for, torque; it remembers its voids."""
+
+class FilmLaw:
+    """Force of a film and, where asked for, torque; it remembers which cells were empty."""
 
     def __init__(self, film: OilFilm, torque: bool) -> None:
         self._film, self._torque = film, torque
@@ -181,13 +205,66 @@ class _FilmLaw:
         rate = np.array([vx, vy])
 
         def force(a: float, b: float) -> tuple[float, ...]:
-            state = self._film._state(np.array([a, b]), rate, speed, self._empty)
-            self._empty = state.solution.empty
+            state = self._state(np.array([a, b]), rate, speed)
             torque = (-state.torque,) if self._torque else ()
             return *state.force.tolist(), *torque
 
+        most = self._to_the_edge(x, y)
+        inside = hypot(x, y) <= most
+        return force(x, y) if inside else by_tangent(force, x, y, most, self._step)
+
+    def _to_the_edge(self, x: float, y: float) -> float:
+        """Return how far the journal may go on its way out, the film resolved [m]."""
         distance = hypot(x, y)
         if distance <= self._most:
-            return force(x, y)
-        most = self._film._reach(np.array([x, y]) / distance)
-        return force(x, y) if distance <= most else by_tangent(force, x, y, most, self._step)
+            return self._most
+        return self._film._reach(np.array([x, y]) / distance)
+
+    def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
+        state = self._film._state(place, rate, speed, self._empty)
+        self._empty = state.solution.empty
+        return state
+
+
+class RememberingLaw(FilmLaw):
+    """Force of a film that conserves mass, with its voids at the beginning of the step.
+
+    To be told where each step begins, by :meth:`begin`, before it is asked for forces in the step.
+    Steps may be repeated, shortened, or begin at an earlier time.
+    """
+
+    def __init__(self, film: OilFilm, torque: bool) -> None:
+        super().__init__(film, torque)
+        self._begun: tuple[float, float, float] | None = None
+        self._voids = np.zeros((len(film.grid.angle), film.grid.width))
+        self._duration = 0.0
+
+    @property
+    def voids(self) -> np.ndarray:
+        """Their thickness at the beginning of the step, (n, m) [m]."""
+        return self._voids
+
+    def begin(
+        self, time: float, x: float, y: float, vx: float, vy: float, speed: float, now: float
+    ) -> None:
+        """Take voids to the time and motion of the beginning of a step that is now at `now` [s]."""
+        begun = time, x, y
+        if begun != self._begun:
+            goes_on = self._begun is not None and time > self._begun[0]
+            self._duration = time - self._begun[0] if goes_on else np.inf
+            place = np.array([x, y]) * min(1.0, self._to_the_edge(x, y) / max(hypot(x, y), 1e-300))
+            if goes_on or speed != 0.0:
+                rate = np.array([vx, vy]) if goes_on else np.zeros(2)
+                solved = self._state(place, rate, speed)
+                self._voids = solved.solution.void * solved.heights[:, None]
+            else:
+                self._voids = np.zeros_like(self._voids)
+            self._begun = begun
+        self._duration = now - time
+
+    def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
+        # at once where no time has passed, but for rounding
+        duration = max(self._duration, _AT_ONCE * float(self._film.grid.step.min()))
+        state = self._film._state(place, rate, speed, self._empty, 1.0 / duration, self._voids)
+        self._empty = state.solution.empty
+        return state

@@ -35,8 +35,9 @@ class OilFilm(FilmData):
     cavitation : {'reynolds', 'half-sommerfeld', 'mass-conserving', 'none'}, optional
         What holds where the film would be pulled. 'reynolds' (p ≥ 0, p and its slope vanish where
         the film breaks) is what tables of coefficients mostly hold; 'mass-conserving' adds the
-        oil's balance in the void, for steady states and coefficients: it has a memory, which a
-        force of place and velocity has not. It needs a groove, from which the oil comes.
+        oil's balance in the void. It has a memory, which a force of place and velocity has not:
+        steady states and coefficients are here, motions by :class:`JournalBearing` in scenes. It
+        needs a groove, from which the oil comes.
     supply_pressure : float, optional
         In the grooves, which are as long as the bore, above the ambient [Pa].
     nodes : int, optional
@@ -93,7 +94,8 @@ class OilFilm(FilmData):
         if self.cavitation == "mass-conserving" and velocity.any():
             raise ValueError(
                 "velocity: a film with cavitation='mass-conserving' remembers how its voids grew, "
-                "which a force of place and velocity cannot; use 'reynolds' for motions"
+                "which a force of place and velocity cannot; put a JournalBearing into a scene, or "
+                "use 'reynolds'"
             )
         return self._state(displacement, velocity, speed)
 
@@ -146,8 +148,7 @@ class OilFilm(FilmData):
     def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
         """Return the state after one step, shortened until the force comes closer to the load."""
         unbalanced = state.force + load
-        stiffness, _ = state.coefficients()
-        move = np.linalg.lstsq(stiffness, unbalanced, rcond=1e-12)[0]
+        move = np.linalg.lstsq(state.slow_stiffness, unbalanced, rcond=1e-12)[0]
         before = self._heights(state.position)[0]
         closing = before - self._heights(state.position + move)[0]
         move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
@@ -164,6 +165,8 @@ class OilFilm(FilmData):
         velocity: np.ndarray,
         speed: float,
         empty: np.ndarray | None = None,
+        void_rate: float = 0.0,
+        voids: np.ndarray | None = None,
     ) -> FilmState:
         heights = self._heights(position)
         if heights.min() <= 0.0:
@@ -173,7 +176,6 @@ class OilFilm(FilmData):
             )
         rates = -self.grid.u[0] @ velocity
         source = 12.0 * self.viscosity * self.radius**2
-        equation = Equation(
-            self.grid, self.cavitation, source, self.supply_pressure, heights, rates, speed
-        )
+        film = self.grid, self.cavitation, source, self.supply_pressure
+        equation = Equation(*film, heights, rates, speed, void_rate, voids)
         return FilmState(self, position, velocity, speed, equation.solve(empty))

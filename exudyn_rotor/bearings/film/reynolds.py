@@ -10,6 +10,9 @@
                        cavitation algorithm*, J. Lubrication Technology 103, 1981)
 =====================  ==========================================================================
 
+The voids θ h of the last one remember. Beside ∂t h of a motion, Eq. (1) has −∂t(θ h): after a step
+τ of implicit Euler from voids g, ``(θ h − g)/τ``; in a small motion exp(iνt), ``iν θ h``.
+
 The last two are solved by a semi-smooth Newton method: each cell has one unknown, the pressure or
 what stands for it in a void, and changes sides when its unknown turns negative.
 """
@@ -20,7 +23,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg.lapack import dgbsv
+from scipy.linalg.lapack import dgbsv, zgbsv
 
 from exudyn_rotor.bearings.film.grid import Grid
 
@@ -47,6 +50,10 @@ class Equation:
         ∂t h [m/s].
     speed : float
         Ω [rad/s].
+    void_rate : complex, optional
+        1/τ or iν of the voids [1/s]; 0 where these do not change.
+    voids : numpy.ndarray, (n, m), optional
+        Their thickness g at the beginning of the step [m]; none by default.
     """
 
     grid: Grid
@@ -56,6 +63,8 @@ class Equation:
     heights: np.ndarray
     rates: np.ndarray
     speed: float
+    void_rate: complex = 0.0
+    voids: np.ndarray | None = None
 
     def residual(
         self,
@@ -87,7 +96,7 @@ class Equation:
         """Return what the surface carries out of each volume, and what its growth takes in."""
         step, (before, after) = self.grid.step[:, None], self._carried(void)
         gain = 0.5 * self.speed * (heights[2, :, None] * after - heights[1, :, None] * before)
-        growth = step * rates[:, None] * (1.0 - void)
+        growth = step * (rates[:, None] - self.void_rate * void * heights[0, :, None])
         return self.source * self.grid.axial.weights * (gain + growth)
 
     def _carried(self, void: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -110,6 +119,9 @@ class Equation:
         load = -self._fed(nothing, self.heights, self.rates)
         if self.edge:
             load -= self._pressed(nothing, self.heights**3)
+        if self.voids is not None:
+            gone = self.grid.step[:, None] * self.void_rate * self.voids
+            load -= self.source * self.grid.axial.weights * gone
         linear = self.cavitation in CAVITATION[:2]
         empty = np.zeros(shape, dtype=bool) if empty is None or linear else empty
         for _ in range(_ITERATIONS):
@@ -134,9 +146,10 @@ class Equation:
         grid = self.grid
         size = grid.unknown.size
         band = self._band(empty).reshape(size, grid.rows).T
-        right = np.empty((size, len(loads)), order="F")
+        right = np.empty((size, len(loads)), order="F", dtype=loads.dtype)
         right[grid.unknown.ravel()] = loads.reshape(len(loads), -1).T
-        _, _, solved, info = dgbsv(grid.band, grid.band, band, right, 1, 1)
+        solver = zgbsv if np.iscomplexobj(loads) else dgbsv
+        _, _, solved, info = solver(grid.band, grid.band, band, right, 1, 1)
         if info:
             raise ArithmeticError(f"film: singular at {self.speed:g} rad/s (LAPACK's info {info})")
         return solved[grid.unknown.ravel()].T.reshape(loads.shape)
@@ -144,7 +157,7 @@ class Equation:
     def _band(self, empty: np.ndarray) -> np.ndarray:
         """Return the matrix: columns of the pressure, in empty cells of what stands for it."""
         grid, axial = self.grid, self.grid.axial
-        store = np.zeros(grid.unknown.size * grid.rows)
+        store = np.zeros(grid.unknown.size * grid.rows, dtype=np.result_type(self.void_rate, 1.0))
         own, to_left, to_right, side = self._full
         above = np.where(empty[:, 1:], 0.0, side)
         below = np.where(empty[:, :-1], 0.0, side)
@@ -177,7 +190,8 @@ class Equation:
         if self.cavitation == "reynolds":
             return -np.ones_like(weights)
         leaving = self.heights[2] if self.speed >= 0.0 else self.heights[1]
-        flow = 0.5 * abs(self.speed) * leaving + self.grid.step * self.rates
+        kept = self.grid.step * self.void_rate * self.heights[0]
+        flow = 0.5 * abs(self.speed) * leaving + kept
         return -self.source * weights * flow[:, None]
 
 
@@ -215,7 +229,9 @@ class Solution:
     def change(self, heights: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """Return the change of the bearing pressure with those of h (k, 3, n) and ∂t h (k, n).
 
-        The derivative of the discrete solution: Eq. (1), linearised, with the same cells empty.
+        The derivative of the discrete solution: Eq. (1), linearised, with the same cells empty: a
+        void takes up what the motion of its rim does to the flow. Of films that conserve mass in a
+        motion exp(iνt) where the equation's `void_rate` is iν.
         """
         equation = self.equation
         loads = [

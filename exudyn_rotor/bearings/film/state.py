@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import brentq
 
+from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Solution
+
+_WHIRLS = np.geomspace(0.05, 2.0, 24)  # ratios between which that of a limit is looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,18 +47,50 @@ class FilmState:
         supply = film.radius * film.length * film.supply_pressure * (grid.step @ grid.u[0])
         return supply + self._resultant(self.solution.bearing)
 
-    def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+    def coefficients(self, whirl_ratio: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] along n1 and n2, each (2, 2).
 
         The derivatives of the discrete film's force (Lund's perturbation): where the film is
-        broken it stays so, and the pressure at the rim of a void stays zero.
+        broken it stays so, and the pressure at the rim of a void stays zero. Voids that conserve
+        mass arrive late at the film behind them; these films have, at rest and moved by
+        ``Re x exp(iνt)``, the force ``−Re (K + iν C) x exp(iνt)``, whose K and C depend on ν.
+
+        Parameters
+        ----------
+        whirl_ratio : float, optional
+            ν over the speed, 1 for unbalance; of no influence on films that do not conserve mass.
+
+        Raises
+        ------
+        TypeError, ValueError
+            For a ratio not above zero, and for a film that conserves mass without a speed.
         """
+        checks.number(whirl_ratio, "whirl_ratio", above=0.0)
         u = np.moveaxis(self.film.grid.u, 2, 0)
+        if self.film.cavitation == "mass-conserving":
+            whirl = whirl_ratio * abs(self.speed)
+            if whirl == 0.0:
+                raise ValueError("speed: films that conserve mass have coefficients at speed alone")
+            impedance = self._gradient(-u, -1j * whirl * u[:, 0], 1j * whirl)
+            return impedance.real, impedance.imag / whirl
         still = np.zeros_like(u)
         heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
-        changes = self.solution.change(heights, rates)
-        gradient = -np.array([self._resultant(change) for change in changes]).T
+        gradient = self._gradient(heights, rates)
         return gradient[:, :2], gradient[:, 2:]
+
+    @property
+    def slow_stiffness(self) -> np.ndarray:
+        """Stiffness of a motion so slow that voids follow at once, (2, 2) [N/m]."""
+        u = np.moveaxis(self.film.grid.u, 2, 0)
+        return self._gradient(-u, np.zeros_like(u)[:, 0])
+
+    def _gradient(
+        self, heights: np.ndarray, rates: np.ndarray, void_rate: complex = 0.0
+    ) -> np.ndarray:
+        """Return −∂F by changes of h (k, 3, n) and ∂t h (k, n), in columns (2, k)."""
+        equation = replace(self.solution.equation, void_rate=void_rate, voids=None)
+        changes = replace(self.solution, equation=equation).change(heights, rates)
+        return -np.array([self._resultant(change) for change in changes]).T
 
     def _resultant(self, pressure: np.ndarray) -> np.ndarray:
         grid = self.film.grid
@@ -134,8 +170,25 @@ class FilmState:
 
         Routh–Hurwitz for M q̈ + C q̇ + K q = 0: at the limit M ν² = k with ``k = (K11 C22 +
         K22 C11 − K12 C21 − K21 C12)/(C11 + C22)``, ``ν² = ((K11 − k)(K22 − k) − K12 K21)/det C``.
+        Of films that conserve mass, ``M ν²`` is the eigenvalue of K + iν C with the least imaginary
+        part, at the lowest ν where that turns positive.
         """
+        if self.film.cavitation == "mass-conserving":
+            return self._critical_mass_with_voids()
         (k11, k12, k21, k22), (c11, c12, c21, c22) = (m.ravel() for m in self.coefficients())
         k = (k11 * c22 + k22 * c11 - k12 * c21 - k21 * c12) / (c11 + c22)
         square = ((k11 - k) * (k22 - k) - k12 * k21) / (c11 * c22 - c12 * c21)
         return float(k / square) if square > 0.0 else float("inf")
+
+    def _critical_mass_with_voids(self) -> float:
+        def least_damped(ratio: float) -> complex:
+            stiffness, damping = self.coefficients(ratio)
+            values = np.linalg.eigvals(stiffness + 1j * ratio * abs(self.speed) * damping)
+            return complex(values[np.argmin(values.imag)])
+
+        damped = [least_damped(ratio).imag for ratio in _WHIRLS]
+        for low, high, before, after in zip(_WHIRLS, _WHIRLS[1:], damped, damped[1:], strict=False):
+            if before < 0.0 <= after:
+                ratio = brentq(lambda r: least_damped(r).imag, low, high, xtol=1e-12)
+                return max(least_damped(ratio).real, 0.0) / (ratio * self.speed) ** 2
+        return float("inf")

@@ -16,6 +16,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
@@ -162,7 +163,8 @@ def _with_law(bearing: Bearing) -> Bearing:
 
 def _check_law(body: RotorBody | FullRotorBody, bearing: Bearing) -> None:
     """Refuse a bearing without a law for scenes, and one that could not brake a free spin."""
-    turns = bearing.law and bearing.law_with_torque is not None
+    remembers = isinstance(bearing, JournalBearing) and bearing.remembers
+    turns = remembers or (bearing.law and bearing.law_with_torque is not None)
     interface = body.selection.source.interfaces[bearing.interface]
     if turns and body.formulation.has_spin and interface.radius == 0.0:
         raise ValueError(

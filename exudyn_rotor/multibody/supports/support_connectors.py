@@ -19,8 +19,8 @@ import numpy as np
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
-from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.journal_bearing import JournalBearing, TangentFilm
+from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw, TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
@@ -31,9 +31,11 @@ NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
 _KINDS = exudyn.OutputVariableType
+_START = exudyn.ConfigurationType.StartOfStep
 _BRAKING = "springForceTorqueUserFunction"
 Numbers = Sequence[float]
 SpinReader = Callable[[exudyn.MainSystem], tuple[float, float]]
+Beginning = Callable[[exudyn.MainSystem, float, int], None]
 
 
 # ------------------------------------------------------------------ displacements
@@ -142,12 +144,19 @@ def _bearing_function(
     body: RotorItems, bearing: Bearing | TangentFilm, axes: np.ndarray, spin: SpinReader
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
-    if body.formulation.has_spin and bearing.law_with_torque is not None:
-        return _BRAKING, _braking_function(bearing, spin)
-    law = bearing.law
+    brakes, begin = body.formulation.has_spin, _no_memory
+    if isinstance(bearing, JournalBearing) and bearing.remembers:
+        law = RememberingLaw(bearing.film, torque=brakes)
+        begin = _beginning(body, law, axes)
+    else:
+        brakes = brakes and bearing.law_with_torque is not None
+        law = bearing.law_with_torque if brakes else bearing.law
+    if brakes:
+        return _BRAKING, _braking_function(law, spin, begin)
     (a, d), (b, e), (c, f) = axes[:, :2].tolist()
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
+        begin(mbs, t, item)
         x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
         vx, vy = a * v[0] + b * v[1] + c * v[2], d * v[0] + e * v[1] + f * v[2]
         fx, fy = law(x, y, vx, vy, *spin(mbs))
@@ -156,15 +165,43 @@ def _bearing_function(
     return "springForceUserFunction", force
 
 
-def _braking_function(bearing: Bearing | TangentFilm, spin: SpinReader) -> Callable:
+def _braking_function(law: LawWithTorque, spin: SpinReader, begin: Beginning) -> Callable:
     """Return force and torque, in the axes of the connector's base."""
-    law = bearing.law_with_torque
 
     def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
+        begin(mbs, t, item)
         fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
         return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
 
     return force
+
+
+def _no_memory(mbs: exudyn.MainSystem, t: float, item: int) -> None:
+    """Tell nothing to a law of place and velocity."""
+
+
+def _beginning(body: RotorItems, law: RememberingLaw, axes: np.ndarray) -> Beginning:
+    """Return what tells a film with a memory where the step of an evaluation begins.
+
+    Exudyn repeats steps and evaluates forces at trial states; the configuration of the beginning of
+    the step alone holds what has been accepted.
+    """
+    across, spin, begun = axes[:, :2], _spin_reader(body, _START), []
+
+    def begin(mbs: exudyn.MainSystem, t: float, item: int) -> None:
+        time = mbs.systemData.GetTime(_START)
+        if begun == [time, t]:
+            return
+        begun[:] = time, t
+        markers = mbs.GetObject(item)["markerNumbers"]
+        (p0, p1), (v0, v1) = (
+            [mbs.GetMarkerOutput(each, kind, _START) for each in markers]
+            for kind in (_KINDS.Position, _KINDS.Velocity)
+        )
+        place, rate = ((b - a) @ across for a, b in ((p0, p1), (v0, v1)))
+        law.begin(time, *place.tolist(), *rate.tolist(), spin(mbs)[1], t)
+
+    return begin
 
 
 # ------------------------------------------------------------------ tilts
@@ -259,14 +296,17 @@ def _start_speed(body: RotorItems) -> float:
     return body.plan.setup.placement.speed
 
 
-def _spin_reader(body: RotorItems) -> SpinReader:
+def _spin_reader(
+    body: RotorItems, state: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
+) -> SpinReader:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
     node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
     angles, rates = _KINDS.Coordinates, _KINDS.Coordinates_t
 
     def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
         read = mbs.GetNodeOutput
-        return sign * float(read(node, angles)[place]), sign * float(read(node, rates)[place])
+        angle, rate = (float(read(node, kind, state)[place]) for kind in (angles, rates))
+        return sign * angle, sign * rate
 
     return spin
 
