@@ -21,6 +21,7 @@ Item, Result = TypeVar("Item"), TypeVar("Result")
 _HERE = local()  # of each thread
 
 _WORTH = 30_000  # entries of matrices from which on their eigenproblems are shared out
+_PARTS = 4  # for each thread, as not all of them begin at once
 
 
 @cache
@@ -108,6 +109,26 @@ def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Re
     return results
 
 
+def in_turns(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """Return what :func:`shared` does, of a function that mostly runs in Python.
+
+    One thread at a time does; others solve their eigenproblems by :func:`eig` meanwhile, which must
+    not stand in a ``cached_property``: Python 3.11 has one lock for all objects. If all ran in
+    Python, they would wait for one another at every call of numpy.
+    """
+    turn = Lock()
+
+    def work(item: Item) -> Result:
+        with turn:
+            _HERE.turn = turn
+            try:
+                return function(item)
+            finally:
+                del _HERE.turn
+
+    return shared(work, items)
+
+
 @contextmanager
 def meanwhile(
     function: Callable[..., Result], *arguments: object
@@ -133,8 +154,15 @@ def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     As many as BLAS may use. Each problem is one thread's, so that their number changes no digit.
     """
     with one_thread() as count:
+        turn = getattr(_HERE, "turn", None)
+        if turn is not None:
+            turn.release()
+            try:
+                return np.linalg.eig(matrices)
+            finally:
+                turn.acquire()
         if matrices.ndim < 3 or matrices.size < _WORTH or count == 1:
             return np.linalg.eig(matrices)
-        found = shared(np.linalg.eig, np.array_split(matrices, count))
+        found = shared(np.linalg.eig, np.array_split(matrices, _PARTS * count))
     values, vectors = zip(*found, strict=True)
     return np.concatenate(values), np.concatenate(vectors)

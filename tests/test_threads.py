@@ -1,14 +1,14 @@
 """One thread of BLAS for small dense problems."""
 
 from concurrent.futures import ThreadPoolExecutor
-from threading import Barrier, get_ident
+from threading import Barrier, Event, get_ident
 
 import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
 from exudyn_rotor.sweep import sweep
-from exudyn_rotor.threads import eig, meanwhile, one_thread, shared
+from exudyn_rotor.threads import eig, in_turns, meanwhile, one_thread, shared
 
 
 def counts(_value: float = 0.0) -> set[int]:
@@ -56,7 +56,7 @@ def test_eigenproblems_are_shared_out_and_the_same_to_the_digit(monkeypatch):
     with one_thread():
         eig(matrices)
     eig(matrices[0])
-    assert sorted(lengths) == [4, 4, 5, 5, 60]
+    assert sorted(lengths) == [1] * 14 + [2] * 2 + [60]
 
 
 @pytest.mark.usefixtures("two_threads")
@@ -73,6 +73,27 @@ def test_shared_work_is_done_in_order_by_two_threads_at_once():
     assert counts() == {2}
     with pytest.raises(ZeroDivisionError):
         shared(lambda number: 1 / number, [1, 0, 2, 0])
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_one_thread_at_a_time_runs_but_for_eigenproblems(monkeypatch):
+    other_ran, inside = Event(), []
+    monkeypatch.setattr(np.linalg, "eig", lambda matrix: other_ran.wait(20.0) or 1 / 0)
+
+    def done(number: int) -> int:
+        inside.append(number)
+        assert len(inside) == 1
+        if number == 0:
+            inside.remove(0)
+            eig(np.eye(2))
+            inside.append(0)
+        else:
+            other_ran.set()
+        inside.remove(number)
+        return number
+
+    assert in_turns(done, range(6)) == list(range(6))
+    assert other_ran.is_set()
 
 
 @pytest.mark.parametrize("threads", [1, 2])

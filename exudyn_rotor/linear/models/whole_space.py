@@ -17,7 +17,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import (
 )
 from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
-from exudyn_rotor.threads import shared
+from exudyn_rotor.threads import in_turns
 
 _MOST_ENTRIES = 250_000  # of matrices of speeds that are solved at once
 
@@ -110,7 +110,7 @@ class WholeSpace:
         modes = self.constant_modes(speeds)
         if modes is not None:
             return modes
-        return shared(
+        return in_turns(
             partial(floquet_modes, tolerance=tolerance), [self.at(speed) for speed in speeds]
         )
 

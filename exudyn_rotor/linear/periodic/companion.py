@@ -41,6 +41,8 @@ class Companion:
         Largest frequency [1/s].
     rounding : float
         Relative error of the entries of D and K.
+    found, z : ndarray, shapes (…, 2k), (…, 2k, 2k)
+        Eigenvalues, and vectors z as columns of unit length.
     """
 
     A: np.ndarray
@@ -49,6 +51,8 @@ class Companion:
     noises: np.ndarray
     scale: np.ndarray
     rounding: float
+    found: np.ndarray
+    z: np.ndarray
 
     @classmethod
     def of(
@@ -100,17 +104,12 @@ class Companion:
         # in one matrix with K₊
         stored = np.where(np.any(circulatory, axis=(-2, -1)), noise, 0.0) / (4.0 * size)
         noises = np.stack([noise, _rounding(D, inverse.T, rounding), stored])
-        return cls(A, axes, sizes, noises, scale, rounding)
-
-    @cached_property
-    def _solved(self) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues, and vectors z as columns of unit length."""
-        return eig(self.A)
+        return cls(A, axes, sizes, noises, scale, rounding, *eig(A))
 
     @cached_property
     def _left(self) -> np.ndarray:
         """Left eigenvectors as rows."""
-        values, z = self._solved
+        values, z = self.found, self.z
         sense = np.sign(values.imag)[..., None]
         # real and imaginary parts of conjugate pairs, which stand side by side, +i first
         rows = _inverse(np.where(_transposed(sense) < 0.0, -z.imag, z.real))
@@ -123,14 +122,14 @@ class Companion:
     @cached_property
     def _amounts(self) -> np.ndarray:
         """Coordinates q of the vectors, from both halves by least squares, shape (…, k, 2k)."""
-        values, z = self._solved
+        values, z = self.found, self.z
         values, sizes, count = values[..., None, :], self.sizes[..., None], self.sizes.shape[-1]
         squared = sizes**2 + np.abs(values) ** 2
         return (sizes * z[..., :count, :] + values.conj() * z[..., count:, :]) / squared
 
     def values(self) -> np.ndarray:
         """Return all 2k eigenvalues."""
-        return self._solved[0]
+        return self.found
 
     def modes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return all 2k eigenvalues, and vectors (x, λx/s) of unit length, s the scale."""
@@ -157,7 +156,7 @@ class Companion:
         copies of an eigenvalue have one vector, as those of a free motion, the first order has no
         end; a double one moves by no more than the root of ``‖A‖‖E‖``.
         """
-        z, left, count = self._solved[1], self._left, self.sizes.shape[-1]
+        z, left, count = self.z, self._left, self.sizes.shape[-1]
         most, amounts = np.linalg.norm(self.A, axis=(-2, -1))[..., None], self._amounts
         stiff, damped, stored = self.noises[..., None]
         with np.errstate(over="ignore"):  # of left vectors of a defective eigenvalue

@@ -25,11 +25,6 @@ _PARALLEL = 1e-4
 _NULL, _STILL_NULL = 1e-12, 1e-14
 
 
-def _within(lower: np.ndarray, X: np.ndarray) -> np.ndarray:
-    """Return ``L⁻¹ X L⁻ᵀ``."""
-    return la.solve_triangular(lower, la.solve_triangular(lower, X, lower=True).T, lower=True).T
-
-
 def resolved(values: np.ndarray, errors: np.ndarray) -> np.ndarray:
     """Return eigenvalues with zero for those that rounding may have made of it."""
     return np.where(np.abs(values) <= errors, 0.0, values)
@@ -168,12 +163,12 @@ def free_motions(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndar
     count = otherwise.shape[1]
     if count < 2:
         return otherwise
-    lower = la.cholesky(M, lower=True)
-    per_mass = np.vstack([_within(lower, each) for each in np.reshape(K, (-1, *M.shape))])
-    _, lengths, rows = la.svd(per_mass, full_matrices=False)
+    inverse = la.solve_triangular(la.cholesky(M, lower=True), np.eye(len(M)), lower=True)
+    per_mass = inverse @ np.reshape(K, (-1, *M.shape)) @ inverse.T
+    _, lengths, rows = la.svd(per_mass.reshape(-1, len(M)), full_matrices=False)
     if lengths[-count] > _NULL * lengths[0]:
         return otherwise
-    vectors = la.solve_triangular(lower.T, rows[-count:].conj().T, lower=False)
+    vectors = inverse.T @ rows[-count:].conj().T
     return vectors / np.linalg.norm(vectors, axis=0)
 
 
