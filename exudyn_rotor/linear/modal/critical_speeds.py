@@ -6,7 +6,7 @@ The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -245,8 +245,7 @@ def critical_speeds_of(
         errors = np.full(len(critical), np.nan)
         count = len(critical) if max_speed is not None else JUDGED
         errors[:count] = basis.critical_errors([entry.motions for entry in critical[:count]])
-    collected = _collected(critical, content, order, model.size)
-    return replace(collected, basis_errors=errors, stiffening=model.stiffening)
+    return _collected(critical, content, order, model, errors)
 
 
 def checked(
@@ -270,7 +269,11 @@ def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
 
 
 def _collected(
-    critical: list[Resonance], content: WhirlContent, order: float, size: int
+    critical: list[Resonance],
+    content: WhirlContent,
+    order: float,
+    model: LinearModel,
+    basis_errors: np.ndarray | None,
 ) -> CriticalSpeeds:
     count = len(critical)
     speeds = np.array([entry.speed for entry in critical])
@@ -294,6 +297,8 @@ def _collected(
         frequencies_rotor=np.array(rates) * speeds,
         whirl=tuple(WHIRLS[code] for code in codes),
         nodal_diameters=diameters,
-        vectors=np.array(shapes, dtype=complex).reshape(-1, size).T,
+        vectors=np.array(shapes, dtype=complex).reshape(-1, model.size).T,
+        stiffening=model.stiffening,
         splits=np.array([entry.split for entry in critical]),
+        basis_errors=basis_errors,
     )

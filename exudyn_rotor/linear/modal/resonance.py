@@ -305,26 +305,37 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
     """
     joined: list[Resonance] = []
     taken: set[int] = set()
+    pairs = _pairs(critical, content)
     for index, entry in enumerate(critical):
         if index in taken:
             continue
-        for other in range(index + 1, len(critical)):
-            upper = critical[other]
-            if upper.speed > (1.0 + PAIR) * entry.speed:
-                break
-            if other not in taken and _is_pair(entry, upper, content):
-                taken.add(other)
-                entry = replace(entry, upper=upper)
-                break
+        other = next((j for i, j in pairs if i == index and j not in taken), None)
+        if other is not None:
+            taken.add(other)
+            entry = replace(entry, upper=critical[other])
         joined.append(entry)
     return joined
 
 
-def _is_pair(entry: Resonance, other: Resonance, content: WhirlContent) -> bool:
-    if 0.0 not in entry.multiples or not np.array_equal(entry.multiples, other.multiples):
-        return False
-    vectors = entry.vectors[:, :, None], other.vectors[:, :, None]
-    return bool(content.turn_both_ways(*vectors, entry.multiples)[0])
+def _pairs(critical: list[Resonance], content: WhirlContent) -> list[tuple[int, int]]:
+    """Return which of them are close and pairs, each the lower one first, ascending."""
+    alike: dict[bytes, list[tuple[int, int]]] = {}
+    for index, entry in enumerate(critical):
+        for other in range(index + 1, len(critical)):
+            upper = critical[other]
+            if upper.speed > (1.0 + PAIR) * entry.speed:
+                break
+            if 0.0 in entry.multiples and np.array_equal(entry.multiples, upper.multiples):
+                alike.setdefault(entry.multiples.tobytes(), []).append((index, other))
+    result = []
+    for close in alike.values():
+        lower, upper = (
+            np.stack([critical[i].vectors for i in side], axis=2)
+            for side in zip(*close, strict=True)
+        )
+        turning = content.turn_both_ways(lower, upper, critical[close[0][0]].multiples)
+        result += [pair for pair, turns in zip(close, turning, strict=True) if turns]
+    return sorted(result)
 
 
 def _needed(limit: float | None, what: str) -> float:

@@ -111,7 +111,7 @@ class Spin:
             turns and _couples(each, u, invariants.mass)
             for each, turns, u in zip(probed, turning, at_arm, strict=True)
         )
-        twisted = any(np.any(K[5]) for each in probed for K in each)
+        twisted = any(np.any(np.array(each)[:, 5]) for each in probed)
         unmoved = np.zeros(6)
         shifts = tuple(unmoved if coupled else np.r_[-u[:3], 0.0, 0.0, 0.0] for u in turned)
         bends = tuple(u[5] * np.array([-u[1], u[0], 0.0]) for u in turned)
@@ -158,7 +158,8 @@ def _held_off_center(
 ) -> bool:
     """Return True if springs that stand still hold the spin by their distance from each other."""
     moved = np.array(turned)
-    for index in range(len(_PROBED)):
+    varies = any(each[0] is not each[-1] for each in stiffnesses)
+    for index in range(len(_PROBED) if varies else 1):
         # what repels, as a seal at high speed, holds nothing
         k = np.array([max(0.5 * np.trace(each[index][:2, :2]), 0.0) for each in stiffnesses])
         if np.any(k > 0.0):
