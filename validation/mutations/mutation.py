@@ -20,7 +20,8 @@ class Mutation:
     old, new : str
         Text that stands there exactly once, and what takes its place.
     tests : tuple of str
-        Tests that must fail, narrow ones first: files or single tests, relative to ``tests``.
+        Tests that must fail, narrow ones first: files or single tests, relative to ``tests``, of
+        some parameters where ``[…]`` follows.
     why : str
         What is wrong about it.
     """

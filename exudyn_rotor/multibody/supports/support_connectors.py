@@ -7,6 +7,11 @@ node of the frame. Native tilt damping would act on Exudyn's angular velocity of
 spinning rotor with the tilt φ, on a base with the tilt β, it is not the rate of their difference ψ:
 ``ω = ψ̇ − Ω e × ψ − Ω e × φ`` in axes of the base, the last term because Exudyn gives the marker's
 local angular velocity in axes of the frame.
+
+The moment across the axis, m, of a support that stands still has none about the shaft's own axis,
+``e + ψ × e``, so that it has the part ``m · (e × ψ)`` about e. Without it springs that are not
+alike in all directions, and dampers, would drive a free spin: the work of m on Exudyn's angular
+velocity is ``m · (ψ̇ − Ω e × ψ)``.
 """
 
 from __future__ import annotations
@@ -223,13 +228,13 @@ def tilt_connector(
         tilt_of_base = None if seat.base is None else _tilt_reader(base, seat.axes)
         item.springForceTorqueUserFunction = _varying_torque(body, support, tilt_of_base)
         return mbs.AddObject(item), PYTHON
-    if not np.any(D):
+    if not np.any(D) and np.array_equal(K[:2, :2], K[0, 0] * np.eye(2)):
         item.stiffness = np.kron(np.diag([0.0, 1.0]), K)
         return mbs.AddObject(item), NATIVE
 
     def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
-        rate = _tilt_rate(angles, omega)
-        values = _sum(_times(K, angles), _times(D, rate))
+        a, b, about = _sum(_times(K, angles), _times(D, _tilt_rate(angles, omega)))
+        values = [a, b, about + b * angles[0] - a * angles[1]]
         return exudyn.symbolic.Vector([0.0, 0.0, 0.0, *values])
 
     item.springForceTorqueUserFunction = symbolic_function(
@@ -253,7 +258,9 @@ def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable |
         twist = (angles[2] - angle + np.pi) % (2.0 * np.pi) - np.pi
         tilt = np.array([angles[0], angles[1], twist])
         if not turns:
-            return [0.0, 0.0, 0.0, *(K @ tilt + D @ rate).tolist()]
+            moment = K @ tilt + D @ rate
+            moment[2] += moment[1] * tilt[0] - moment[0] * tilt[1]
+            return [0.0, 0.0, 0.0, *moment.tolist()]
         R = axial_rotation(angle)
         tilt, rate = tilt @ R, rate @ R
         rate -= speed * np.array([-tilt[1], tilt[0], 1.0])

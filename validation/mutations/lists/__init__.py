@@ -3,6 +3,7 @@
 from validation.mutations.lists.advice import ADVICE
 from validation.mutations.lists.bearings import BEARINGS
 from validation.mutations.lists.drives import DRIVES
+from validation.mutations.lists.energy import ENERGY
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
@@ -29,6 +30,7 @@ ALL = (
     *DRIVES,
     *FOUNDATIONS,
     *MULTIBODY,
+    *ENERGY,
     *LINEAR_MODELS,
     *LINEAR_PERIODIC,
     *LINEAR,
