@@ -198,6 +198,41 @@ def someya() -> list[str]:
     return lines
 
 
+def lobed_cases() -> list[tuple[str, OilFilm, np.ndarray]]:
+    """Return Someya's tables of two lobes: what each is of, the film, the rows."""
+    options = {"width": 10.0, "nodes": 240, "axial_nodes": 12}
+    short, long = film_tables.SOMEYA_ELLIPTICAL_SHORT, film_tables.SOMEYA_ELLIPTICAL
+    return [
+        ("L/D = 0.5", film(preload=0.5, **options), rows(short)),
+        ("L/D = 1", film(2.0 * RADIUS, preload=2.0 / 3.0, **options), rows(long)),
+    ]
+
+
+def lobed() -> list[str]:
+    """Return Someya's rows of two lobes beside ours, coefficients in parts of the largest entry.
+
+    C11/S of his is one number near the middle, where a film is linear.
+    """
+    lines = [
+        "two lobes     S        ε: table  here   attitude      flow          K       C    his C11/S"
+    ]
+    for title, bearing, table in lobed_cases():
+        for row in table:
+            state = carried(bearing, row[0])
+            worst = [
+                np.abs(a - b).max() / np.abs(b).max()
+                for a, b in zip(coefficients(state), (row[5:9], row[9:]), strict=True)
+            ]
+            unit = CLEARANCE * RADIUS * state.speed * bearing.length
+            lines.append(
+                f"{title:9} {row[0]:8.4f} {row[1]:8.4f} {state.eccentricity_ratio:7.4f} "
+                f"{row[2]:6.1f} {np.degrees(state.attitude):5.1f} {row[3]:7.3f} "
+                f"{state.side_flow / unit:6.3f} {worst[0]:8.1%} {worst[1]:7.1%} "
+                f"{row[9] / row[0]:9.1f}"
+            )
+    return lines
+
+
 def ross_cases() -> list[dict]:
     """Return ROSS's cases; its perturbation's k_yx and k_yy times √2 (see above)."""
     cases = json.loads(Path(__file__).with_name("film_ross.json").read_text())
@@ -276,7 +311,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Print all tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.parse_args(arguments)
-    for table in (closed_forms, lund, someya, ross, grids):
+    for table in (closed_forms, lund, someya, lobed, ross, grids):
         print("\n".join([*table(), ""]))
     return 0
 
