@@ -94,8 +94,9 @@ def test_run_up_by_a_torque(reduced, translation):
         errors.append(np.abs(balance.error).max())
     assert balance.kinetic[-1] > 50.0
     assert np.ptp(balance.weight) > 0.5
-    # the trapezoidal rule of the bearings' dampers, O(h²)
-    assert balance.loads[-1] == pytest.approx(work_of_supports(found, TORQUE), rel=1e-3)
+    # by the trapezoidal rule of the bearings' dampers; without the rotor's own it is off by that
+    work = work_of_supports(found, TORQUE)
+    assert balance.loads[-1] == pytest.approx(work, abs=0.02 * balance.damping[-1])
     assert balance.damping[-1] > 10.0 * errors[1]
     assert not np.any(balance.drive)
     assert errors[0] < 1e-3 * balance.kinetic[-1]

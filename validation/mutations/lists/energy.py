@@ -63,7 +63,7 @@ _OF_KINDS = (
     (
         "finite-film",
         "bearings/film/reynolds.py",
-        ("squeeze sucks", "growth = step * rates", "growth = -step * rates"),
+        ("squeeze dropped", "(gain + growth)", "(gain + 0.0 * growth)"),
     ),
     (
         "pads",
@@ -74,11 +74,6 @@ _OF_KINDS = (
             "bearing.pad_inertia * np.eye",
             "2.0 * bearing.pad_inertia * np.eye",
         ),
-    ),
-    (
-        "pads",
-        "bearings/tilting_pad.py",
-        ("pivots in the middle", "pad.start + self.pivot * pad.arc", "pad.start + 0.5 * pad.arc"),
     ),
     (
         "stop",
@@ -95,7 +90,7 @@ _OF_KINDS = (
     (
         "magnets",
         "bearings/pid_controller.py",
-        ("derivative dropped", "[0.0, P / w_a - D]", "[0.0, P / w_a]"),
+        ("derivative reversed", "[0.0, P / w_a - D]", "[0.0, P / w_a + D]"),
     ),
     (
         "magnets",
