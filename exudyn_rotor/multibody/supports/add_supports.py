@@ -109,8 +109,8 @@ def add_supports(
     About the spin axis, a damper that stands still brakes the whole spin; a spring, and a damper in
     the rotor's frame, act on the interface's rotation against the frame, so that they need a
     prescribed spin. Supports in the rotor's frame stand on something that turns with the frame and
-    is driven there: its reaction does not act on a free spin. Springs and dampers against tilts that
-    stand still have no moment about the shaft's own axis, whatever its tilt.
+    is driven there: its reaction does not act on a free spin. Those that stand still and act
+    against tilts have no moment about the shaft's own axis, whatever its tilt.
 
     The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
     torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
