@@ -4,13 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from asymmetric import asymmetric_shaft
+from scipy.optimize import linear_sum_assignment
 
+from exudyn_rotor import Support, linear_model
 from exudyn_rotor.linear.stability import thresholds
-from exudyn_rotor.linear.stability.growth import Growth
+from exudyn_rotor.linear.stability.growth import Growth, GrowthAt
 from exudyn_rotor.linear.stability.threshold_search import Search
 
 
-class Given:
+class Given(thresholds._Made):
     """Growth of one motion, a function of the parameter; counts its calls."""
 
     def __init__(self, real: Callable[[float], float]) -> None:
@@ -73,3 +76,20 @@ def test_a_narrow_range_of_a_finer_model_is_found(monkeypatch, onset, distance):
     search.at(0.0), search.at(1.0)
     found = thresholds._searched_again(search, 0.5, onset)
     assert found == pytest.approx(distance, abs=2e-6)
+
+
+@pytest.mark.parametrize("speed", [40.0, 150.0, 310.0])
+def test_rates_of_periodic_exponents_are_those_of_a_second_growth(speed):
+    """By inverse iterations, as by central differences of the exponents; of the folded copies."""
+    over = np.array([0.0, 500.0])
+    uneven = np.array([[[2e6, 1e5], [-5e4, 1e6]], [[3e6, 1e5], [-5e4, 1.2e6]]])
+    held = [Support(name, (over, uneven), 300.0) for name in ("left", "right")]
+    space = linear_model(asymmetric_shaft(), supports=held).space(0, 500.0, held=True)
+    growth, step = GrowthAt(space, "auto", 1e-11, keeps=True), 1e-3
+    low, here, high = (growth(speed + sign * step) for sign in (-1.0, 0.0, 1.0))
+    columns = [linear_sum_assignment(np.abs(here.values[:, None] - one.values))[1]
+               for one in (low, high)]  # fmt: skip
+    expected = (high.values[columns[1]] - low.values[columns[0]]) / (2.0 * step)
+    rates = growth.rates(here, speed, step)
+    assert np.abs(rates).max() > 1.0
+    np.testing.assert_allclose(rates, expected, atol=1e-4)

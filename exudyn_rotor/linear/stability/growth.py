@@ -16,8 +16,10 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_structural_damping,
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.exponents import METHODS, descending
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.inverse_iteration import moved
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.threads import one_thread
 
@@ -31,7 +33,7 @@ class Growth(NamedTuple):
 
     `bounds` (n,) are real parts that rounding and truncation can feign [1/s]; `names` are inertial
     frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty. `critical` is the
-    least stable motion, None by Floquet's method.
+    least stable motion, None by Floquet's method; `motions` are all, where they are kept.
     """
 
     values: np.ndarray
@@ -39,6 +41,7 @@ class Growth(NamedTuple):
     base: float
     names: tuple[np.ndarray, ...]
     critical: FloquetModes | None = None
+    motions: FloquetModes | None = None
 
     @property
     def excess(self) -> float:
@@ -60,18 +63,45 @@ class Growth(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class GrowthAt:
-    """Growth at a speed; picklable where the space is. Without `content` it has no names."""
+    """Growth at a speed; picklable where the space is. Without `content` it has no names.
+
+    Periodic motions are kept if `keeps`, for :meth:`rates`.
+    """
 
     space: Space
     method: str
     tolerance: float
     content: WhirlContent | None = None
+    keeps: bool = False
 
     @one_thread()
     def __call__(self, speed: float) -> Growth:
         shapes = self.content is not None
         modes, system = self.space.motions(speed, self.method, self.tolerance, shapes)
-        return growth_of(modes, system, self.content)
+        growth = growth_of(modes, system, self.content)
+        if not self.keeps or len(modes.orders) == 1:
+            return growth
+        order = descending(fold(modes.values, growth.base))
+        return growth._replace(motions=modes.columns(order))
+
+    @one_thread()
+    def rates(self, growth: Growth, speed: float, step: float) -> np.ndarray | None:
+        """Return the change of periodic exponents per unit of the speed; None where not known.
+
+        By inverse iterations at the speed and a step beside it, which cost less than the exponents.
+        """
+        modes = growth.motions
+        if modes is None or not isinstance(self.space, WholeSpace):
+            return None
+        others, shapes = self.space.others, modes.vectors
+        shapes = shapes if others is None else others.T @ shapes
+        systems = (self.space.at(value) for value in (speed, speed + step))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            here, beside = (moved(each, modes.orders, modes.values, shapes)[0] for each in systems)
+        rates = np.where(modes.values == 0.0, 0.0, (beside - here) / step)
+        # folded ones are other copies, which are off by a multiple of the speed
+        rates = rates - 1j * (modes.values - growth.values).imag / speed
+        return rates if np.all(np.isfinite(rates)) else None
 
 
 def growth_of(

@@ -16,6 +16,8 @@ from exudyn_rotor.linear.stability.growth import Growth
 ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
 # motions that decay faster than this share of |λ| or Ω are not led into instability by another
 _DAMPED = 0.05
+# times which a damped motion may rise between two samples as its tangents tell
+_STEEPER = 10.0
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
 # share of the last change of a root that the next one is where secants meet
 _MEETS = 0.2
@@ -28,6 +30,9 @@ class Made(Protocol):
 
     def growth(self, value: float) -> Growth:
         """Return the growth at a value of the parameter."""
+
+    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
+        """Return the change of the exponents at a value; None where a second growth tells it."""
 
 
 @dataclass(eq=False)
@@ -106,10 +111,19 @@ class Search:
     def rate(self, value: float, step: float) -> np.ndarray:
         """Return the change of all exponents per unit of the parameter."""
         if value not in self.rates:
-            here, beside = self.at(value), self.made.growth(value + step)
-            near = _nearest(beside.values, here.values, here.base)
-            self.rates[value] = fold(near - here.values, here.base) / step
+            here = self.at(value)
+            known = self.made.rates(here, value, step)
+            self.rates[value] = self._differences(here, value, step) if known is None else known
         return self.rates[value]
+
+    def _differences(self, here: Growth, value: float, step: float) -> np.ndarray:
+        """Return the changes to a second growth; none of exponents that are rounding."""
+        told = here.bounds <= _NOISE * np.maximum(np.abs(here.values), here.base)
+        told |= here.base == 0.0
+        near = _nearest(self.made.growth(value + step).values, here.values[told], here.base)
+        rates = np.zeros_like(here.values)
+        rates[told] = fold(near - here.values[told], here.base) / step
+        return rates
 
     def refine(self) -> None:
         """Look between the samples for ranges of the other verdict."""
@@ -191,9 +205,7 @@ class _Piece:
     def crossings(self) -> Iterator[tuple[float, np.ndarray]]:
         """Yield where frequencies of lightly damped motions meet, and both exponents there."""
         size = np.abs(self.ends).max(initial=0.0)
-        limit = -_DAMPED * np.maximum(np.abs(self.ends[0]), 1e-3 * size)
-        light = np.flatnonzero((self.ends[0].real > limit) & (self.ends[1].real > limit))
-        for pair in combinations(light, 2):
+        for pair in combinations(np.flatnonzero(self._light), 2):
             columns = list(pair)
             if self.ends[0, columns].imag.sum() < -1e-6 * size:  # the conjugates of another pair
                 continue
@@ -205,11 +217,24 @@ class _Piece:
                 here = self.ends[0, columns] + share * change
                 yield self.low + share * (self.high - self.low), here
 
+    @property
+    def _light(self) -> np.ndarray:
+        """Which motions are lightly damped at both ends."""
+        size = np.abs(self.ends).max(initial=0.0)
+        limit = -_DAMPED * np.maximum(np.abs(self.ends[0]), 1e-3 * size)
+        return np.all(self.ends.real > limit, axis=0)
+
     def peaks(self) -> np.ndarray:
-        """Return motions whose real part may have a peak between."""
+        """Return motions whose real part may have a peak between, up to zero, one of each pair.
+
+        What lifts a damped motion acts over a width of the order of its decay, so that tangents
+        tell it; a light one may meet another anywhere between.
+        """
         rise, fall = self.rates.real * (self.high - self.low)
         noise = _NOISE * np.maximum(np.abs(self.ends[0]), np.abs(self.ends[1]))
-        return np.flatnonzero((rise > noise) & (fall < -noise))
+        reaches = self.ends.real.max(axis=0) + _STEEPER * np.maximum(rise, -fall) > 0.0
+        wanted = (rise > noise) & (fall < -noise) & (self._light | reaches)
+        return np.flatnonzero(wanted & (self.ends[0].imag >= 0.0))
 
     def real_part(self, branch: int) -> Callable[[Growth, float], float]:
         """Return minus the real part of a motion between as a function, for a search."""

@@ -302,6 +302,10 @@ class _Made:
         """Return the growth, with the names of the motions if asked for."""
         raise NotImplementedError
 
+    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
+        """Return None: a second growth tells the rates of exponents."""
+        return None
+
     def basis(self, value: float) -> tuple[BasisError, float]:
         """Return the check of the basis, and the spin speed."""
         raise NotImplementedError
@@ -322,7 +326,8 @@ class _OverSpeed(_Made):
         space = held_space(model, highest, chosen.modes, chosen.residual)
         parts = space, chosen.method, chosen.tolerance
         checked = BasisError.of(model, chosen.accuracy, held=True)
-        return cls(GrowthAt(*parts), GrowthAt(*parts, WhirlContent.of(model)), checked)
+        named = GrowthAt(*parts, WhirlContent.of(model), keeps=True)
+        return cls(GrowthAt(*parts, keeps=True), named, checked)
 
     @property
     def accuracy(self) -> float | None:
@@ -335,12 +340,15 @@ class _OverSpeed(_Made):
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)
 
+    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
+        return self.task.rates(growth, value, step)
+
     def basis(self, value: float) -> tuple[BasisError, float]:
         return self.checked, value
 
 
 @dataclass(frozen=True, eq=False)
-class _Finer:
+class _Finer(_Made):
     """Growth with the shapes that the basis of a reduced rotor lacks first."""
 
     made: _Made

@@ -309,6 +309,15 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/stability/growth.py",
+        "test_threshold_search.py",
+        (
+            "rates of other copies",
+            "- 1j * (modes.values - growth.values).imag / speed",
+            "- 0.0j * (modes.values - growth.values).imag / speed",
+        ),
+    ),
+    *mutations(
         "linear/stability/threshold_search.py",
         "test_threshold_search.py",
         (
