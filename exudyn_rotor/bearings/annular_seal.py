@@ -195,6 +195,9 @@ class AnnularSeal(Bearing):
             checks.vector(load, "load", "N", size=2)
         return np.zeros(2)
 
+    def _gap(self, direction: np.ndarray) -> float:
+        return self.clearance
+
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:

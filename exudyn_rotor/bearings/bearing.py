@@ -111,6 +111,10 @@ class Bearing(LoadedBearing):
         """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
         return inf
 
+    def _gap(self, direction: np.ndarray) -> float:
+        """Return how far that way, of length 1 (2,), the journal may go until it touches [m]."""
+        return inf
+
     @abstractmethod
     def _law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float

@@ -73,7 +73,10 @@ class JournalBearing(Bearing):
         return self.film.cavitation == "mass-conserving"
 
     def _reach(self, direction: np.ndarray) -> float:
-        return self.film._reach(direction)
+        return self.film._reach(direction, self.film.thinnest)
+
+    def _gap(self, direction: np.ndarray) -> float:
+        return self.film._reach(direction, 0.0)
 
     @property
     def _law(self) -> Law:
@@ -218,7 +221,7 @@ class FilmLaw:
         distance = hypot(x, y)
         if distance <= self._most:
             return self._most
-        return self._film._reach(np.array([x, y]) / distance)
+        return self._film._reach(np.array([x, y]) / distance, self._film.thinnest)
 
     def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
         state = self._film._state(place, rate, speed, self._empty)

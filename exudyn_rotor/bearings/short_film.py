@@ -85,6 +85,9 @@ class ShortFilmBearing(Bearing):
     def _reach(self, direction: np.ndarray) -> float:
         return THINNEST * self.clearance
 
+    def _gap(self, direction: np.ndarray) -> float:
+        return self.clearance
+
     def _checked_film(
         self, displacement: ArrayLike, velocity: ArrayLike, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:

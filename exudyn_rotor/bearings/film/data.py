@@ -64,10 +64,10 @@ class FilmData:
         """Thickness of the thinnest film that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
 
-    def _reach(self, direction: np.ndarray) -> float:
-        """Return how far the journal may go that way, of length 1 (2,), the film resolved [m]."""
+    def _reach(self, direction: np.ndarray, thinnest: float) -> float:
+        """Return how far the journal may go that way, of length 1 (2,), to a thickness [m]."""
         closing = (self.grid.u @ direction).ravel()
-        room = (self.grid.offset - self.thinnest).ravel()
+        room = (self.grid.offset - thinnest).ravel()
         near = closing > 0.0
         return float(np.min(room[near] / closing[near], initial=np.inf))
 

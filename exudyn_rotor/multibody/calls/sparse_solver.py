@@ -1,16 +1,11 @@
 """Full bodies need a sparse linear solver, which is not Exudyn's default.
 
-Importing this module lets ``mbs.SolveDynamic()`` refuse a dense one where it would take the memory
-of the machine, or hours.
+``mbs.SolveDynamic()`` refuses a dense one where it would take the memory of the machine, or hours.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import exudyn
-
-from exudyn_rotor.multibody.wrapping import wraps_method
 
 _BODIES = "exudyn_rotor: full bodies"  # key in mbs.sys
 _MOST = 3000  # coordinates of a system that a dense solver may have
@@ -37,12 +32,3 @@ def check_solver(mbs: exudyn.MainSystem, given: tuple, options: dict) -> None:
             f"{size} coordinates; use exudyn.LinearSolverType.EigenSparse, which "
             "recommended_settings(end_time, step, body=body) sets"
         )
-
-
-@wraps_method("SolveDynamic")
-def _solve_dynamic(
-    solve: Callable, mbs: exudyn.MainSystem, *given: object, **options: object
-) -> bool:
-    """Solve as Exudyn does, unless a dense solver cannot."""
-    check_solver(mbs, given, options)
-    return solve(mbs, *given, **options)

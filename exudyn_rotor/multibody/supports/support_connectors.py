@@ -28,6 +28,7 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw, TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
+from exudyn_rotor.multibody.calls.clearances import watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 from exudyn_rotor.theory.rotating_axes import axial_rotation
@@ -101,7 +102,9 @@ def bearing_connector(
         marker = point_marker(body, bearing.interface)
         item = CartesianSpringDamper(markerNumbers=[base, marker])
     setattr(item, name, force)
-    return body.mbs.AddObject(item)
+    number = body.mbs.AddObject(item)
+    watch_clearance(body, bearing, number)
+    return number
 
 
 @contextmanager

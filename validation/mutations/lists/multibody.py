@@ -375,6 +375,56 @@ MULTIBODY = [
         ),
     ),
     *mutations(
+        "bearings/short_film.py",
+        "test_clearances.py",
+        (
+            "journals leave a short film unseen",
+            "        return self.clearance\n",
+            "        return 2e3 * self.clearance\n",
+        ),
+    ),
+    *mutations(
+        "bearings/annular_seal.py",
+        "test_clearances.py",
+        (
+            "journals leave a seal unseen",
+            "        return self.clearance\n",
+            "        return 2e3 * self.clearance\n",
+        ),
+    ),
+    *mutations(
+        "bearings/journal_bearing.py",
+        "test_clearances.py",
+        (
+            "journals leave a film unseen",
+            "self.film._reach(direction, 0.0)",
+            "self.film._reach(direction, -1.0)",
+        ),
+    ),
+    *mutations(
+        "multibody/calls/clearances.py",
+        "test_clearances.py",
+        (
+            "journals looked at in axes that turned",
+            "_KINDS.Displacement) @ self.across",
+            "_KINDS.Displacement)[:2] * 0.0",
+        ),
+    ),
+    *mutations(
+        "multibody/calls/clearances.py",
+        "test_clearances.py",
+        (
+            "a stop beside a seal forgotten",
+            "if isinstance(each.bearing, ClearanceStop)",
+            "if False",
+        ),
+    ),
+    *mutations(
+        "multibody/calls/clearances.py",
+        "test_clearances.py",
+        ("a script's own function left out", "(own is None or own(mbs, t))", "True"),
+    ),
+    *mutations(
         "multibody/supports/seats.py",
         "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (

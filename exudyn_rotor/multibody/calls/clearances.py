@@ -1,0 +1,139 @@
+"""Runs in which a journal leaves the clearance of its bearing, which must not go on.
+
+Newton's method may try states outside, where forces go on by a tangent; a step that has been
+accepted there means nothing. Importing this module lets ``mbs.SolveDynamic()`` look at the journals
+after every accepted step, beside the script's own function for that, and stop with an error. Where
+a :class:`ClearanceStop` acts at the same interface, contact is meant, and nothing is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import hypot, inf
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.clearance_stop import ClearanceStop
+from exudyn_rotor.multibody.calls.sparse_solver import check_solver
+from exudyn_rotor.multibody.mark import Mark, mark_of
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.wrapping import wraps_method
+
+_BEARINGS = "exudyn_rotor: bearings that journals must not leave"  # key in mbs.sys
+_KINDS = exudyn.OutputVariableType
+_SIDES = np.vstack([np.eye(2), -np.eye(2)])  # a pad has one of them
+
+
+@dataclass(frozen=True, eq=False)
+class _Watched:
+    """A bearing's connector: the ``mbs`` must not hold a body that holds it.
+
+    Attributes
+    ----------
+    bearing : Bearing
+    number : ObjectIndex
+    physics : ObjectIndex
+    mark : tuple or None
+        By which the rotor, whose object `physics` is, is known again.
+    rotor : str or None
+        Its name.
+    across : ndarray, shape (3, 2), or None
+        n1 and n2 in the scene; None where the connector has axes of its own.
+    """
+
+    bearing: Bearing
+    number: exudyn.ObjectIndex
+    physics: exudyn.ObjectIndex
+    mark: Mark | None
+    rotor: str | None
+    across: np.ndarray | None
+
+    def place(self, mbs: exudyn.MainSystem) -> tuple[float, float]:
+        """Return the journal's place against the bearing [m]."""
+        if self.across is None:
+            return tuple(mbs.GetObjectOutput(self.number, _KINDS.DisplacementLocal)[:2])
+        return tuple(mbs.GetObjectOutput(self.number, _KINDS.Displacement) @ self.across)
+
+
+def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectIndex) -> None:
+    """Let runs of the scene stop where the journal of a connector leaves its bearing."""
+    local = body.mbs.GetObject(number)["objectType"] == "ConnectorRigidBodySpringDamper"
+    across = None if local else body.standing_axes[:, :2]
+    physics = body.objects["physics"]
+    watched = _Watched(bearing, number, physics, body.mark, body.name, across)
+    body.mbs.sys.setdefault(_BEARINGS, []).append(watched)
+
+
+@contextmanager
+def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
+    """Stop a run within by a ValueError where a journal leaves its clearance."""
+    watched = _in_scene(mbs)
+    if not watched:
+        yield
+        return
+    given = mbs.GetPostStepUserFunction()
+    own = given["function"] if given else None
+    left: list[str] = []
+
+    def look(mbs: exudyn.MainSystem, t: float) -> bool:
+        left.extend(filter(None, (_left(mbs, each, t) for each in watched)))
+        return not left and (own is None or own(mbs, t))
+
+    mbs.SetPostStepUserFunction(look)
+    try:
+        yield
+    finally:
+        mbs.SetPostStepUserFunction(own or 0)
+    if left:
+        raise ValueError("mbs.SolveDynamic: " + "; ".join(left))
+
+
+def _in_scene(mbs: exudyn.MainSystem) -> list[_Watched]:
+    """Return the bearings with a clearance that are still there, and without a stop beside."""
+    present = [
+        each
+        for each in mbs.sys.get(_BEARINGS, [])
+        if each.mark is not None and mark_of(mbs, each.physics) == each.mark
+    ]
+    stopped = {
+        (each.mark, each.bearing.interface)
+        for each in present
+        if isinstance(each.bearing, ClearanceStop)
+    }
+    return [
+        each
+        for each in present
+        if (each.mark, each.bearing.interface) not in stopped
+        and min(map(each.bearing._gap, _SIDES)) < inf
+    ]
+
+
+def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> str | None:
+    """Return what is wrong with a journal outside its clearance; None for one inside."""
+    place = watched.place(mbs)
+    distance = hypot(*place)
+    if not distance:
+        return None
+    gap = watched.bearing._gap(np.array(place) / distance)
+    if distance < gap:
+        return None
+    return (
+        f"rotor {watched.rotor!r} left its bearing at {watched.bearing.interface!r} at t = {t:g} s:"
+        f" its journal is {distance:.3g} m from the centre, {distance / gap:.3g} times the "
+        "clearance that way; take smaller steps, begin from steady_state(body), reduce the load, "
+        "or add a ClearanceStop at that interface for a rub"
+    )
+
+
+@wraps_method("SolveDynamic")
+def _solve_dynamic(
+    solve: Callable, mbs: exudyn.MainSystem, *given: object, **options: object
+) -> bool:
+    """Solve as Exudyn does, unless a dense solver cannot, or a journal leaves its bearing."""
+    check_solver(mbs, given, options)
+    with _stopped_outside(mbs):
+        return solve(mbs, *given, **options)

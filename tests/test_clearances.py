@@ -1,0 +1,142 @@
+"""Runs end where a journal leaves its clearance in an accepted step, not in a trial."""
+
+import re
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.itemInterface import LoadForceVector
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    AnnularSeal,
+    ClearanceStop,
+    JournalBearing,
+    OilFilm,
+    ShortJournalBearing,
+    SqueezeFilmDamper,
+    Support,
+    TiltingPadBearing,
+    add_rotor,
+    add_supports,
+    grooved_pads,
+    recommended_settings,
+)
+
+CLEARANCE, SPEED = 1e-4, 300.0
+TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+SHORT = {"radius": 0.05, "length": 0.03, "clearance": CLEARANCE, "viscosity": 0.02}
+
+
+def film(preload=0.0, grooves=(0.0, np.pi)):
+    pads = grooved_pads(CLEARANCE, grooves, 0.3, preload)
+    return OilFilm(0.05, 0.05, 0.02, pads, nodes=36, axial_nodes=0)
+
+
+KINDS = {
+    "short journal": ShortJournalBearing(interface="left", **SHORT),
+    "film": JournalBearing(interface="left", film=film()),
+    "lemon bore": JournalBearing(interface="left", film=film(0.5)),
+    "squeeze film": SqueezeFilmDamper(interface="left", centring_stiffness=1e6, **SHORT),
+    "seal": AnnularSeal(
+        interface="left", radius=0.1, length=0.04, clearance=CLEARANCE, pressure_drop=1e6,
+        density=1000.0, viscosity=1e-3,
+    ),
+    "tilting pads": TiltingPadBearing(
+        interface="left", film=film(0.3, np.radians([30.0, 150.0, 270.0])), pad_inertia=1e-4
+    ),
+}  # fmt: skip
+
+
+def scene(bearings, load=0.0, **options):
+    rotor = ring_rotor(0.1, 0.15, 20.0)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor, **(options or {"spin": SPEED}))
+    held = Support("right", 1e7, 1e3)
+    added = add_supports(body, [*bearings, held])
+    if load:
+        mbs.AddLoad(LoadForceVector(markerNumber=body.marker("left"), loadVector=[0.0, load, 0.0]))
+    mbs.Assemble()
+    return mbs, body, added
+
+
+def run(mbs, end_time=4e-3, step=1e-4):
+    settings = recommended_settings(end_time=end_time, step=step)
+    settings.solution.file.write = False
+    return mbs.SolveDynamic(settings)
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("short journal", {"spin": SPEED}),
+        ("film", {"initial_speed": SPEED}),
+        ("lemon bore", {"spin": -SPEED, "translation": "none"}),
+        ("squeeze film", {"spin": SPEED, "rotation": TO_X}),
+        ("seal", {"spin": SPEED}),
+        ("tilting pads", {"initial_speed": SPEED, "rotation": TO_X}),
+    ],
+)
+def test_a_run_ends_where_a_journal_leaves(kind, options):
+    mbs, _, _ = scene([KINDS[kind]], -3e6, **options)
+    with pytest.raises(ValueError, match="left its bearing at 'left' at t = ") as error:
+        run(mbs)
+    share = float(re.search(r"centre, (\S+) times the clearance", str(error.value))[1])
+    assert share > 1.0
+    assert 0.0 < mbs.systemData.GetTime() < 4e-3
+
+
+def test_trial_states_outside_do_not_end_a_run(monkeypatch):
+    """The first trial of a step takes the velocity of its beginning, 1.5 clearances a step."""
+    law, tried = SqueezeFilmDamper._law, []
+
+    def noted(self, x, y, *motion):
+        tried.append(np.hypot(x, y))
+        return law(self, x, y, *motion)
+
+    monkeypatch.setattr(SqueezeFilmDamper, "_law", noted)
+    mbs, body, _ = scene([KINDS["squeeze film"]])
+    initial = exu.ConfigurationType.Initial
+    rates = np.array(mbs.systemData.GetODE2Coordinates_t(initial))
+    rates[mbs.GetNodeODE2Index(body.nodes["rigid"]) + 1] = 1.5
+    mbs.systemData.SetODE2Coordinates_t(rates, initial)
+    assert run(mbs, 5e-4)
+    assert max(tried) > 1.2 * CLEARANCE
+
+
+def test_a_scripts_own_function_goes_on():
+    """It is called at every step, its False ends the run, and it is there afterwards."""
+    mbs, _, _ = scene([KINDS["short journal"]])
+    times = []
+
+    def own(mbs, t):
+        times.append(t)
+        return t < 2.5e-4
+
+    mbs.SetPostStepUserFunction(own)
+    run(mbs)
+    np.testing.assert_allclose(times, [0.0, 1e-4, 2e-4, 3e-4])
+    assert mbs.GetPostStepUserFunction()["function"] is own
+    mbs.SetPostStepUserFunction(0)
+    assert run(mbs, 3e-4)
+    assert mbs.GetPostStepUserFunction() == 0
+
+
+def test_a_rub_is_meant_where_there_is_a_stop():
+    stop = ClearanceStop(interface="left", radius=0.1, clearance=CLEARANCE, stiffness=1e8)
+    mbs, _, added = scene([KINDS["seal"], stop], -3e4)
+    assert run(mbs)
+    place = mbs.GetObjectOutput(added[0].objects[0], exu.OutputVariableType.Displacement)
+    assert np.hypot(*place[:2]) > CLEARANCE
+
+
+def test_items_of_a_scene_that_is_no_more_are_not_looked_at():
+    mbs, _, _ = scene([KINDS["short journal"]])
+    mbs.Reset()
+    ground = mbs.CreateGround()
+    point = mbs.CreateMassPoint(mass=1.0, initialVelocity=[1.0, 0.0, 0.0])
+    for _ in range(12):
+        mbs.CreateCartesianSpringDamper(itemNumbers=[ground, point], stiffness=[1.0] * 3)
+    mbs.Assemble()
+    assert run(mbs)
