@@ -55,7 +55,7 @@ class FloquetModes:
     @property
     def central(self) -> np.ndarray:
         """The harmonic 0 of every mode, shape (c, k)."""
-        return self.vectors[np.flatnonzero(self.orders == 0)[0]]
+        return self.vectors[list(self.orders).index(0)]
 
     def columns(self, chosen: np.ndarray) -> FloquetModes:
         """Return some of the modes."""

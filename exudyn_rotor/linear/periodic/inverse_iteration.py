@@ -11,11 +11,13 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
     times,
 )
+from exudyn_rotor.threads import shared
 
 # relative distance from an eigenvalue that keeps its matrix invertible
 OFF_ROOT = 1e-9
 _MOST_STEPS = 5
 _MOST_ENTRIES = 1_000_000  # of the matrices of motions that are iterated at once
+_PARTS = 4  # that threads share
 
 
 def nearest_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
@@ -97,8 +99,10 @@ def moved_together(
     forces, loads = inertia_and_slopes(shapes)
     both = np.stack([loads, forces]).transpose(1, 3, 0, 2)[..., None]
     answers = np.zeros_like(both)
-    dynamic = _dynamic(systems, shifted, wanted)
-    answers[wanted] = harmonic_chain.on_both_sides(dynamic, both[wanted])
+    given = _dynamic(systems, shifted, wanted), both[wanted]
+    parts = zip(*(np.array_split(X, _PARTS) for X in given), strict=True)
+    found = shared(lambda part: harmonic_chain.on_both_sides(*part), list(parts))
+    answers[wanted] = np.concatenate(found)
     z, w = answers[..., 0].transpose(2, 0, 3, 1)
     a, b, c = (np.sum(w.conj() * X, axis=1) for X in (*inertia_and_slopes(z), loads))
     return np.where(wanted, shifted + nearest_root(a, b, c), values)
