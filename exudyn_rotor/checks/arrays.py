@@ -30,14 +30,18 @@ def array(
     `dtype` is float, complex, int or bool. Text, masks, imaginary parts of numbers that must be
     real, and fractions of numbers that must be whole are refused. What can be written to is copied.
     """
-    needed = f"{_kind_of(dtype, finite)}{of_unit(unit)}{_of_shape(shape)}"
-    result = read_only(_numbers(values, name, needed, dtype), dtype)
+
+    def needed() -> str:
+        return f"{_kind_of(dtype, finite)}{of_unit(unit)}{_of_shape(shape)}"
+
+    exact = type(values) is np.ndarray and values.dtype == dtype
+    result = read_only(values if exact else _numbers(values, name, needed(), dtype), dtype)
     if shape is not None and not _has_shape(result.shape, shape):
-        raise ValueError(told(name, needed, values) + f" with the shape {result.shape}")
-    if finite and not np.all(np.isfinite(result)):
-        raise ValueError(told(name, needed, values))
+        raise ValueError(told(name, needed(), values) + f" with the shape {result.shape}")
     largest = MOST if dtype is int else LARGEST
-    if finite and np.max(np.abs(result), initial=0) > largest:
+    if finite and not np.abs(result).max(initial=0) <= largest:  # NaN is not
+        if not np.all(np.isfinite(result)):
+            raise ValueError(told(name, needed(), values))
         raise ValueError(f"{name}: needs numbers below {largest:g} in size, got {shown(values)}")
     return result
 
