@@ -12,8 +12,6 @@ from point_rotors import random_arrays, random_invariants
 
 from exudyn_rotor.theory.spatial import SpatialInvariants
 
-FRAME = slice(0, 6)
-
 
 def cardan(angles: np.ndarray) -> np.ndarray:
     """Return ``A = Rx Ry Rz``; of complex angles, too."""

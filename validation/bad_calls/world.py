@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-import warnings
 from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
@@ -309,13 +308,6 @@ class World(Bearings):
 def arguments(instance: Any) -> dict[str, Any]:
     """Return the arguments that make a dataclass instance again."""
     return {field.name: getattr(instance, field.name) for field in fields(instance) if field.init}
-
-
-def quietly(function: Any, *given: Any, **options: Any) -> Any:
-    """Call a function without its warnings."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return function(*given, **options)
 
 
 def _after_four_steps(body: er.RotorBody | er.FullRotorBody) -> er.RotorBody | er.FullRotorBody:
