@@ -16,7 +16,7 @@ from netgen.occ import OCCGeometry  # noqa: E402
 
 # Netgen's four threads wait by spinning, too; without them it makes the same mesh
 _generate = OCCGeometry.GenerateMesh
-OCCGeometry.GenerateMesh = lambda *args, **options: _generate(*args, nthreads=1, **options)
+OCCGeometry.GenerateMesh = lambda *args, **options: _generate(*args, **{"nthreads": 1} | options)
 
 _MOST_WORKERS = 4  # each takes up to 1 GB
 
