@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import ring_rotor
 from scipy.integrate import quad
+from test_supports_in_scenes import SKEW
 
 from exudyn_rotor import (
     JournalBearing,
@@ -175,7 +176,7 @@ def test_stability_limit_of_a_rigid_rotor_is_the_published_one():
 
 def scene(rotor, bearings, **options):
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor, gravity=GRAVITY, **options)
+    body = add_rotor(mbs, rotor, **({"gravity": GRAVITY} | options))
     added = add_supports(body, bearings)
     mbs.Assemble()
     return mbs, body, added
@@ -281,9 +282,15 @@ def test_a_film_of_finite_length_in_scene_and_linear_rotor():
     np.testing.assert_allclose(place, bearings[0].equilibrium(SPEED), rtol=1e-4)
 
 
-@pytest.mark.parametrize(("cavitation", "nodes"), [("reynolds", 36), ("half-sommerfeld", 60)])
-def test_films_in_a_scene_are_linearised_as_in_a_list(cavitation, nodes):
-    """Of an unbalanced rotor, whose orbit would lead the film's edge from node to node."""
+@pytest.mark.parametrize(
+    ("cavitation", "nodes", "turned"),
+    [("reynolds", 36, np.eye(3)), ("half-sommerfeld", 60, np.eye(3)), ("reynolds", 36, SKEW)],
+)
+def test_films_in_a_scene_are_linearised_as_in_a_list(cavitation, nodes, turned):
+    """Of an unbalanced rotor, whose orbit would lead the film's edge from node to node.
+
+    On a skew axis rounding gives the free axial motion a load, and a stiffness, too.
+    """
     ring = ring_rotor(0.1, 0.15, 107.0).add_point_mass([0.1, 0.0, 0.0], 0.1)
     ring = ring.with_interface("left", range(5)).with_interface("right", range(5, 10))
     rotor = ring.reduce(0)
@@ -291,7 +298,8 @@ def test_films_in_a_scene_are_linearised_as_in_a_list(cavitation, nodes):
     pairs = zip(("left", "right"), loads, strict=True)
     options = {"cavitation": cavitation, "nodes": nodes}
     bearings = [film_bearing(name, load, **options) for name, load in pairs]
-    mbs, body, _ = scene(rotor, bearings, spin=SPEED)
+    placed = {"rotation": turned, "gravity": turned @ GRAVITY}
+    mbs, body, _ = scene(rotor, bearings, spin=SPEED, translation="free", **placed)
     scene_model = linear_model(mbs, body=body, about="equilibrium")
     growths = [
         stability(model, [SPEED, 2.0 * SPEED]).growth_of("lateral")

@@ -18,6 +18,7 @@ NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-
 UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
 SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
+_ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
 _BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 10, 60  # after these
 _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in every step
@@ -78,10 +79,15 @@ def equilibrium(
 
 def solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve with motions that nothing holds left at rest; return what remains of the load, too."""
-    rows = np.abs(K).max(axis=1)
+    sizes = np.abs(K)
+    held = np.maximum(sizes.max(axis=1), sizes.max(axis=0)) > _ROUNDING * sizes.max()
+    among, answer = K[np.ix_(held, held)], np.zeros(len(load), dtype=np.result_type(K, load))
+    if not np.any(held):
+        return answer, load
+    rows = np.abs(among).max(axis=1)
     # a row of round-off is not blown up to the size of the others
-    scale = 1.0 / np.sqrt(np.maximum(rows, max(NOISE * rows.max(), 1e-300)))
-    scaled = scale[:, None] * K * scale
-    solution = scipy.linalg.lstsq(scaled, scale * load, cond=1e-12, lapack_driver="gelsy")
-    answer = scale * solution[0]
+    scale = 1.0 / np.sqrt(np.maximum(rows, NOISE * rows.max()))
+    scaled = scale[:, None] * among * scale
+    solution = scipy.linalg.lstsq(scaled, scale * load[held], cond=1e-12, lapack_driver="gelsy")
+    answer[held] = scale * solution[0]
     return answer, load - K @ answer
