@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from functools import cache, partial
 from threading import Lock, local
 from typing import TypeVar
@@ -86,11 +86,15 @@ if hasattr(os, "register_at_fork"):  # a forked process has none of the threads
     os.register_at_fork(after_in_child=_helpers.cache_clear)
 
 
-def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+def shared(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    first: Callable[[], object] | None = None,
+) -> list[Result]:
     """Return ``[function(item) for item in items]``, on as many threads as BLAS may use.
 
     Each call has one thread of BLAS. It is quicker only where the function spends its time outside
-    of Python.
+    of Python. This thread calls `first` before it takes items.
     """
     results, left = [None] * len(items), iter(range(len(items)))
 
@@ -102,6 +106,8 @@ def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Re
         more = 0 if hasattr(_HERE, "helps") else min(count, len(items)) - 1
         helping = [_helpers().submit(work) for _ in range(more)]
         try:
+            if first is not None:
+                first()
             work()
         finally:
             for each in helping:
@@ -133,19 +139,21 @@ def in_turns(function: Callable[[Item], Result], items: Sequence[Item]) -> list[
 def meanwhile(
     function: Callable[..., Result], *arguments: object
 ) -> Iterator[Callable[[], Result]]:
-    """Let another thread compute a function of arrays, where BLAS may use several.
+    """Let a function run in Python while other threads solve eigenproblems by :func:`eig`.
 
-    What the context gives returns the result when it is called.
+    What the context gives returns the result, which is computed then where no others did.
     """
-    with one_thread() as count:
-        if count == 1 or hasattr(_HERE, "helps"):
-            yield cache(partial(function, *arguments))
-            return
-        made = _helpers().submit(function, *arguments)
-        try:
-            yield made.result
-        finally:
-            wait([made])
+    result = cache(partial(function, *arguments))
+
+    def first() -> None:
+        with suppress(Exception):  # which comes up where the result is asked for
+            result()
+
+    before, _HERE.first = getattr(_HERE, "first", None), first
+    try:
+        yield result
+    finally:
+        _HERE.first = before
 
 
 def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -163,6 +171,7 @@ def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
                 turn.acquire()
         if matrices.ndim < 3 or matrices.size < _WORTH or count == 1:
             return np.linalg.eig(matrices)
-        found = shared(np.linalg.eig, np.array_split(matrices, _PARTS * count))
+        parts = np.array_split(matrices, _PARTS * count)
+        found = shared(np.linalg.eig, parts, getattr(_HERE, "first", None))
     values, vectors = zip(*found, strict=True)
     return np.concatenate(values), np.concatenate(vectors)

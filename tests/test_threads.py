@@ -97,13 +97,29 @@ def test_one_thread_at_a_time_runs_but_for_eigenproblems(monkeypatch):
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_meanwhile_computes_once_and_passes_errors_on(threads):
-    found = []
+def test_meanwhile_computes_once_beside_eigenproblems_and_passes_errors_on(threads, monkeypatch):
+    began, ended, found = Event(), Event(), []
+    solve = np.linalg.eig
+
+    def waiting(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        began.set()
+        assert threads == 1 or ended.wait(20.0)
+        return solve(part)
+
+    def done(value: float) -> float:
+        assert began.wait(20.0)  # another thread has an eigenproblem
+        found.append(get_ident())
+        ended.set()
+        return value
+
+    monkeypatch.setattr(np.linalg, "eig", waiting)
     with ThreadpoolController().limit(limits=threads, user_api="blas"):
-        with meanwhile(lambda value: found.append(get_ident()) or value, 3.0) as result:
-            assert counts() == {1}
+        with meanwhile(done, 3.0) as result:
+            eig(np.random.default_rng(0).normal(size=(9, 60, 60)))
+            assert len(found) == threads - 1
             assert (result(), result()) == (3.0, 3.0)
-        assert counts() == {threads}
-        with pytest.raises(ZeroDivisionError), meanwhile(divmod, 1, 0) as result:
-            result()
-    assert [one == get_ident() for one in found] == [threads == 1]
+        assert found == [get_ident()]
+        with meanwhile(divmod, 1, 0) as result:
+            eig(np.random.default_rng(0).normal(size=(9, 60, 60)))
+            with pytest.raises(ZeroDivisionError):
+                result()
