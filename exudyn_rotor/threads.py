@@ -141,15 +141,18 @@ def meanwhile(
 ) -> Iterator[Callable[[], Result]]:
     """Let a function run in Python while other threads solve eigenproblems by :func:`eig`.
 
-    What the context gives returns the result, which is computed then where no others did.
+    What the context gives returns the result, which is computed then where no others did. In
+    contexts within one another the outer function runs before.
     """
-    result = cache(partial(function, *arguments))
+    result, before = cache(partial(function, *arguments)), getattr(_HERE, "first", None)
 
     def first() -> None:
+        if before is not None:
+            before()
         with suppress(Exception):  # which comes up where the result is asked for
             result()
 
-    before, _HERE.first = getattr(_HERE, "first", None), first
+    _HERE.first = first
     try:
         yield result
     finally:

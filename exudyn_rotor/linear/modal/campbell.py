@@ -149,18 +149,20 @@ def campbell(
     model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    basis = BasisError.of(model, accuracy)
     count = _checked_count(modes, model)
     space = model.space(count, np.abs(values).max(), residual=residual)
     if executor is not None:
         space = space.prepared(values)
-    with meanwhile(WhirlContent.from_points, WhirlContent.points_of(model)) as content_made:
+    with (
+        meanwhile(BasisError.of, model, accuracy) as basis_made,
+        meanwhile(WhirlContent.of, model) as content_made,
+    ):
         computed = model.size if model.gives_all else count
         if seen and not model.gives_all:
             fastest = values[np.argmax(np.abs(values))]
             computed = _computed(space, count, fastest, tolerance, content_made())
         modes_at = _modes_at(space, values, tolerance, executor, progress)
-        content = content_made()
+        basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
     tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count, seen)

@@ -85,12 +85,7 @@ class WhirlContent:
         Equal weights for up to 800 mesh nodes, spread over the node numbers. Without mode shapes,
         rings of points that move with the interfaces take their place.
         """
-        return cls.from_points(cls.points_of(model))
-
-    @staticmethod
-    def points_of(model: LinearModel) -> PointMotions:
-        """Return the points that :meth:`of` looks at."""
-        return model.point_motions(_SAMPLES)
+        return cls.from_points(model.point_motions(_SAMPLES))
 
     @classmethod
     @one_thread()

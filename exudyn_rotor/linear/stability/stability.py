@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -111,7 +112,10 @@ def stability(
     space = held_space(model, values[-1], modes, residual)
     if executor is not None:
         space = space.prepared(values)
-    with meanwhile(WhirlContent.from_points, WhirlContent.points_of(model)) as content:
+    with (
+        meanwhile(partial(BasisError.of, held=True), model, accuracy) as basis_made,
+        meanwhile(WhirlContent.of, model) as content,
+    ):
         solved = None
         if executor is None and not progress and method != "floquet":
             solved = constant_growths(space, values, content)
@@ -125,7 +129,7 @@ def stability(
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])
     multipliers[periodic == 0.0] = np.nan
-    basis = BasisError.of(model, accuracy, held=True)
+    basis = basis_made()
     result = Stability(
         speeds=values,
         exponents=exponents,
