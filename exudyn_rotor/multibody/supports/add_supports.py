@@ -114,7 +114,8 @@ def add_supports(
 
     The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
     torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
-    its drive lacks it.
+    its drive lacks it. What carries the bearing takes the reaction, but for the friction of tilting
+    pads, which the ground takes.
 
     Examples
     --------
