@@ -1,8 +1,12 @@
-"""Runs beside an equilibrium grow and decay as `stability` says; tilting pads and seals."""
+"""Runs beside an equilibrium grow and decay as `stability` says.
+
+On tilting pads, beside a seal, with cross-coupled bearings and a shaft with two bending stiffnesses.
+"""
 
 import exudyn as exu
 import numpy as np
 import pytest
+from asymmetric import asymmetric_shaft
 from point_rotors import SKEW_AXIS
 from test_tilting_pad import SPEED, on_pads, scene
 
@@ -36,48 +40,59 @@ def on_seals():
     return rotor, [seal, soft, soft_right], 0.0 * gravity
 
 
+def on_springs(stiffness, coupled, damping):
+    """Return the shaft of two bending stiffnesses on two bearings, and no weight."""
+    matrix = np.diag([*stiffness, 1e6]) + coupled * np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 0]])
+    springs = [Support(end, matrix, damping * np.eye(3)) for end in ("left", "right")]
+    return asymmetric_shaft(), springs, np.zeros(3)
+
+
+# rotor, supports, gravity, speed [rad/s], and revolutions of the run
 CASES = {
-    "pads, skew": lambda: (*on_pads(tuple(SKEW_AXIS)), 0.25),
-    "seal, x": lambda: (*on_seals(), 1.0),
+    "pads, skew": lambda: (*on_pads(tuple(SKEW_AXIS)), SPEED, 0.25),
+    "seal, x": lambda: (*on_seals(), SPEED, 1.0),
+    "uneven bearings, growing": lambda: (*on_springs((4e5, 8e5), 0.0, 2.0), 182.0, 2.0),
+    "cross-coupling, growing": lambda: (*on_springs((4e5, 4e5), 4e4, 10.0), 250.0, 1.0),
 }
 
 
 def measured(case, steps):
     """Return the growth [1/s] of the least stable lateral motion in a run, and λ of the scene."""
-    rotor, supports, gravity, revolutions = CASES[case]()
-    mbs, body, _ = scene(rotor, supports, gravity, spin=SPEED)
+    rotor, supports, gravity, speed, revolutions = CASES[case]()
+    mbs, body, _ = scene(rotor, supports, gravity, spin=speed)
     sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
     mbs.Assemble()
     linear, steady = LinearScene.of(mbs, body), steady_state(body)
     start = steady.state()
-    system = linear.at(SPEED)
+    system = linear.at(speed)
     modes = motions(system)
     shapes = modes.vectors.sum(axis=0)
     rows = linear.interface_motion("left")[:2]
     moves = np.linalg.norm(rows @ shapes, axis=0)
     lateral = moves > 0.01 * np.linalg.norm(shapes, axis=0) * np.linalg.norm(rows)
     chosen = np.argmax(np.where(lateral, modes.values.real, -np.inf))
-    rates = modes.values[chosen] + 1j * modes.orders[:, None] * SPEED
+    rates = modes.values[chosen] + 1j * modes.orders[:, None] * speed
     amplitudes = SIZE / moves[chosen] * modes.vectors[:, :, chosen]
     y, y_t = amplitudes.sum(axis=0), (rates * amplitudes).sum(axis=0)
     T, T1, _ = linear.turn(0.0)
     still = steady.interface_motion("left", 0.0)[:3] @ linear.axes.T
     q, q_t = start.q.copy(), start.q_t.copy()
     q[linear.free] += (T @ y).real
-    q_t[linear.free] += (T @ y_t + SPEED * T1 @ y).real
-    period = 2.0 * np.pi / SPEED
-    body.start_from(StartState(q, q_t, start.angle, SPEED))
+    q_t[linear.free] += (T @ y_t + speed * T1 @ y).real
+    period = 2.0 * np.pi / speed
+    body.start_from(StartState(q, q_t, start.angle, speed))
     mbs.SolveDynamic(settings(revolutions * period, period / steps))
     path = mbs.GetSensorStoredData(sensor)
-    sizes = []
+    sizes, weights = [], []
     for time, *place in path:
-        theta = SPEED * time
+        theta = speed * time
         turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
         shape = turn @ rows @ (np.exp(1j * modes.orders * theta) @ amplitudes)
         away = (np.array(place) - still) @ linear.axes[:, :2]
-        parts = np.linalg.lstsq(np.column_stack([shape.real, -shape.imag]), away, rcond=None)[0]
-        sizes.append(np.hypot(*parts))
-    return np.polyfit(path[:, 0], np.log(sizes), 1)[0], modes.values[chosen]
+        columns = np.column_stack([shape.real, -shape.imag])
+        sizes.append(np.hypot(*np.linalg.lstsq(columns, away, rcond=None)[0]))
+        weights.append(np.linalg.svd(columns, compute_uv=False)[-1])  # small on flat orbits
+    return np.polyfit(path[:, 0], np.log(sizes), 1, w=weights)[0], modes.values[chosen]
 
 
 @pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
@@ -88,7 +103,8 @@ def test_a_run_grows_as_stability_says(case):
     The trapezoidal rule errs by (νh)²/12 of the rate ν in the rotor's axes, whose difference with Ω
     dampers see; its second order is extrapolated.
     """
-    rotor, supports = CASES[case]()[:2]
+    rotor, supports, _, speed, _ = CASES[case]()
     coarse, fine = (measured(case, steps)[0] for steps in (STEPS, 2 * STEPS))
-    expected = stability(rotor, [SPEED], supports=supports, accuracy=None).growth_of("lateral")[0]
+    expected = stability(rotor, [speed], supports=supports, accuracy=None).growth_of("lateral")[0]
+    assert (expected > 0.0) == ("growing" in case)
     assert (4.0 * fine - coarse) / 3.0 == pytest.approx(expected, rel=0.01)
