@@ -53,7 +53,6 @@ critical, most = expected.peak("disc")
 margin = er.sensitivity(reduced, np.geomspace(10.0, 3e4, 60), supports=bearings, speed=critical)
 print(margin.table())
 assert set(margin.zones) == {"A"}
-assert set(margin.zones) == {"A"}
 
 LIFT, RAMP, HOLD = 0.1, 0.2, 0.15  # s: at rest, up to the critical speed, there; and up again
 ramps = (

@@ -335,8 +335,16 @@ def test_unreached_tolerances_are_errors(monkeypatch):
     monkeypatch.setattr("exudyn_rotor.linear.periodic.fundamental.MOST_STEPS", 512)
     with pytest.raises(UnconvergedError, match="steps a period"):
         floquet_exponents(slow)
-    with pytest.raises(UnconvergedError, match="steps a period"):
+    with pytest.raises(UnconvergedError, match=r"use a larger speed \(or 0\)"):
         exponents(slow)
+
+
+def test_growth_beyond_the_largest_number_within_a_period_is_an_error():
+    """``exp(20 · 62.8)`` overflows; numpy does not warn (warnings are errors here)."""
+    growing = mathieu(50.0, 20.0)
+    growing = PeriodicSystem(0.1, growing.M, {0: np.array([[-40.0]])}, growing.K)
+    with pytest.raises(UnconvergedError, match="steps a period"):
+        floquet_exponents(growing)
 
 
 def test_more_bad_input():

@@ -1,5 +1,7 @@
 """The steady motion of a scene: closed forms, runs that start from it, and static solutions."""
 
+from types import SimpleNamespace
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
+from exudyn_rotor.linear.models.scene.steady_motion import check_period
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
@@ -227,6 +230,19 @@ def test_load_that_varies_by_itself_is_refused(reduced):
     mbs.Assemble()
     with pytest.raises(UnconvergedError, match="does not repeat with every revolution"):
         steady_state(body)
+
+
+def test_rounding_beside_the_wall_of_a_bearing_is_no_load_that_varies():
+    """A force that is nearly zero where its slope by the angle is 1e14 N/rad."""
+    angles = np.array([0.5, 2.5, 4.5])
+    probe = SimpleNamespace(
+        speed=1.0,
+        force=lambda theta, x, v: np.array([1e14 * np.prod(np.sin(theta - angles))]),
+        rotor_terms=lambda theta: (None, None, None, np.array([1.0])),
+    )
+    whole_turn = probe.force(angles[1] + 2.0 * np.pi, None, None)
+    assert np.abs(whole_turn).max() > 1e-3  # N, by rounding of the angle
+    check_period(SimpleNamespace(free=np.zeros(1), mass=1.0), probe)
 
 
 def test_load_that_nothing_holds_is_refused(reduced):

@@ -69,16 +69,23 @@ def motions(
     check_eigen(system, method)
     if system.stands_still and method != "floquet":
         return constant_motions(ConstantSystems.of([system]), shapes)[0]
+    unconverged = None
     if method != "floquet":
         try:
             found = _solve_by_hill(system, tolerance)
-        except UnconvergedError:
-            if method == "hill":
-                raise
+        except UnconvergedError as error:
+            unconverged = error
         else:
             rest = found.orders, found.resolution, found.bounds
             return FloquetModes(found.values, found.shapes, *rest)
-    values, states, bounds = floquet_motions(system, tolerance)
+        if method == "hill":
+            raise unconverged
+    try:
+        values, states, bounds = floquet_motions(system, tolerance)
+    except UnconvergedError:
+        if unconverged is None:
+            raise
+        raise unconverged from None  # it says what to do
     shapes = states[None, : system.size]
     return FloquetModes(resolved(values, bounds), shapes, np.array([0]), 0.0, bounds)
 

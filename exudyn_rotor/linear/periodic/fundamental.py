@@ -38,7 +38,10 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
     steps = max(8, 2 ** int(np.ceil(np.log2(0.5 * fastest * period + 1.0))))
     error, last = np.inf, None
     while steps <= MOST_STEPS:
-        fundamental = _magnus(system, period, steps)
+        with np.errstate(over="ignore", invalid="ignore"):
+            fundamental = _magnus(system, period, steps)
+        if not np.all(np.isfinite(fundamental)):
+            break  # what grows exceeds the largest number within a period
         if last is not None:
             scaled = scale[:, None] * np.array([fundamental, fundamental - last]) / scale
             error = np.abs(scaled[1]).max() / np.abs(scaled[0]).max() / 63.0

@@ -73,6 +73,7 @@ LINEAR_MODELS = [
             "change = change - torque * twist",
             "change = change + 0.0 * twist",
         ),
+        ("rounding beside a wall is a load", "* scene.mass + rounding:", "* scene.mass:"),
     ),
     *mutations(
         "linear/models/rotor/eccentricity.py",

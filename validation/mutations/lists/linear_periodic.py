@@ -184,6 +184,11 @@ LINEAR_PERIODIC = [
         ("second commutator with the wrong sign", "c2 = -_commutator(", "c2 = _commutator("),
     ),
     *mutations(
+        "linear/periodic/exponents.py",
+        "test_stability.py::test_unreached_tolerances_are_errors",
+        ("reason of the other method", "raise unconverged from None", "raise"),
+    ),
+    *mutations(
         "linear/periodic/fundamental.py",
         "test_stability.py::test_motions_that_die_within_a_turn_are_not_taken_for_neutral",
         ("small multipliers not known from above", "np.log1p(relative)", "relative"),
