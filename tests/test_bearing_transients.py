@@ -1,6 +1,6 @@
 """Runs beside an equilibrium grow and decay as `stability` says.
 
-On tilting pads, beside a seal, with cross-coupled bearings and a shaft with two bending stiffnesses.
+On tilting pads, beside a seal, with cross-coupled bearings and a shaft of two bending stiffnesses.
 """
 
 import exudyn as exu
