@@ -49,6 +49,8 @@ from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.base_response import BaseResponse, base_response
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
+from exudyn_rotor.linear.response.rolling_response import rolling_bearing_response
+from exudyn_rotor.linear.response.rolling_result import RollingBearingResponse
 from exudyn_rotor.linear.response.steady_response import harmonic_response, unbalance_response
 from exudyn_rotor.linear.response.steady_state import SteadyState, steady_state
 from exudyn_rotor.linear.response.unbalance import Unbalance, permissible_unbalance
@@ -147,6 +149,7 @@ __all__ = [
     "Result",
     "RigidDisc",
     "RollingBearing",
+    "RollingBearingResponse",
     "RotorBody",
     "RotorTrain",
     "RunCheck",
@@ -203,6 +206,7 @@ __all__ = [
     "recommended_settings",
     "report",
     "response_shapes",
+    "rolling_bearing_response",
     "select_modes",
     "sensitivity",
     "separation_margins",

@@ -14,6 +14,7 @@ from exudyn_rotor import (
     HarmonicResponse,
     MotionShapes,
     ReducedRotor,
+    RollingBearingResponse,
     Sensitivity,
     SeparationMargins,
     Spectra,
@@ -68,6 +69,10 @@ def results() -> list:
         CriticalSpeedMap(speeds, table, codes, 1.0, "none"),
         UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
+        RollingBearingResponse(
+            ("left", "node 2"), speeds, np.array([[0, 0], [1, -1]]), np.repeat(motion, 2, axis=2),
+            3.3, ("left", "right"), table, table - 1.0, speeds, speeds, np.array([[0, 1], [2, -3]]),
+            coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor", beside=("one",)),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         EnergyBalance(speeds, *RNG.uniform(size=(6, 3))),
         Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, *[table] * 2,

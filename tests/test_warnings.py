@@ -3,6 +3,7 @@
 import ast
 import warnings
 from pathlib import Path
+from unittest.mock import patch
 
 import exudyn as exu
 import numpy as np
@@ -18,6 +19,7 @@ from exudyn_rotor import (
     ClearanceStop,
     ConnectionWarning,
     Formulation,
+    RollingBearing,
     SolidRotor,
     SpinAxis,
     StressField,
@@ -28,6 +30,7 @@ from exudyn_rotor import (
     campbell,
     check_run,
     propose,
+    rolling_bearing_response,
     select_modes,
     stability_level_one,
     stability_threshold,
@@ -35,6 +38,7 @@ from exudyn_rotor import (
     stress_history,
     unbalance_response,
 )
+from exudyn_rotor.linear.response import rolling_response
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
 
@@ -59,6 +63,16 @@ def stress_out_of_balance(beam):
 
 def stress_beyond_yield(beam):
     beam.prestress(yield_stress=1.0, speed=100.0)
+
+
+def motion_with_few_harmonics(_):
+    mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
+    balls = RollingBearing(
+        interface="seat", count=8, pitch_radius=0.03, element_radius=0.006, stiffness=7e9
+    )
+    given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": 1e-6}
+    with patch.object(rolling_response, "_MOST_UNKNOWNS", 40):
+        rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [0.0], **given)
 
 
 def eccentric_rotor_in_a_linear_analysis(beam):
@@ -256,6 +270,9 @@ PLACES = {
     ),
     "linear/response/refinement.py:resolved_peak": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width",
+    ),
+    "linear/response/rolling_response.py:_warn_of_left_out": (
+        motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",

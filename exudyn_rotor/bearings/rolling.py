@@ -191,8 +191,7 @@ class RollingBearing(Bearing):
         weight = hypot(*load)
         if weight == 0.0:
             raise ValueError("load: needs a force other than 0: without one no element carries")
-        exponent = _EXPONENTS[self.elements]
-        depth = (4.0 * weight / (self.count * self.stiffness)) ** (1.0 / exponent)
+        depth = float(depth_under(self, weight))
         # there one element carries, wherever they stand
         place = (self.clearance / cos(pi / self.count) + 1.5 * depth) * load / weight
         soft = _SOFT * weight / depth * np.eye(2)  # against a single element's free direction
@@ -219,10 +218,7 @@ class RollingBearing(Bearing):
         return place
 
     def _tangent(self, place: np.ndarray, angle: float) -> np.ndarray:
-        angles, exponent = self._angles(angle), _EXPONENTS[self.elements]
-        n = np.array([np.cos(angles), np.sin(angles)])
-        depth = np.maximum(place @ n - self.clearance, 0.0)
-        return (n * (exponent * self.stiffness * depth ** (exponent - 1.0))) @ n.T
+        return contacts(self, place, angle)[2]
 
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
@@ -235,3 +231,45 @@ class RollingBearing(Bearing):
         angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES
         tangents = [self._tangent(self.equilibrium(speed, load, t), t) for t in angles]
         return np.mean(tangents, axis=0), self.damping * np.eye(2)
+
+
+def contacts(
+    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return loads of the elements, force on the inner ring, and stiffness, without damping.
+
+    Parameters
+    ----------
+    bearing : RollingBearing
+    places : ndarray, shape (…, 2)
+        Of the inner ring [m].
+    angles : array_like, shape (…)
+        Spin angles θ [rad].
+
+    Returns
+    -------
+    loads : ndarray, shape (…, Z)
+        (2) [N]
+    force : ndarray, shape (…, 2)
+        [N]
+    stiffness : ndarray, shape (…, 2, 2)
+        Less the force's derivative by the place [N/m].
+    """
+    turn = bearing.cage_ratio * np.asarray(angles)[..., None]
+    turned = 2.0 * pi / bearing.count * np.arange(bearing.count) + turn
+    n, exponent = np.stack([np.cos(turned), np.sin(turned)], -1), _EXPONENTS[bearing.elements]
+    depth = np.maximum((n @ places[..., None])[..., 0] - bearing.clearance, 0.0)
+    loads = bearing.stiffness * depth**exponent
+    slopes = exponent * bearing.stiffness * depth ** (exponent - 1.0)
+    across = np.swapaxes(n, -1, -2)
+    force = -(across @ loads[..., None])[..., 0]
+    return loads, force, across @ (slopes[..., None] * n)
+
+
+def depth_under(bearing: RollingBearing, load: ArrayLike) -> np.ndarray:
+    """Return about how deep a load [N], of any shape, presses the most loaded contact [m].
+
+    ``Q = 4W/Z``, R. Stribeck (1901) without clearance.
+    """
+    most = 4.0 / bearing.count * np.asarray(load)
+    return (most / bearing.stiffness) ** (1.0 / _EXPONENTS[bearing.elements])

@@ -131,6 +131,15 @@ OF_FUNCTIONS: dict[str, Callable[[World], dict[str, Any]]] = {
         "speeds": SPEEDS[:2],
         "unbalances": [er.Unbalance("left", 1e-4)],
     },
+    "rolling_bearing_response": lambda w: {
+        "target": w.reduced,
+        "speeds": SPEEDS[:2],
+        "unbalances": [er.Unbalance("left", 1e-6)],
+        "supports": [w.rolling, *w.supports],
+        "gravity": [0.0, -9.81, 0.0],
+        "loads": [er.HarmonicForce("left", [0.0, -100.0])],
+        "at": ["left"],
+    },
     "select_modes": lambda w: {"reduced": w.reduced, "formulation": er.Formulation()},
     "sensitivity": lambda w: {
         "rotor": w.reduced,

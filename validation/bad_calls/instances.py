@@ -81,6 +81,7 @@ INSTANCES: dict[str, Callable[[World], Any]] = {
     "MagneticBearing": lambda w: w.magnetic,
     "PIDController": lambda w: w.magnetic.controller,
     "RollingBearing": lambda w: w.rolling,
+    "RollingBearingResponse": lambda w: w.rolls,
     "SaturatingActuator": lambda w: w.magnetic.actuator,
     "Sensitivity": lambda w: er.Sensitivity(("left, 1",), [10.0, 20.0], [[1.0 + 0j, 2j]], 0.0),
     "ShortJournalBearing": lambda w: w.journal,

@@ -146,6 +146,8 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
     "RigidDisc.stiffness_matrix": lambda w: {"node_count": 1000},
     "RollingBearing.element_loads": lambda w: {"displacement": [1e-5, 2e-5]},
     "RollingBearing.passing_frequency": lambda w: {"speed": 100.0},
+    "RollingBearingResponse.displacement": lambda w: {"speed": 20.0, "time": [0.0, 0.1]},
+    "RollingBearingResponse.state": lambda w: {"speed": w.rolls.speeds[0], "body": w.body},
     "RotorBody.add_interface_sensor": lambda w: _sensor(interface="left"),
     "RotorBody.add_marker": lambda w: {"where": [0, 1, 2, 3], "weights": [1.0, 1.0, 1.0, 2.0]},
     "RotorBody.add_node_sensor": lambda w: _sensor(node=0),

@@ -234,6 +234,12 @@ class World(Bearings):
         return er.unbalance_response(self.reduced, speeds, [load], **given)
 
     @cached_property
+    def rolls(self) -> er.RollingBearingResponse:
+        """The motion on a ball bearing beside other supports."""
+        given = {"supports": [self.rolling, *self.supports], "gravity": [0.0, -9.81, 0.0]}
+        return er.rolling_bearing_response(self.reduced, [10.0, 20.0], **given)
+
+    @cached_property
     def harmonic(self) -> er.HarmonicResponse:
         """The response to a force up to above its first resonance."""
         load, frequencies = er.HarmonicForce("left", [1.0, 0.0, 0.0]), np.linspace(10.0, 2000.0, 9)

@@ -43,8 +43,9 @@ class RunStart(Result):
 
     Attributes
     ----------
-    coordinates : ndarray of complex, shape (s, 2 N + 1, k), optional
-        Harmonics −N … N of the model's coordinates, rotor frame; None for a SolidRotor.
+    coordinates : ndarray of complex, shape (s, h, k), optional
+        Harmonics of the model's coordinates, rotor frame, −N … N unless the response tells others;
+        None for a SolidRotor.
     basis : {'rotor', 'scene'}, optional
         Whether these are of the reduced rotor's basis or of a scene.
     beside : tuple of str, optional
@@ -69,11 +70,7 @@ class RunStart(Result):
             )
         if self.basis is not None:
             checks.choice(self.basis, "basis", BASES)
-            if self.coordinates.shape[1] % 2 == 0:
-                raise ValueError(
-                    "coordinates: need the harmonics −N … N, an odd number, got "
-                    f"{self.coordinates.shape[1]}"
-                )
+            self._check_harmonics()
 
     def _start(self, value: float, body: RotorBody, angle: float, speed: float) -> StartState:
         """Return the state of a scene at a computed speed or frequency."""
@@ -81,10 +78,8 @@ class RunStart(Result):
         body.check_assembled()
         index = self._computed_at(value)
         scene = self._scene(body)
-        top = self.coordinates.shape[1] // 2
-        orders = np.arange(-top, top + 1)
-        turned = np.exp(1j * orders * angle)[:, None] * self.coordinates[index]
-        rates = np.array([self.rates(int(n))[index] for n in orders])
+        phases, rates = self._waves(index)
+        turned = np.exp(1j * phases * angle)[:, None] * self.coordinates[index]
         x, x_t = turned.sum(axis=0).real, (1j * rates[:, None] * turned).sum(axis=0).real
         if self.basis == "scene":
             state = scene.state(x, x_t, angle, speed)
@@ -96,6 +91,19 @@ class RunStart(Result):
             state = replace(state, angle=angle, speed=speed)
             state = _with_beside(body, state, x[own:], x_t[own:])
         return _with_carried_frame(scene, state, angle, speed)
+
+    def _check_harmonics(self) -> None:
+        if self.coordinates.shape[1] % 2 == 0:
+            raise ValueError(
+                "coordinates: need the harmonics −N … N, an odd number, got "
+                f"{self.coordinates.shape[1]}"
+            )
+
+    def _waves(self, index: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return phases of the coordinates' harmonics per spin angle, and their rates [rad/s]."""
+        top = self.coordinates.shape[1] // 2
+        orders = np.arange(-top, top + 1)
+        return orders, np.array([self.rates(int(n))[index] for n in orders])
 
     def _computed_at(self, value: float) -> int:
         """Return where a speed or frequency stands among the computed ones."""

@@ -277,6 +277,31 @@ BEARINGS = [
         ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),
         ("cage drives the ring", "self.cage_ratio * (x * py", "-self.cage_ratio * (x * py"),
         ("elements pull", "np.maximum(x * c + y * s - self.clearance, 0.0)", "x * c + y * s - 0.0"),
-        ("tangent without its exponent", "(n * (exponent * self", "(n * (self"),
+        ("tangent without its exponent", "slopes = exponent * bearing", "slopes = bearing"),
+    ),
+    *mutations(
+        "bearings/rolling.py",
+        "test_rolling_bearing_response.py",
+        ("cage of a grid stands", "turn = bearing.cage_ratio *", "turn = 0.0 *"),
+        ("contacts at a grid pull", "force = -(across @", "force = (across @"),
+    ),
+    *mutations(
+        "linear/response/contact_balance.py",
+        "test_rolling_bearing_response.py",
+        ("spring k₀ left in", "+ springs * q", "+ 0.5 * springs * q"),
+        ("constant load of a seat doubled", "(2.0 if k else 1.0) * g", "2.0 * g"),
+        ("contacts pull the foundation along", "sign * pair, np.zeros(4)", "pair, np.zeros(4)"),
+        (
+            "uneven rotor answers in another harmonic",
+            "index[k, n + p], col",
+            "index[k, n - p], col",
+        ),
+    ),
+    *mutations(
+        "linear/response/rolling_response.py",
+        "test_rolling_bearing_response.py",
+        ("weight lifts", "BaseAcceleration(-across)", "BaseAcceleration(across)"),
+        ("unbalance grows with the speed", "speed**2 * self.unbalance", "speed * self.unbalance"),
+        ("folded harmonics turn the other way", "a.conj() if turned else a", "a"),
     ),
 ]

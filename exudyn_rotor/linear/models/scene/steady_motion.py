@@ -254,7 +254,8 @@ class _Search:
             f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
             "that nothing holds, a resonance without damping, or a stop or a bearing with "
             "clearance that the rotor leaves and hits? A damped run from rest shows what it does "
-            "there; about='given' needs no steady motion"
+            "there, and rolling_bearing_response its motion on rolling bearings; about='given' "
+            "needs no steady motion"
         )
 
     def _residual(self, points: list[LinearPoint]) -> np.ndarray:

@@ -1,0 +1,385 @@
+"""Steady motion of a rotor on rolling bearings: varying compliance, unbalance, lost contact.
+
+Elements that pass the load make the bearing's force vary at ZκΩ and its multiples, also without
+unbalance, and contacts that open make the stiffness depend on the orbit; see
+:mod:`exudyn_rotor.linear.response.contact_balance`. C. S. Sunnersjö, J. Sound Vib. 58 (1978), 363;
+M. Tiwari, K. Gupta, O. Prakash, J. Sound Vib. 238 (2000), 723, by the same method.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, given_supports
+from exudyn_rotor.bearings.rolling import RollingBearing, contacts
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.models.linear_model import (
+    DENSE_SIZE,
+    linear_model,
+    warn_of_left_out_stiffening,
+)
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.response.contact_balance import ContactBalance, Harmonics, Rest, unknowns
+from exudyn_rotor.linear.response.harmonic_loads import (
+    BaseAcceleration,
+    HarmonicForce,
+    total,
+    unbalance_load,
+)
+from exudyn_rotor.linear.response.places import At, Place, checked_places, in_frame, place, places
+from exudyn_rotor.linear.response.rolling_result import RollingBearingResponse
+from exudyn_rotor.linear.response.run_start import kept_basis
+from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.sweep import checked_speeds
+from exudyn_rotor.threads import one_thread
+
+_Balances = Callable[[tuple[int, int]], ContactBalance]
+
+_SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
+_FIRST, _WIDE = (4, 0), (4, 4)  # harmonics of the ball pass and of the spin
+_DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
+_MOST_UNKNOWNS = 1500
+_STEP = 1e-3  # of the tolerance, by which the last step of Newton's method may change the motion
+_ROUND = 1e-12  # share of the largest harmonic
+_UNLOADED = 1e-9  # share of the largest static load that counts as none
+
+
+@one_thread()
+def rolling_bearing_response(
+    target: ReducedRotor | SolidRotor,
+    speeds: ArrayLike,
+    unbalances: Sequence[Unbalance] = (),
+    *,
+    supports: Sequence[Given] | Given,
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    loads: Sequence[HarmonicForce] = (),
+    own: bool = True,
+    foundation: Foundation | None = None,
+    at: Sequence[At] | At | None = None,
+    stiffening: str = "auto",
+    tolerance: float = 1e-2,
+    downwards: bool = False,
+) -> RollingBearingResponse:
+    """Compute the steady motion on rolling bearings whose contacts carry by their own laws.
+
+    With the ball pass (varying compliance) and the spin (unbalance) as two frequencies that need
+    no common period. At rest it is the equilibrium at every angle of the cage. How many harmonics
+    are needed is found by itself.
+
+    Parameters
+    ----------
+    target : ReducedRotor or SolidRotor
+        A SolidRotor of up to 600 degrees of freedom; reduce a larger one.
+    speeds : array_like, shape (s,)
+        Ascending spin speeds [rad/s], ≥ 0.
+    unbalances : sequence of Unbalance, optional
+        In addition to the rotor's own.
+    supports : sequence of Support and bearings
+        With one RollingBearing or more, which share one ball pass frequency; their own `load` plays
+        no part. All others are linearised.
+    gravity : array_like, shape (3,), optional
+        In axes of the mesh, as the rotor is mounted at θ = 0 [m/s²]. What is along the axis does
+        not count.
+    loads : sequence of HarmonicForce, optional
+        Constant forces: the real parts of their amplitudes.
+    own : bool, optional
+        Whether the rotor's own eccentricity counts.
+    foundation : Foundation, optional
+        What carries all supports, see :func:`linear_model`.
+    at : sequence of str, int or position, optional
+        Interfaces and mesh nodes to look at; all interfaces by default.
+    stiffening : {'auto', 'none', 'tilt', 'full'}
+    tolerance : float, optional
+        Largest size of the harmonics left out, relative to the motion of the bearings.
+    downwards : bool, optional
+        Begin with the highest speed. Each speed begins with the motion at the one before, and where
+        there are several steady motions the two ways show two of them.
+
+    Returns
+    -------
+    RollingBearingResponse
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, no rolling bearing, two ball pass frequencies, and no load at all.
+    UnconvergedError
+        Where no steady motion of these two frequencies is found.
+
+    Notes
+    -----
+    A steady motion may be unstable, as near a resonance with clearance and little damping, where
+    runs show jumps, subharmonics and chaos; a run from :meth:`RollingBearingResponse.state` tells.
+
+    Examples
+    --------
+    A mass of 20 kg on one bearing sways by 0.2 µm as balls pass below it at low speed:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import RollingBearing, SolidRotor, rolling_bearing_response
+    >>> mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    >>> bearing = RollingBearing(
+    ...     interface="seat", count=8, pitch_radius=0.0326, element_radius=0.006, stiffness=7e9,
+    ...     damping=1500.0,
+    ... )
+    >>> response = rolling_bearing_response(
+    ...     mass.with_interface("seat", [0]).reduce(0), [10.0, 300.0], supports=bearing,
+    ...     gravity=[0.0, -9.81, 0.0],
+    ... )
+    >>> print(1e9 * response.end_to_end("seat").round(8))  # nm along n1 and n2
+    [[200.  40.]
+     [460.  70.]]
+    """
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    if isinstance(target, SolidRotor) and 3 * target.node_count > DENSE_SIZE:
+        raise ValueError(
+            f"target: needs a SolidRotor of up to {DENSE_SIZE} degrees of freedom, got "
+            f"{3 * target.node_count}; give the reduced rotor, rotor.reduce(…)"
+        )
+    values = checked_speeds(speeds, False)
+    unbalances = checks.instances(unbalances, "unbalances", Unbalance)
+    loads = checks.instances(loads, "loads", HarmonicForce)
+    gravity = checks.vector(gravity, "gravity", "m/s²")
+    tolerance = options.accuracy(tolerance, "tolerance")
+    checks.flag(own, "own")
+    checks.flag(downwards, "downwards")
+    given = given_supports(supports)
+    bearings = [one for one in given if isinstance(one, RollingBearing)]
+    passes = _passes(bearings)
+    springs = list(map(_spring, bearings))
+    stood_for = [
+        Support(one.interface, spring, one.damping)
+        for one, spring in zip(bearings, springs, strict=True)
+    ]
+    rest = [one for one in given if not isinstance(one, RollingBearing)]
+    model = linear_model(
+        target, supports=[*stood_for, *rest], foundation=foundation, stiffening=stiffening
+    )
+    warn_of_left_out_stiffening(model, values.max())
+    observed = places(model, checked_places(at))
+    across = target.axis.plane.T @ gravity
+    weight = [BaseAcceleration(-across)] if np.any(across) else []
+    static = total([*weight, *loads], model) if weight or loads else {}
+    unbalance = np.zeros(model.size)
+    if unbalances or (own and not model.is_balanced):
+        unbalance = unbalance_load(model, unbalances, own)
+    _check_loaded(static, values[0] * unbalance)
+    problem = _Problem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
+    solved, last = [], None
+    for speed in values[::-1] if downwards else values:
+        try:
+            last = problem.solved(float(speed), last, tolerance)
+        except UnconvergedError as error:
+            raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
+        solved.append(last)
+    solved = solved[::-1] if downwards else solved
+    _warn_of_left_out(max(solved, key=lambda one: one.error), tolerance)
+    return _result(problem, observed, values, solved)
+
+
+def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> None:
+    """Refuse a rotor that nothing presses into its bearings."""
+    if not static and not np.any(unbalance):
+        raise ValueError(
+            "gravity, loads, unbalances: need one that is not zero: without a load no element "
+            "carries; unbalance alone needs speeds above zero"
+        )
+
+
+def _warn_of_left_out(worst: _Solved, tolerance: float) -> None:
+    if worst.error > tolerance:
+        warnings.warn(
+            f"rolling bearings at {worst.balance.rest.speed:g} rad/s: contacts that open and close "
+            f"leave {worst.error:.0e} of the motion to higher harmonics",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+
+def _passes(bearings: Sequence[RollingBearing]) -> float:
+    """Return how many elements pass the load in a revolution, the same for all bearings."""
+    if not bearings:
+        raise ValueError(
+            "supports: need a RollingBearing or more; unbalance_response takes all other bearings"
+        )
+    found = [one.count * one.cage_ratio for one in bearings]
+    if np.ptp(found) > _SAME_PASS * max(found):
+        raise ValueError(
+            f"supports: {min(found):.6g} and {max(found):.6g} elements pass in a revolution, and "
+            "one frequency of ball passes is balanced: give one kind as it is, with the other "
+            "kinds linearised(), and then the other way round"
+        )
+    return found[0]
+
+
+def _spring(bearing: RollingBearing) -> float:
+    """Return k₀ in place of the contacts, of the size of their stiffness [N/m]."""
+    deep = np.array([bearing.clearance + _DEPTH * bearing.element_radius, 0.0])
+    return float(0.5 * np.trace(contacts(bearing, deep, 0.0)[2]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """Harmonics q (h, d) of one speed, and what comes of them."""
+
+    balance: ContactBalance
+    q: np.ndarray
+    error: float
+    linear_error: float
+
+    def reach(self, tolerance: float) -> tuple[int, int]:
+        """Return with how many harmonics to begin nearby."""
+        K, N = self.balance.reach
+        return (max(K // 2, _FIRST[0]) if self.error < 0.1 * tolerance else K), N
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """Rotor, bearings with their springs k₀ (d,), and loads at any speed, rotor frame."""
+
+    model: LinearModel
+    bearings: Sequence[RollingBearing]
+    springs: np.ndarray
+    passes: float
+    static: Mapping[int, np.ndarray]
+    unbalance: np.ndarray  # per Ω²
+
+    @cached_property
+    def seats(self) -> list[list[tuple[Place, float]]]:
+        """Rings of each bearing, see :class:`Rest`."""
+        found = []
+        for one in self.bearings:
+            rings = {one.interface: 1.0, ON_FOUNDATION.format(one.interface): -1.0}
+            known = [name for name in rings if name in self.model.interfaces]
+            found.append([(place(self.model, name), rings[name]) for name in known])
+        return found
+
+    def solved(self, speed: float, near: _Solved | None, tolerance: float) -> _Solved:
+        """Return the steady motion, beginning with one near it."""
+        loads = dict(self.static)
+        loads[0] = loads.get(0, 0.0) + speed**2 * self.unbalance
+        space = self.model.space(1, speed).prepared([speed])
+        rest = Rest(space, speed, self.passes * speed, self.seats, loads)
+        of = partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
+        mean = self._mean_place(of((0, 0)), tolerance)
+        for start in _starts(of, near, mean, tolerance):
+            try:
+                balance, q, error = _refined(of, *start, tolerance)
+            except UnconvergedError as failed:
+                lost = failed
+                continue
+            linear_error = np.nan
+            if mean is not None:
+                linear = balance.linear(balance.padded(mean, (0, 0)))
+                linear_error = balance.distance(linear, q)
+            return _Solved(balance, q, error, linear_error)
+        raise lost
+
+    def _mean_place(self, balance: ContactBalance, tolerance: float) -> np.ndarray | None:
+        """Return where the bearings rest on average (1, d); None where one has no load."""
+        loads = np.linalg.norm((self.springs * balance.start[0].real).reshape(-1, 2), axis=1)
+        if loads.min() <= _UNLOADED * loads.max():
+            return None
+        return balance.solved(balance.quasi_static(), _STEP * tolerance)
+
+
+def _starts(
+    of: _Balances, near: _Solved | None, mean: np.ndarray | None, tolerance: float
+) -> Iterator[tuple[ContactBalance, np.ndarray]]:
+    """Yield equations and harmonics near which the steady motion may be."""
+    if near is not None:
+        balance = of(near.reach(tolerance))
+        yield balance, balance.padded(near.q, near.balance.reach)
+    balance = of(_FIRST)
+    if mean is not None:
+        yield balance, balance.linear(balance.padded(mean, (0, 0)))
+    balance = of(_WIDE)
+    yield balance, balance.damped()
+
+
+def _refined(
+    of: _Balances,
+    balance: ContactBalance,
+    q: np.ndarray,
+    tolerance: float,
+) -> tuple[ContactBalance, np.ndarray, float]:
+    """Return the motion in as many harmonics as needed or possible, and what is left out."""
+    while True:
+        q = balance.solved(q, _STEP * tolerance)
+        by_pass, by_spin = balance.left_out(q, tolerance)
+        error, (K, N) = float(np.hypot(by_pass, by_spin)), balance.reach
+        more = (
+            K + max(K // 2, 2) if by_pass > 0.5 * tolerance else K,
+            N + max(N // 2, 2) if by_spin > 0.5 * tolerance else N,
+        )
+        if error <= tolerance or unknowns(more, len(balance.bearings)) > _MOST_UNKNOWNS:
+            return balance, q, error
+        balance = of(more)
+        q = balance.padded(q, (K, N))
+
+
+def _result(
+    problem: _Problem, observed: Sequence[Place], speeds: np.ndarray, solved: Sequence[_Solved]
+) -> RollingBearingResponse:
+    """Return the motions (s, p, h, 6) of places, and loads of elements."""
+    rows = np.array([one.motion for one in observed])
+    stands = np.array([one.stands for one in observed])
+    kept = [one.balance.rest.coordinates(one.balance.forces(one.q)) for one in solved]
+    motions = []
+    for speed, answer in zip(speeds, kept, strict=True):
+        motion: dict[tuple[int, int], np.ndarray] = {}
+        for k in {k for k, _ in answer}:
+            seen = {n: rows @ x for (j, n), x in answer.items() if j == k}
+            for n, a in (in_frame(seen, stands, "inertial") if speed else seen).items():
+                turned = k == 0 and n < 0
+                order = (0, -n) if turned else (k, n)
+                motion[order] = motion.get(order, 0.0) + (a.conj() if turned else a)
+        motions.append(motion)
+    orders, motion = _stacked(motions)
+    motion = np.swapaxes(motion, 1, 2)
+    motion[:, [one.is_node for one in observed], :, 3:] = np.nan
+    coordinate_orders, coordinates = _stacked(kept)
+    loads = [one.balance.contacts(one.balance.values(one.q))[0] for one in solved]
+    return RollingBearingResponse(
+        tuple(one.label for one in observed),
+        speeds,
+        orders,
+        motion,
+        problem.passes,
+        tuple(one.interface for one in problem.bearings),
+        np.array([[each.max() for each in one] for one in loads]),
+        np.array([[np.mean(~each.any(axis=-1)) for each in one] for one in loads]),
+        np.array([one.linear_error for one in solved]),
+        np.array([one.error for one in solved]),
+        coordinate_orders,
+        coordinates=coordinates,
+        basis=kept_basis(problem.model),
+        beside=problem.model.beside if isinstance(problem.model, ExtendedRotor) else (),
+    )
+
+
+def _stacked(motions: Sequence[Harmonics]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the orders (h, 2) that matter, and harmonics (s, h, …), zero where one has none."""
+    sizes: dict[tuple[int, int], float] = {}
+    for motion in motions:
+        for order, a in motion.items():
+            sizes[order] = max(sizes.get(order, 0.0), np.abs(a).max())
+    orders = sorted(order for order, size in sizes.items() if size > _ROUND * max(sizes.values()))
+    zero = np.zeros_like(next(iter(motions[0].values())))
+    stacked = [[motion.get(order, zero) for order in orders] for motion in motions]
+    return np.array(orders), np.array(stacked)
