@@ -127,8 +127,8 @@ LINEAR = [
         ("rates of a steady motion reversed", "(1j * rates[:, None]", "(-1j * rates[:, None]"),
         (
             "harmonics turned against the angle",
-            "np.exp(1j * orders * angle)",
-            "np.exp(-1j * orders * angle)",
+            "np.exp(1j * phases * angle)",
+            "np.exp(-1j * phases * angle)",
         ),
         (
             "frame of an eccentric rotor left on the axis",
