@@ -59,7 +59,6 @@ _ROUND = 1e-12  # share of the largest harmonic
 _UNLOADED = 1e-9  # share of the largest static load that counts as none
 
 
-@one_thread()
 def rolling_bearing_response(
     target: ReducedRotor | SolidRotor,
     speeds: ArrayLike,
@@ -180,13 +179,8 @@ def rolling_bearing_response(
         unbalance = unbalance_load(model, unbalances, own)
     _check_loaded(static, values[0] * unbalance)
     problem = _Problem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
-    solved, last = [], None
-    for speed in values[::-1] if downwards else values:
-        try:
-            last = problem.solved(float(speed), last, tolerance)
-        except UnconvergedError as error:
-            raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
-        solved.append(last)
+    with one_thread():
+        solved = problem.swept(values[::-1] if downwards else values, tolerance)
     solved = solved[::-1] if downwards else solved
     _warn_of_left_out(max(solved, key=lambda one: one.error), tolerance)
     return _result(problem, observed, values, solved)
@@ -267,6 +261,17 @@ class _Problem:
             rings = {one.interface: 1.0, ON_FOUNDATION.format(one.interface): -1.0}
             known = [name for name in rings if name in self.model.interfaces]
             found.append([(place(self.model, name), rings[name]) for name in known])
+        return found
+
+    def swept(self, speeds: np.ndarray, tolerance: float) -> list[_Solved]:
+        """Return the motions, each beginning with the one before."""
+        found: list[_Solved] = []
+        for speed in speeds:
+            try:
+                near = found[-1] if found else None
+                found.append(self.solved(float(speed), near, tolerance))
+            except UnconvergedError as error:
+                raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
         return found
 
     def solved(self, speed: float, near: _Solved | None, tolerance: float) -> _Solved:
