@@ -23,7 +23,14 @@ MAY_BE_MISSING = (
 )  # fmt: skip
 MAY_BE_NAN = {
     f"field.{name}"
-    for name in ("motion", "multipliers", "log_decrement", "half_power", "amplification")
+    for name in (
+        "motion",
+        "multipliers",
+        "log_decrement",
+        "half_power",
+        "amplification",
+        "linear_errors",
+    )
 }
 
 
