@@ -14,6 +14,7 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
+_KEPT = 16  # equilibria
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
 _AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
@@ -60,7 +61,9 @@ class JournalBearing(Bearing):
 
     film: OilFilm
     whirl_ratio: float = 1.0
-    _last: dict[tuple[float, ...], FilmState] = field(default_factory=dict, init=False, repr=False)
+    _last: dict[tuple[float, ...], FilmState | str] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -131,13 +134,19 @@ class JournalBearing(Bearing):
         return self._state(speed, load).coefficients(self.whirl_ratio)
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
-        """Return the film in equilibrium; the last one is kept, for several ask for it in turn."""
+        """Return the film in equilibrium; some are kept, for several ask for them in turn."""
         load = self._static_load(load)
         key = checks.number(speed, "speed", "rad/s"), *load.tolist()
         if key not in self._last:
-            state = self.film.equilibrium(speed, load)
-            self._last.clear()
-            self._last[key] = state
+            try:
+                found = self.film.equilibrium(speed, load)
+            except ValueError as error:
+                found = str(error)
+            if len(self._last) >= _KEPT:
+                self._last.clear()
+            self._last[key] = found
+        if isinstance(self._last[key], str):
+            raise ValueError(self._last[key])
         return self._last[key]
 
 

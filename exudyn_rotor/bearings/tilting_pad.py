@@ -344,11 +344,19 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: 
             "resolve; give more nodes, or a smaller load"
         )
 
+    empty = None
+
+    def at(s: float) -> FilmState:
+        nonlocal empty  # cells of the last tilt
+        state = film._state(place - s * t, np.zeros(2), speed, empty)
+        empty = state.solution.empty
+        return state
+
     unit = film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
     for _ in range(_NEAR):
         if not low < last < high:  # or NaN
             break
-        state = film.state(place - last * t, np.zeros(2), speed)
+        state = at(last)
         rise = t @ state.coefficients()[0] @ t
         carried = np.linalg.norm(state.force)
         if not (rise > _BARELY * unit and carried > _SMALL * unit * film.clearance):
@@ -359,7 +367,7 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: 
             return last
 
     def moment(s: float) -> float:
-        return float(t @ film.force(place - s * t, np.zeros(2), speed))
+        return float(t @ at(s).force)
 
     tried = np.linspace(low, high, _TILTS + 2)[1:-1]
     found = np.array([moment(s) for s in tried])
@@ -368,5 +376,5 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: 
     if not len(rises):
         return np.nan
     found = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
-    held = film.state(place - found * t, np.zeros(2), speed).coefficients()[0]
+    held = at(found).coefficients()[0]
     return found if t @ held @ t > 0.0 else np.nan  # where no pressure is left

@@ -153,7 +153,9 @@ class OilFilm(FilmData):
         closing = before - self._heights(state.position + move)[0]
         move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
         for _ in range(12):
-            found = self._state(state.position + move, state.velocity, state.speed)
+            # the cells that are empty now: few steps from those of the next place
+            motion = state.position + move, state.velocity, state.speed
+            found = self._state(*motion, state.solution.empty)
             if np.linalg.norm(found.force + load) < np.linalg.norm(unbalanced):
                 break
             move *= 0.5
