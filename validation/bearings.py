@@ -26,8 +26,8 @@ PADS = er.grooved_pads(5e-5, [0.0, np.pi], 0.35)
 Kind = Callable[[str, np.ndarray], Given]
 
 
-def _finite(axial_nodes: int) -> Kind:
-    film = er.OilFilm(**OIL, pads=PADS, axial_nodes=axial_nodes)
+def _finite(axial_nodes: int, cavitation: str = "reynolds") -> Kind:
+    film = er.OilFilm(**OIL, pads=PADS, axial_nodes=axial_nodes, cavitation=cavitation)
     return lambda name, load: er.JournalBearing(interface=name, film=film, load=load)
 
 
@@ -61,6 +61,8 @@ KINDS: dict[str, Kind] = {
     ),
     "JournalBearing, one axial profile": _finite(0),
     "JournalBearing, 12 axial nodes": _finite(12),
+    "JournalBearing, 12, mass-conserving": _finite(12, "mass-conserving"),
+    "JournalBearing, profile, mass-conserving": _finite(0, "mass-conserving"),
     "TiltingPadBearing, 5 pads, one profile": _tilting,
 }
 

@@ -198,7 +198,9 @@ class TangentFilm:
             raise ValueError(
                 f"bearing at {self._bearing.interface!r}: a film with cavitation="
                 "'mass-conserving' has no force by place and velocity alone, so that a moving "
-                "journal is found in a run only; leave the unbalance out (about='equilibrium')"
+                "journal is found by a run only; leave the unbalance out (linear_model(…, "
+                "about='equilibrium')), or begin a run with the steady_state of the same scene "
+                "with cavitation='reynolds'"
             )
 
 
