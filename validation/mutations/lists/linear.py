@@ -213,7 +213,7 @@ LINEAR = [
     ),
     *mutations(
         "linear/modal/campbell.py",
-        "test_campbell_frames.py",
+        "test_campbell_frames.py test_campbell_full.py",
         (
             "order in the other frame",
             "key = _ranks(inertial) if seen else",

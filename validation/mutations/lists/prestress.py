@@ -12,8 +12,12 @@ PRESTRESS = [
             "rotor.axis.radial(rotor.nodes).ravel()",
             "(rotor.nodes - rotor.axis.point).ravel()",
         ),
+    ),
+    *mutations(
+        "prestress/static_solution.py",
+        "test_prestress.py::test_initial_displacement_is_added_when_asked_for",
         (
-            "initial displacement always in the matrix",
+            "initial displacement where it is not asked for",
             "if initial_displacement:",
             "if not initial_displacement:",
         ),
