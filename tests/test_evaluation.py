@@ -97,11 +97,14 @@ def test_margins_count_from_the_nearest_end_of_the_range():
 def test_one_side_of_a_peak_is_doubled_and_none_is_unknown():
     """1/size² = 1 + ((Ω − 100)/5)² has its half-power points at 95 and 105 rad/s."""
     speeds = np.linspace(98.0, 120.0, 111)
-    cut = separation_margins(sized(speeds, 1 / np.sqrt(1 + ((speeds - 100) / 5) ** 2)), (150, 200))
+    beside, limits = sized(speeds, 1 / np.sqrt(1 + ((speeds - 100) / 5) ** 2)), (150, 200)
+    with pytest.warns(UserWarning, match="from 126 to 252 rad/s count"):
+        cut = separation_margins(beside, limits)
     assert np.isnan(cut.half_power[0, 0])
     assert cut.half_power[0, 1] == pytest.approx(105.0, rel=1e-9)
     assert cut.amplification == pytest.approx(10.0, rel=1e-9)
-    bump = separation_margins(sized(speeds, 1.0 - 0.1 * ((speeds - 105) / 20) ** 2), (150, 200))
+    with pytest.warns(UserWarning, match="known from 98 to 120 rad/s only"):
+        bump = separation_margins(sized(speeds, 1 - 0.1 * ((speeds - 105) / 20) ** 2), limits)
     assert np.isnan(bump.amplification).tolist() == [True]
     assert bump.accepted.tolist() == [False]
     assert "nan" in bump.table()
@@ -109,7 +112,7 @@ def test_one_side_of_a_peak_is_doubled_and_none_is_unknown():
 
 def test_two_peaks_a_valley_and_no_peak():
     """The valley between two peaks stays above 0.707 of the second, which has one side only."""
-    speeds = np.linspace(50.0, 200.0, 1501)
+    speeds = np.linspace(50.0, 210.0, 1601)
     size = 1 / np.hypot(1, (speeds - 100) / 5) + 0.6 / np.hypot(1, (speeds - 125) / 12)
     found = separation_margins(sized(speeds, size), (140.0, 160.0))
     assert len(found.peaks) == 2
@@ -123,9 +126,19 @@ def test_two_peaks_a_valley_and_no_peak():
 
 
 def test_points_too_far_apart_warn():
-    response = sized([90.0, 100.0, 110.0], [0.1, 1.0, 0.1])
+    response = sized([80.0, 100.0, 140.0], [0.1, 1.0, 0.1])
     with pytest.warns(UserWarning, match="a: the points around the peak at 100 rad/s are too far"):
-        separation_margins(response, (150.0, 200.0))
+        separation_margins(response, (100.0, 110.0))
+
+
+def test_one_speed_is_seen_in_the_pictures():
+    response = sized([100.0], [1.0])
+    size, _ = response.plot("a")
+    with pytest.warns(UserWarning, match="known from 100 to 100 rad/s only"):
+        beside = separation_margins(response, (100.0, 110.0)).plot()
+    assert [size.lines[0].get_marker(), beside.lines[0].get_marker()] == [".", "."]
+    for ax in (size, beside):
+        pyplot.close(ax.figure)
 
 
 def test_the_picture_shows_range_margin_and_factor():

@@ -210,6 +210,12 @@ def test_thresholds_stand_below_their_heads():
     assert [line[kind:] for line in lines[1:]] == ["torsional", "lateral"]
 
 
+def test_picture_without_thresholds_tells_the_verdict():
+    for unstable, verdict in ((False, "stable"), (True, "unstable")):
+        ax = StabilityThresholds([], [], [], [], [], 10.0, 30.0, unstable).plot()
+        assert ax.get_title() == f"{verdict} in the whole range"
+
+
 def test_growth_below_its_bound_is_told_with_the_bound():
     """Where differences of forces leave 4e-3 1/s, an axial growth of −2e-3 1/s is not known."""
     values = [[-1.0 + 100.0j, -2e-3 + 50.0j, 1e-14 + 70.0j]]

@@ -32,6 +32,7 @@ from exudyn_rotor import (
     propose,
     rolling_bearing_response,
     select_modes,
+    separation_margins,
     stability_level_one,
     stability_threshold,
     steady_state,
@@ -195,6 +196,16 @@ def peak_between_few_speeds(_):
     unbalance_response(rotor, [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
 
 
+def response_below_the_operating_range(_):
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
+    supports = [Support("all", 2e4, 100.0, tilt_stiffness=1e4)]
+    given = {"supports": supports, "accuracy": None}
+    response = unbalance_response(
+        rotor, np.linspace(10.0, 240.0, 24), Unbalance("all", 1e-4), **given
+    )
+    separation_margins(response, (150.0, 200.0))
+
+
 def limit_that_a_finer_rotor_has_elsewhere(_):
     """``√(k/m)(1 + c/c_i)``, 200 rad/s, by Floquet's method; the elastic limit is 0.1 % lower."""
     rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("end", list(range(5)))
@@ -273,6 +284,9 @@ PLACES = {
     ),
     "linear/response/rolling_response.py:_warn_of_left_out": (
         motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics",
+    ),
+    "evaluation/separation.py:_warn_of_speeds_left_out": (
+        response_below_the_operating_range, UserWarning, "from 126 to 252 rad/s count",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",

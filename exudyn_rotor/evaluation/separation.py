@@ -6,6 +6,7 @@ SP6.8.2.10 (separation margins); API 617 asks for the same.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.signal import find_peaks
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
 from exudyn_rotor.linear.response.refinement import HALF_POWER, resolved_peak
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
@@ -23,6 +25,7 @@ from exudyn_rotor.units import Units
 
 _CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
 _ONE_LABEL = 0.01  # of the range of speeds: peaks so near each other have one label
+_LARGEST = np.array([0.16, 0.26])  # margins that SP6.8.2.10 can ask for, below and above
 _RIPPLE = 1e-3  # share of its size by which a peak stands above the valleys beside it
 
 
@@ -134,6 +137,7 @@ class SeparationMargins(Result):
         ax = plotting.axes_or_new(ax)
         for i, (place, curve) in enumerate(zip(self.observed, self.curves, strict=True)):
             style = {"color": plotting.COLORS[i % 5], "ls": plotting.LINES[i % 5], "lw": 1.4}
+            style["marker"] = "." if len(self.speeds) == 1 else None
             ax.semilogy(shown.speeds(self.speeds), 1e6 * curve, label=place, **style)
         for size, sides in zip(self.sizes, self.half_power, strict=True):
             ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
@@ -195,7 +199,8 @@ def separation_margins(
     Warns
     -----
     UserWarning
-        If the speeds are too far apart to show a peak.
+        If the speeds are too far apart to show a peak, or do not reach over the operating range and
+        the largest margins beside it, where a peak would count.
 
     Examples
     --------
@@ -222,6 +227,7 @@ def separation_margins(
         given = (places,) if isinstance(places, str) else places
         names = checks.labels(given, "places", response.places)
     speeds, entries = response.speeds, []
+    _warn_of_speeds_left_out(speeds, limits)
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
     for name, curve in zip(names, curves, strict=True):
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
@@ -245,13 +251,26 @@ def separation_margins(
     )
 
 
+def _warn_of_speeds_left_out(speeds: np.ndarray, limits: np.ndarray) -> None:
+    low, high = limits * (1.0 + _LARGEST * [-1.0, 1.0])
+    if speeds[0] > low or speeds[-1] < high:
+        warnings.warn(
+            f"separation margins: peaks from {low:.6g} to {high:.6g} rad/s count, and the response "
+            f"is known from {speeds[0]:.6g} to {speeds[-1]:.6g} rad/s only; compute it at all "
+            "these speeds",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+
 def required_margin(amplification: ArrayLike, above: bool) -> np.ndarray:
     """Return the separation margins of SP6.8.2.10, as shares; 0 for an unknown factor."""
     factors = np.asarray(amplification, dtype=float)
     sharp = factors >= _CRITICALLY_DAMPED
     with np.errstate(divide="ignore", invalid="ignore"):
         margin = 0.17 * (1.0 - 1.0 / (factors - 1.5))
-    margin = np.minimum(0.10 + margin, 0.26) if above else np.minimum(margin, 0.16)
+    below, beyond = _LARGEST
+    margin = np.minimum(0.10 + margin, beyond) if above else np.minimum(margin, below)
     return np.where(sharp, margin, 0.0)
 
 

@@ -15,9 +15,11 @@ def draw_bode(
     size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
 ) -> None:
     """Draw amplitudes [m], complex, as sizes [µm] and phases over a speed or frequency."""
+    marker = "." if len(over) == 1 else None  # a line of one point is not seen
     for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
-        size.plot(over, 1e6 * np.abs(values), ls=line, color=color, lw=1.4, label=name)
-        phase.plot(over, _phase(values), ls=line, color=color, lw=1.4)
+        style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
+        size.plot(over, 1e6 * np.abs(values), label=name, **style)
+        phase.plot(over, _phase(values), **style)
     size.set_yscale("log" if log else "linear")
     size.set_ylabel("amplitude [µm]")
     phase.set_ylabel("phase [deg]")

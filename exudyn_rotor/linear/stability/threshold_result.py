@@ -125,8 +125,12 @@ class StabilityThresholds(Result):
             if reduced:
                 lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{in_table(errors[row]):>11}"
         if not self.values.size:
-            lines.append(f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range")
+            lines.append(self._without_limit)
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
+
+    @property
+    def _without_limit(self) -> str:
+        return f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range"
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded."""
@@ -138,4 +142,6 @@ class StabilityThresholds(Result):
         ax.set_xlabel(self.label)
         ax.set_ylabel("inertial frequency of the mode [rad/s]")
         ax.grid(alpha=0.3)
+        if not len(self.values):
+            ax.set_title(self._without_limit, fontsize="medium")
         return ax

@@ -13,8 +13,13 @@ EVALUATION = [
         ),
         (
             "margin above without its 10 %",
-            "np.minimum(0.10 + margin, 0.26)",
-            "np.minimum(margin, 0.26)",
+            "np.minimum(0.10 + margin, beyond)",
+            "np.minimum(margin, beyond)",
+        ),
+        (
+            "speeds below the operating range are not asked for",
+            "limits * (1.0 + _LARGEST",
+            "limits * (1.0 - _LARGEST",
         ),
         (
             "margin below as a share of the critical speed",
