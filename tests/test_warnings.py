@@ -286,7 +286,7 @@ PLACES = {
         motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics",
     ),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
-        response_below_the_operating_range, UserWarning, "from 126 to 252 rad/s count",
+        response_below_the_operating_range, UserWarning, "count, and the response is known from",
     ),
     "reduction/mean_axis.py:warn_of_held_frame": (
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",
