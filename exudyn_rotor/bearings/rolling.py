@@ -45,7 +45,8 @@ class RollingBearing(Bearing):
     """Radial bearing with balls or rollers.
 
     Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
-    passage of one element. A scene with it does not repeat with every revolution:
+    passage of one element; :func:`rolling_bearing_response` takes the contacts as they are, and
+    tells by how much linear equations err. A scene with it does not repeat with every revolution:
     :func:`steady_state` holds the cage where it starts.
 
     Parameters

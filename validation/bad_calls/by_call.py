@@ -189,7 +189,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("rolling_bearing_response", "at"): _PLACES,
     ("rolling_bearing_response", "speeds"): v.SERIES,
     ("rolling_bearing_response", "downwards"): v.FLAG,
-    ("RollingBearingResponse", "bearings"): v.NAMES,
+    ("RollingBearingResponse", "bearings"): v.WORDS,
     ("RollingBearingResponse", "coordinate_orders"): v.ARRAY,
     ("RollingBearingResponse", "element_loads"): v.ARRAY,
     ("RollingBearingResponse", "errors"): v.ARRAY,
@@ -198,7 +198,9 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("RollingBearingResponse", "open_shares"): v.ARRAY,
     ("RollingBearingResponse", "orders"): v.ARRAY,
     ("RollingBearingResponse", "passes"): v.SIGNED,
-    ("RollingBearingResponse.displacement", "time"): v.ARRAY,
+    ("RollingBearingResponse.displacement", "time"): Kind(
+        v.VECTOR.good | v.EMPTY - {"empty set"}, spoiled=True
+    ),
     ("RollingBearingResponse.phasor", "passing"): v.COUNT,
     ("RollingBearingResponse.phasor", "spin"): v.WHOLE,
     ("RotorBody", "markers"): v.MAPPING,
