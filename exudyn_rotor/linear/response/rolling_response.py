@@ -122,8 +122,10 @@ def rolling_bearing_response(
 
     Notes
     -----
-    A steady motion may be unstable, as near a resonance with clearance and little damping, where
-    runs show jumps, subharmonics and chaos; a run from :meth:`RollingBearingResponse.state` tells.
+    Whether a steady motion is stable is not looked at. With clearance and little damping it often
+    is not: where the ball pass has twice a natural frequency, and near resonances, runs show far
+    larger motions at half the frequency, jumps and chaos. A run from
+    :meth:`RollingBearingResponse.state` tells.
 
     Examples
     --------
