@@ -78,6 +78,22 @@ def oscillating(result):
     return values[values.imag > 20.0]  # which of the real exponents are listed is another matter
 
 
+@pytest.mark.parametrize("speed", [0.0, 200.0])
+def test_overdamped_motions_are_those_of_the_rotor_alone(speed):
+    """Beside a rotor on uneven springs, too: a free motion counts once, not by both its zeros."""
+    rotor, magnets = MAGNETIC
+    uneven = [Support(n, np.diag([k, 2.0 * k, 0.0])) for n, k in (("left", 1e5), ("right", 2e5))]
+    train = RotorTrain(
+        {"A": rotor, "B": rigid(5.0)}, {"A": 1.0, "B": 1.6}, {"A": magnets, "B": uneven}
+    )
+    given = (rotor, {"supports": magnets}), (train, {})
+    alone, both = (campbell(one, [speed], accuracy=None, **more) for one, more in given)
+    decays = [np.sort(r.growth[0][(r.frequencies_inertial[0] == 0.0)]) for r in (alone, both)]
+    found, expected = (each[each < -1.0] for each in decays)
+    assert len(found) > 0
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
 def test_motions_of_controllers_and_pads_hold_in_turning_axes():
     """Found in axes at rest, where the equations of pads and uneven magnets are constant."""
     (first, magnets), (second, pads) = UNDER_WEIGHT, PADS

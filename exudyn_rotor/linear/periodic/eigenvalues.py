@@ -21,6 +21,7 @@ _CLEAR = 1e-10
 _OFF_ROOT = 1e-9
 # 1 − MAC of the state vectors of two copies of a defective eigenvalue
 _PARALLEL = 1e-4
+_EQUAL = 1e-6  # relative difference of overdamped motions that are one in two directions
 # share of the largest stiffness per mass that is none, and that rounding leaves
 _NULL, _STILL_NULL = 1e-12, 1e-14
 
@@ -36,7 +37,11 @@ def resolution_of(values: np.ndarray) -> np.ndarray:
 
 
 def quadratic_modes(
-    M: np.ndarray, D: np.ndarray, K: np.ndarray, rounding: float = EPSILON
+    M: np.ndarray,
+    D: np.ndarray,
+    K: np.ndarray,
+    rounding: float = EPSILON,
+    once: bool = False,
 ) -> list[tuple[np.ndarray, np.ndarray, float, np.ndarray]]:
     """Return one eigenvalue of each pair of ``λ²M + λD + K``, with its vector, system by system.
 
@@ -48,14 +53,16 @@ def quadratic_modes(
         Real, of each system.
     rounding : float, optional
         See :meth:`Companion.of`.
+    once : bool, optional
+        See :func:`less_damped`.
 
     Returns
     -------
     list of tuples
-        values (k,), ascending in |Im λ|: one of every conjugate pair (Im λ > 0), and of the real
-        ones the less damped half; vectors (k, k), displacements, columns of unit length; the size
-        below which differences of eigenvalues are round-off [1/s]; and bounds (k,), by how much
-        rounding can change the real parts [1/s].
+        values (k,), ascending in |Im λ|: one of every conjugate pair (Im λ > 0), and half of the
+        real ones, see :func:`less_damped`; vectors (k, k), displacements, columns of unit length;
+        the size below which differences of eigenvalues are round-off [1/s]; and bounds (k,), by how
+        much rounding can change the real parts [1/s].
 
     Raises
     ------
@@ -68,7 +75,9 @@ def quadratic_modes(
     resolutions = resolution_of(found)
     parts = zip(resolved(found, errors), states, resolutions, strict=True)
     values = np.array([merged(*each) for each in parts])
-    chosen = _one_of_each_pair(values, size)
+    # those of a repeated real one part by rounding
+    values = np.where(np.abs(values.imag) <= errors, values.real, values)
+    chosen = _one_of_each_pair(less_damped(values, M, K, once), values, size)
     values, bounds = (np.take_along_axis(X, chosen, axis=1) for X in (values, bounds))
     vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
@@ -163,12 +172,10 @@ def free_motions(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndar
     count = otherwise.shape[1]
     if count < 2:
         return otherwise
-    inverse = la.solve_triangular(la.cholesky(M, lower=True), np.eye(len(M)), lower=True)
-    per_mass = inverse @ np.reshape(K, (-1, *M.shape)) @ inverse.T
-    _, lengths, rows = la.svd(per_mass.reshape(-1, len(M)), full_matrices=False)
+    _, lengths, rows = la.svd(_per_mass(M, K), full_matrices=False)
     if lengths[-count] > _NULL * lengths[0]:
         return otherwise
-    vectors = inverse.T @ rows[-count:].conj().T
+    vectors = _inverse_root(M).T @ rows[-count:].conj().T
     return vectors / np.linalg.norm(vectors, axis=0)
 
 
@@ -230,7 +237,61 @@ def repeated(values: np.ndarray, resolution: float) -> list[np.ndarray]:
     return result
 
 
-def _one_of_each_pair(values: np.ndarray, count: int) -> np.ndarray:
+def less_damped(values: np.ndarray, M: np.ndarray, K: np.ndarray, once: bool = False) -> np.ndarray:
+    """Return by what real eigenvalues are ranked, (s, 2k), of which the upper half is kept.
+
+    By their real part; but a free motion, which has two zeros where nothing damps it, counts once,
+    and so does, if `once`, an overdamped one that is the same in two directions, as it does in axes
+    that turn: the second of each is −∞ where it would take the place of others. K is (s, k, k), or
+    of each system several (n, k, k) that all have to vanish.
+    """
+    ranks = values.real.copy()
+    overdamped = (values.imag == 0.0) & (ranks < 0.0)
+    for i in np.flatnonzero(np.any(overdamped, axis=1)):
+        zeros = np.flatnonzero(values[i] == 0.0)
+        if zeros.size:
+            kept = max(_free_count(M, K[i], len(zeros)), (len(zeros) + 1) // 2)
+            ranks[i, zeros[kept:]] = -np.inf
+            zeros = zeros[:kept]
+        if not once:
+            continue
+        left = np.flatnonzero(overdamped[i])
+        left = left[np.argsort(-ranks[i, left], kind="stable")]
+        count = np.count_nonzero(values[i].imag == 0.0) // 2
+        count -= len(zeros) + np.count_nonzero((values[i].imag == 0.0) & (ranks[i] > 0.0))
+        ranks[i, np.setdiff1d(left, left[_once(ranks[i, left])][: max(count, 0)])] = -np.inf
+    return ranks
+
+
+def _once(values: np.ndarray) -> np.ndarray:
+    """Return the order of descending values in which one of two equal ones comes first."""
+    first, single, second, at = [], [], [], 0
+    while at < len(values):
+        pair = at + 1 < len(values) and values[at] - values[at + 1] <= -_EQUAL * values[at]
+        (first if pair else single).append(at)
+        if pair:
+            second.append(at + 1)
+        at += 1 + pair
+    return np.array([*first, *single, *second], dtype=int)
+
+
+def _free_count(M: np.ndarray, K: np.ndarray, most: int) -> int:
+    """Return the number of free motions, ``Kx = 0``, up to `most`."""
+    lengths = la.svd(_per_mass(M, K), compute_uv=False)
+    return int(np.count_nonzero(lengths[-most:] <= _NULL * lengths[0]))
+
+
+def _per_mass(M: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return ``L⁻¹KL⁻ᵀ`` of matrices K (n, k, k) or one, below each other, with ``M = LLᵀ``."""
+    inverse = _inverse_root(M)
+    return (inverse @ np.reshape(K, (-1, *M.shape)) @ inverse.T).reshape(-1, len(M))
+
+
+def _inverse_root(M: np.ndarray) -> np.ndarray:
+    return la.solve_triangular(la.cholesky(M, lower=True), np.eye(len(M)), lower=True)
+
+
+def _one_of_each_pair(ranks: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     """Return the indices (s, count) of values (s, 2k) that stand for all, ascending in |Im λ|.
 
     Raises
@@ -239,7 +300,7 @@ def _one_of_each_pair(values: np.ndarray, count: int) -> np.ndarray:
         If the values are not conjugate pairs and an even number of real ones.
     """
     real = values.imag == 0.0
-    places = np.argsort(np.lexsort((-values.real, ~real)), axis=1)  # real ones first, descending
+    places = np.argsort(np.lexsort((-ranks, ~real)), axis=1)  # real ones first, descending
     chosen = (values.imag > 0.0) | (places < real.sum(axis=1, keepdims=True) // 2)
     counts = np.where(np.isfinite(values).all(axis=1), chosen.sum(axis=1), 0)
     wrong = counts[counts != count]

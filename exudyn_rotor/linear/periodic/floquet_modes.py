@@ -1,7 +1,8 @@
 """Modes of linear equations at one spin speed, constant or periodic.
 
 The 2k exponents are conjugate pairs and an even number of real ones. One of every conjugate pair is
-returned (Im λ > 0), and of the real ones the less damped half, so that k modes stand for all. Of
+returned (Im λ > 0), and of the real ones the less damped half, with one of the two zeros of a free
+motion (:func:`.eigenvalues.less_damped`), so that k modes stand for all. Of
 each Floquet family ``λ + i p Ω`` the member with the largest central harmonic is taken.
 """
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import (
     free_motions,
+    less_damped,
     merged,
     quadratic_modes,
     repeated,
@@ -81,7 +83,7 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
-    found = solve_hill(system, partial(_one_of_each_pair, speed=system.speed), tolerance)
+    found = solve_hill(system, partial(_one_of_each_pair, system=system), tolerance)
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
 
@@ -91,12 +93,15 @@ def gone(values: np.ndarray, speed: float) -> np.ndarray:
     return -values.real > _GONE * abs(speed)
 
 
-def constant_modes(systems: ConstantSystems) -> list[FloquetModes]:
-    """Return the motions of systems that do not change in time and have one mass matrix."""
+def constant_modes(systems: ConstantSystems, once: bool = False) -> list[FloquetModes]:
+    """Return the motions of systems that do not change in time and have one mass matrix.
+
+    `once` is that of :func:`.eigenvalues.less_damped`.
+    """
     return [
         FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
         for values, vectors, resolution, bounds in quadratic_modes(
-            systems.M[0], systems.D, systems.K, systems.rounding
+            systems.M[0], systems.D, systems.K, systems.rounding, once
         )
     ]
 
@@ -109,13 +114,15 @@ def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | Non
     return np.concatenate([columns, columns[~alone] + 1])  # conjugates follow each other
 
 
-def _one_of_each_pair(solution: HillSolution, speed: float) -> Chosen | None:
+def _one_of_each_pair(solution: HillSolution, system: PeriodicSystem) -> Chosen | None:
     """Choose one motion for each pair of Floquet families; None where some are not found."""
+    speed = system.speed
     values, shapes, columns, alone = _apart(solution, speed)
     if columns is None:
         return None
     real = columns[alone]
-    real = real[np.argsort(-values[real].real, kind="stable")][: len(real) // 2]
+    ranks = less_damped(values[real][None], system.M[0].real, [_stiffnesses(system)])[0]
+    real = real[np.argsort(-ranks, kind="stable")][: len(real) // 2]
     columns = np.concatenate([columns[~alone], real])
     order = np.lexsort((values[columns].real, values[columns].imag))
     columns, paired = columns[order], order < np.count_nonzero(~alone)
@@ -154,17 +161,21 @@ def _with_free_motions(system: PeriodicSystem, found: HillMotions) -> np.ndarray
     free = np.flatnonzero(found.values == 0.0)
     if free.size < 2:
         return found.shapes
-    terms = [term for n, term in system.K.items() if n >= 0]
-    K = np.array([part for term in terms for part in (term.real, term.imag)])
     center = np.flatnonzero(found.orders == 0)[0]
     given = found.shapes[center][:, free]
-    free_ones = free_motions(system.M[0].real, K, given)
+    free_ones = free_motions(system.M[0].real, _stiffnesses(system), given)
     if free_ones is given:
         return found.shapes
     shapes = found.shapes.copy()
     shapes[:, :, free] = 0.0
     shapes[center][:, free] = free_ones
     return shapes
+
+
+def _stiffnesses(system: PeriodicSystem) -> np.ndarray:
+    """Return the parts of all Fourier terms of the stiffness, shape (n, k, k)."""
+    terms = [term for n, term in system.K.items() if n >= 0]
+    return np.array([part for term in terms for part in (term.real, term.imag)])
 
 
 def _unmixed(vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:

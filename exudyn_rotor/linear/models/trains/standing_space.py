@@ -40,9 +40,8 @@ class StandingSpace(WholeSpace):
         """Return all modes."""
         if self.at(speed).stands_still:
             return super().modes(speed, tolerance)
-        found = self._turned(
-            constant_modes(ConstantSystems.of([self.standing.at(speed)]))[0], speed
-        )
+        systems = ConstantSystems.of([self.standing.at(speed)])
+        found = self._turned(constant_modes(systems, once=True)[0], speed)
         negative = found.values.imag < 0.0
         values = np.where(negative, found.values.conj(), found.values)
         vectors = np.where(negative, found.vectors[::-1].conj(), found.vectors)
