@@ -195,7 +195,7 @@ class AnnularSeal(Bearing):
             checks.vector(load, "load", "N", size=2)
         return np.zeros(2)
 
-    def _gap(self, direction: np.ndarray) -> float:
+    def _gap(self, direction: np.ndarray | None = None) -> float:
         return self.clearance
 
     def _law(

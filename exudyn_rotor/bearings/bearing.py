@@ -111,8 +111,8 @@ class Bearing(LoadedBearing):
         """Return how far that way, of length 1 (2,), the law is that of a film [m]."""
         return inf
 
-    def _gap(self, direction: np.ndarray) -> float:
-        """Return how far that way, of length 1 (2,), the journal may go until it touches [m]."""
+    def _gap(self, direction: np.ndarray | None = None) -> float:
+        """Return how far that way, of length 1 (2,), or at least, the journal may go [m]."""
         return inf
 
     @abstractmethod

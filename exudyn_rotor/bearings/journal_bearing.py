@@ -78,7 +78,9 @@ class JournalBearing(Bearing):
     def _reach(self, direction: np.ndarray) -> float:
         return self.film._reach(direction, self.film.thinnest)
 
-    def _gap(self, direction: np.ndarray) -> float:
+    def _gap(self, direction: np.ndarray | None = None) -> float:
+        if direction is None:
+            return self.film.clearance
         return self.film._reach(direction, 0.0)
 
     @property

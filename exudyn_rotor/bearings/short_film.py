@@ -85,7 +85,7 @@ class ShortFilmBearing(Bearing):
     def _reach(self, direction: np.ndarray) -> float:
         return THINNEST * self.clearance
 
-    def _gap(self, direction: np.ndarray) -> float:
+    def _gap(self, direction: np.ndarray | None = None) -> float:
         return self.clearance
 
     def _checked_film(

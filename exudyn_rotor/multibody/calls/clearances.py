@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from math import hypot, inf
 
 import exudyn
@@ -25,7 +26,6 @@ from exudyn_rotor.multibody.wrapping import wraps_method
 
 _BEARINGS = "exudyn_rotor: bearings that journals must not leave"  # key in mbs.sys
 _KINDS = exudyn.OutputVariableType
-_SIDES = np.vstack([np.eye(2), -np.eye(2)])  # a pad has one of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +52,16 @@ class _Watched:
     rotor: str | None
     across: np.ndarray | None
 
-    def place(self, mbs: exudyn.MainSystem) -> tuple[float, float]:
-        """Return the journal's place against the bearing [m]."""
+    @cached_property
+    def least(self) -> float:
+        """Clearance within which the journal touches nowhere [m]."""
+        return self.bearing._gap()
+
+    def place(self, mbs: exudyn.MainSystem) -> np.ndarray:
+        """Return the journal's place against the bearing [m], shape (2,)."""
         if self.across is None:
-            return tuple(mbs.GetObjectOutput(self.number, _KINDS.DisplacementLocal)[:2])
-        return tuple(mbs.GetObjectOutput(self.number, _KINDS.Displacement) @ self.across)
+            return mbs.GetObjectOutput(self.number, _KINDS.DisplacementLocal)[:2]
+        return mbs.GetObjectOutput(self.number, _KINDS.Displacement) @ self.across
 
 
 def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectIndex) -> None:
@@ -80,7 +85,9 @@ def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
     left: list[str] = []
 
     def look(mbs: exudyn.MainSystem, t: float) -> bool:
-        left.extend(filter(None, (_left(mbs, each, t) for each in watched)))
+        for each in watched:
+            if told := _left(mbs, each, t):
+                left.append(told)
         return not left and (own is None or own(mbs, t))
 
     mbs.SetPostStepUserFunction(look)
@@ -107,18 +114,17 @@ def _in_scene(mbs: exudyn.MainSystem) -> list[_Watched]:
     return [
         each
         for each in present
-        if (each.mark, each.bearing.interface) not in stopped
-        and min(map(each.bearing._gap, _SIDES)) < inf
+        if (each.mark, each.bearing.interface) not in stopped and each.least < inf
     ]
 
 
 def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> str | None:
     """Return what is wrong with a journal outside its clearance; None for one inside."""
     place = watched.place(mbs)
-    distance = hypot(*place)
-    if not distance:
+    distance = hypot(*place.tolist())
+    if distance < watched.least:
         return None
-    gap = watched.bearing._gap(np.array(place) / distance)
+    gap = watched.bearing._gap(place / distance)
     if distance < gap:
         return None
     return (
