@@ -60,6 +60,7 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
     "Sizes, units, materials": (
         sizes.lengths,
         sizes.units,
+        sizes.analyses,
         sizes.poisson,
         sizes.densities,
         sizes.far_axis,
