@@ -114,7 +114,7 @@ BEARINGS = [
     ),
     *mutations(
         "bearings/journal_bearing.py",
-        "test_mass_conserving.py::test_coefficients_are_those_of_small_whirl_in_time "
+        "test_mass_conserving.py::test_small_motion_in_a_scene_decays_as_the_linear_film_says "
         "test_mass_conserving.py::test_a_run_that_begins_again_forgets",
         ("an earlier run is remembered", " and time > self._begun[0]", ""),
         (
