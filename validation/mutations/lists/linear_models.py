@@ -228,7 +228,7 @@ LINEAR_MODELS = [
     ),
     *mutations(
         "linear/models/rotor/rotor_on_supports.py",
-        "test_campbell.py",
+        "test_campbell_frames.py::test_anisotropic_support_of_a_point_mass",
         (
             "stiffness by damping that stands still, against the spin",
             "K.get(n, 0.0) + speed * X",
