@@ -118,9 +118,9 @@ def shared(
 def in_turns(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
     """Return what :func:`shared` does, of a function that mostly runs in Python.
 
-    One thread at a time does; others solve their eigenproblems by :func:`eig` meanwhile, which must
-    not stand in a ``cached_property``: Python 3.11 has one lock for all objects. If all ran in
-    Python, they would wait for one another at every call of numpy.
+    One thread at a time does; others solve their eigenproblems by :func:`eig` meanwhile. If all ran
+    in Python, they would wait for one another at every call of numpy. What calls :func:`eig` must
+    hold no lock that another item needs, as a property of ``functools`` does before Python 3.12.
     """
     turn = Lock()
 

@@ -1,5 +1,7 @@
 """One thread of BLAS for small dense problems."""
 
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier, Event, get_ident
 
@@ -7,6 +9,8 @@ import numpy as np
 import pytest
 from threadpoolctl import ThreadpoolController
 
+import exudyn_rotor
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.threads import eig, in_turns, meanwhile, one_thread, shared
 
@@ -94,6 +98,60 @@ def test_one_thread_at_a_time_runs_but_for_eigenproblems(monkeypatch):
 
     assert in_turns(done, range(6)) == list(range(6))
     assert other_ran.is_set()
+
+
+PROPERTIES = """
+import sys
+import threading
+import types
+import numpy as np
+
+sys.modules["exudyn_rotor"] = package = types.ModuleType("exudyn_rotor")
+package.__path__ = sys.argv[1:]  # two modules alone, as the whole package takes seconds
+from threadpoolctl import ThreadpoolController
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.threads import eig, in_turns
+
+both, solve = threading.Barrier(2), np.linalg.eig
+np.linalg.eig = lambda matrix: both.wait() * 0.0 + solve(matrix)[0]
+
+
+class Equations:
+    @cached_property
+    def values(self):
+        return eig(np.eye(2))
+
+
+with ThreadpoolController().limit(limits=2, user_api="blas"):
+    print(in_turns(lambda each: each.values.tolist(), [Equations(), Equations()]))
+"""
+
+
+def test_eigenproblems_of_properties_leave_the_turn_to_others():
+    """With a lock of all objects both threads would stop for good."""
+    call = [sys.executable, "-c", PROPERTIES, *exudyn_rotor.__path__]
+    done = subprocess.run(call, capture_output=True, text=True, timeout=10.0, check=True)
+    assert done.stdout == "[[1.0, 1.0], [1.0, 1.0]]\n"
+
+
+@pytest.mark.usefixtures("two_threads")
+def test_properties_are_computed_once_without_a_lock():
+    """Two threads at one object get the same value."""
+    computed, both = [], Barrier(2, timeout=20.0)
+
+    class Equations:
+        @cached_property
+        def values(self) -> object:
+            """Return values."""
+            computed.append(both.wait())
+            return object()
+
+    one, other = Equations(), Equations()
+    first, second = shared(lambda _number: one.values, range(2))
+    assert first is second is one.values
+    assert len(computed) == 2
+    assert len({id(each) for each in shared(lambda each: each.values, [other, Equations()])}) == 2
+    assert Equations.values.__doc__ == "Return values."
 
 
 @pytest.mark.parametrize("threads", [1, 2])

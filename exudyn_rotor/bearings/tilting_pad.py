@@ -19,7 +19,6 @@ J. W. Lund, *Spring and damping coefficients for the tilting-pad journal bearing
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -34,6 +33,7 @@ from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 
 _KEPT = 16  # equilibria
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain

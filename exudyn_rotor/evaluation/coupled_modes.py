@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.modal.campbell import campbell
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

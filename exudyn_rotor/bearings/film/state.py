@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
@@ -11,6 +10,7 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Solution
+from exudyn_rotor.cached import cached_property
 
 _WHIRLS = np.geomspace(0.05, 2.0, 24)  # ratios between which that of a limit is looked for
 

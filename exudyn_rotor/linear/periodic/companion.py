@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, times
 from exudyn_rotor.threads import eig
 

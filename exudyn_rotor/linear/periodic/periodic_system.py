@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from math import gcd
 
 import numpy as np
 import scipy.linalg as la
+
+from exudyn_rotor.cached import cached_property
 
 EPSILON = float(np.finfo(float).eps)
 Terms = Mapping[int, np.ndarray]

@@ -21,11 +21,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts, depth_under
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.protocol import Space
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.linear.response.places import Motion, Place, in_frame

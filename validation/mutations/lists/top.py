@@ -4,6 +4,17 @@ from validation.mutations.mutation import mutations
 
 TOP = [
     *mutations(
+        "cached.py",
+        "test_threads.py",
+        (
+            "one lock for a property of all objects",
+            "            return instance.__dict__.setdefault",
+            "            with __import__('logging')._lock:\n"
+            "                return instance.__dict__.setdefault",
+        ),
+        ("the value not kept", ".setdefault(", ".__class__().setdefault("),
+    ),
+    *mutations(
         "storage.py",
         "test_results.py::test_arrays_come_back_from_either_memory_order "
         "test_results.py::test_one_changed_value_is_damage",

@@ -8,10 +8,10 @@ given equations.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.basis.finer_rotor import Basis, FinerRotor
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.models.trains.train_elements import places_of

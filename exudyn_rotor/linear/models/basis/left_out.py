@@ -26,11 +26,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.basis.finer_model import FinerModel, finer_model
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -12,6 +11,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.rotor.eccentricity import warn_of_eccentricity
 from exudyn_rotor.linear.models.rotor.spin import Spin, spin_of
 from exudyn_rotor.linear.models.rotor.supported_rotor import SupportedRotor

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.free_motions import free_motions_of_solid
 from exudyn_rotor.linear.models.full.full_equations import FullEquations
 from exudyn_rotor.linear.models.full.subspace import Subspace

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace

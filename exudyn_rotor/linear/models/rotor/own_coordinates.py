@@ -14,13 +14,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
 
 from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.links import Element, join_turning, stacked, turned_terms
 from exudyn_rotor.linear.models.points import ACROSS
 from exudyn_rotor.linear.periodic.periodic_system import Terms

@@ -9,12 +9,12 @@ revolution, whatever the support is.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.models.links import join, join_turning
 from exudyn_rotor.linear.models.protocol import PointMotions

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar
 from weakref import WeakKeyDictionary
 
@@ -17,6 +16,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions

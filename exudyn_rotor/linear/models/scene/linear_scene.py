@@ -14,13 +14,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene.probe import Probe, probing

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.scene.equilibrium import (
     FAR,
     NOISE,

@@ -10,12 +10,12 @@ directions across the axis; the rest repeats with θ = Ωt. Coordinates of contr
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as la
 
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.free_motions import named_motions
 from exudyn_rotor.linear.models.links import (
     Element,
