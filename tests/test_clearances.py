@@ -6,6 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import LoadForceVector
+from exudyn.utilities import InertiaCuboid
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -22,6 +23,7 @@ from exudyn_rotor import (
     grooved_pads,
     recommended_settings,
 )
+from exudyn_rotor.multibody.calls import clearances
 
 CLEARANCE, SPEED = 1e-4, 300.0
 TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -48,23 +50,43 @@ KINDS = {
 }  # fmt: skip
 
 
-def scene(bearings, load=0.0, **options):
+def sled(mbs):
+    """Return a base that moves."""
+    block = InertiaCuboid(density=1e6, sideLengths=[1.0, 1.0, 1.0])
+    return mbs.CreateRigidBody(inertia=block, initialVelocity=[0.0, 2.0, 0.0])
+
+
+def scene(bearings, load=0.0, base=None, **options):
     rotor = ring_rotor(0.1, 0.15, 20.0)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, rotor, **(options or {"spin": SPEED}))
     held = Support("right", 1e7, 1e3)
-    added = add_supports(body, [*bearings, held])
+    added = add_supports(body, [*bearings, held], base and base(mbs))
     if load:
         mbs.AddLoad(LoadForceVector(markerNumber=body.marker("left"), loadVector=[0.0, load, 0.0]))
     mbs.Assemble()
     return mbs, body, added
 
 
-def run(mbs, end_time=4e-3, step=1e-4):
+def start(mbs, body, rate=0.0, place=0.0):
+    """Let the rotor begin with a rate [m/s] and a place [m] along y."""
+    initial, system = exu.ConfigurationType.Initial, mbs.systemData
+    second = mbs.GetNodeODE2Index(body.nodes["rigid"]) + 1
+    rates, places = (
+        np.array(read(initial)) for read in (system.GetODE2Coordinates_t, system.GetODE2Coordinates)
+    )
+    rates[second], places[second] = rate, place
+    system.SetODE2Coordinates_t(rates, initial)
+    system.SetODE2Coordinates(places, initial)
+
+
+def run(mbs, end_time=4e-3, step=1e-4, change=None, **how):
     settings = recommended_settings(end_time=end_time, step=step)
     settings.solution.file.write = False
-    return mbs.SolveDynamic(settings)
+    if change is not None:
+        change(settings.timeIntegration)
+    return mbs.SolveDynamic(settings, **how)
 
 
 @pytest.mark.parametrize(
@@ -87,6 +109,75 @@ def test_a_run_ends_where_a_journal_leaves(kind, options):
     assert 0.0 < mbs.systemData.GetTime() < 4e-3
 
 
+def adaptive_steps(integration):
+    integration.adaptiveStep, integration.numberOfSteps = True, 4
+    integration.newton.maxIterations = 5  # takes a sixteenth of the first step
+
+
+def no_force_at_first(integration):
+    integration.generalizedAlpha.computeInitialAccelerations = False
+
+
+CASES = {  # kind, options of the scene, start, and of the run
+    "slowly": ("seal", {"load": -3e4}, {}, {}),
+    "through a film": ("short journal", {"load": -3e6}, {}, {}),
+    "braked": ("film", {"load": -3e5, "initial_speed": 1.0}, {"place": -0.98 * CLEARANCE}, {}),
+    "another axis": ("seal", {"load": -3e4, "spin": SPEED, "rotation": TO_X}, {}, {}),
+    "explicit steps": (
+        "seal", {"load": -3e4}, {}, {"solverType": exu.DynamicSolverType.DOPRI5}
+    ),
+    "adaptive steps": ("short journal", {"load": -3e5}, {}, {"change": adaptive_steps}),
+    "a base that leaves": ("seal", {"base": sled}, {}, {}),
+    "across in a step": ("seal", {}, {"rate": -30.0, "place": 0.9 * CLEARANCE}, {}),
+    "from the start": ("seal", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
+    """That is the first of a run that is not looked at, by places of markers; twice."""
+    kind, options, beginning, how = CASES[case]
+    mbs, body, added = scene([KINDS[kind]], **options)
+    start(mbs, body, **beginning)
+    markers = mbs.GetObject(added[0].objects[0])["markerNumbers"]
+    distances = {}
+
+    def own(mbs, t):
+        seat, journal = (
+            mbs.GetMarkerOutput(each, exu.OutputVariableType.Position) for each in markers
+        )
+        distances[t] = np.linalg.norm((journal - seat) @ body.standing_axes[:, :2])
+        return distances[t] < CLEARANCE
+
+    with monkeypatch.context() as patch:
+        patch.setattr(clearances, "_in_scene", lambda mbs: [])
+        mbs.SetPostStepUserFunction(own)
+        run(mbs, **how)
+    mbs.SetPostStepUserFunction(0)
+    time, distance = distances.popitem()
+    assert distance >= CLEARANCE
+    assert all(each < CLEARANCE for each in distances.values())
+    for _ in range(2):
+        with pytest.raises(ValueError, match="left its bearing") as error:
+            run(mbs, **how)
+        assert f" at t = {time:g} s: its journal is {distance:.3g} m from" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "rate"),
+    [({"spin": SPEED}, 0.0), ({"initial_speed": SPEED}, 0.0), ({"base": sled}, 2.0)],
+)
+def test_steps_inside_are_not_looked_at(options, rate, monkeypatch):
+    """But the initial state of each run; also where all moves by many clearances."""
+    looks = []
+    monkeypatch.setattr(clearances, "_left", lambda mbs, watched, t: looks.append(t))
+    mbs, body, _ = scene([KINDS["short journal"]], -100.0, **options)
+    start(mbs, body, rate)
+    assert run(mbs)
+    assert run(mbs)
+    assert looks == [0.0, 0.0]
+
+
 def test_trial_states_outside_do_not_end_a_run(monkeypatch):
     """The first trial of a step takes the velocity of its beginning, 1.5 clearances a step."""
     law, tried = SqueezeFilmDamper._law, []
@@ -97,10 +188,7 @@ def test_trial_states_outside_do_not_end_a_run(monkeypatch):
 
     monkeypatch.setattr(SqueezeFilmDamper, "_law", noted)
     mbs, body, _ = scene([KINDS["squeeze film"]])
-    initial = exu.ConfigurationType.Initial
-    rates = np.array(mbs.systemData.GetODE2Coordinates_t(initial))
-    rates[mbs.GetNodeODE2Index(body.nodes["rigid"]) + 1] = 1.5
-    mbs.systemData.SetODE2Coordinates_t(rates, initial)
+    start(mbs, body, 1.5)
     assert run(mbs, 5e-4)
     assert max(tried) > 1.2 * CLEARANCE
 

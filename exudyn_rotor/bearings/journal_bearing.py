@@ -160,7 +160,7 @@ class TangentFilm:
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
-        self._bearing, self._film = bearing, bearing.film
+        self._bearing, self._film, self._gap = bearing, bearing.film, bearing._gap
         self._whole = FilmLaw(bearing.film, torque=True)
         self._tangent: tuple[FilmState, np.ndarray] | None = None
         self._held = False

@@ -2,8 +2,11 @@
 
 Newton's method may try states outside, where forces go on by a tangent; a step that has been
 accepted there means nothing. Importing this module lets ``mbs.SolveDynamic()`` look at the journals
-after every accepted step, beside the script's own function for that, and stop with an error. Where
-a :class:`ClearanceStop` acts at the same interface, contact is meant, and nothing is looked at.
+after an accepted step, beside the script's own function for that, and stop with an error. Where a
+:class:`ClearanceStop` acts at the same interface, contact is meant, and nothing is looked at.
+
+Connectors note where they are evaluated further out than the least clearance. A step without such
+an evaluation is not looked at, for Exudyn evaluates forces at the state that it accepts.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.wrapping import wraps_method
 
 _BEARINGS = "exudyn_rotor: bearings that journals must not leave"  # key in mbs.sys
+_FAR_OUT = "exudyn_rotor: connectors of bearings evaluated beyond the least clearance"
 _KINDS = exudyn.OutputVariableType
 
 
@@ -73,6 +77,11 @@ def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectInd
     body.mbs.sys.setdefault(_BEARINGS, []).append(watched)
 
 
+def far_out(mbs: exudyn.MainSystem) -> set[int]:
+    """Return where connectors note that they were evaluated beyond their least clearance."""
+    return mbs.sys.setdefault(_FAR_OUT, set())
+
+
 @contextmanager
 def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
     """Stop a run within by a ValueError where a journal leaves its clearance."""
@@ -83,11 +92,13 @@ def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
     given = mbs.GetPostStepUserFunction()
     own = given["function"] if given else None
     left: list[str] = []
+    noted = far_out(mbs)
+    noted.update(int(each.number) for each in watched)  # the initial state is looked at
 
     def look(mbs: exudyn.MainSystem, t: float) -> bool:
-        for each in watched:
-            if told := _left(mbs, each, t):
-                left.append(told)
+        if noted:
+            noted.clear()
+            left.extend(filter(None, (_left(mbs, each, t) for each in watched)))
         return not left and (own is None or own(mbs, t))
 
     mbs.SetPostStepUserFunction(look)

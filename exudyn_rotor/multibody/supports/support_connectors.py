@@ -28,7 +28,7 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw, TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
-from exudyn_rotor.multibody.calls.clearances import watch_clearance
+from exudyn_rotor.multibody.calls.clearances import far_out, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 from exudyn_rotor.theory.rotating_axes import axial_rotation
@@ -153,6 +153,7 @@ def _bearing_function(
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     brakes, begin = body.formulation.has_spin, _no_memory
+    least, noted = bearing._gap() ** 2, far_out(body.mbs)
     if isinstance(bearing, JournalBearing) and bearing.remembers:
         law = RememberingLaw(bearing.film, torque=brakes)
         begin = _beginning(body, law, axes)
@@ -160,12 +161,14 @@ def _bearing_function(
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
     if brakes:
-        return _BRAKING, _braking_function(law, spin, begin)
+        return _BRAKING, _braking_function(law, spin, begin, least, noted)
     (a, d), (b, e), (c, f) = axes[:, :2].tolist()
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         begin(mbs, t, item)
         x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
+        if x * x + y * y >= least:
+            noted.add(item)
         vx, vy = a * v[0] + b * v[1] + c * v[2], d * v[0] + e * v[1] + f * v[2]
         fx, fy = law(x, y, vx, vy, *spin(mbs))
         return [-a * fx - d * fy, -b * fx - e * fy, -c * fx - f * fy]
@@ -173,11 +176,18 @@ def _bearing_function(
     return "springForceUserFunction", force
 
 
-def _braking_function(law: LawWithTorque, spin: SpinReader, begin: Beginning) -> Callable:
-    """Return force and torque, in the axes of the connector's base."""
+def _braking_function(
+    law: LawWithTorque, spin: SpinReader, begin: Beginning, least: float, noted: set[int]
+) -> Callable:
+    """Return force and torque, in the axes of the connector's base.
+
+    A place beyond the square `least` of the least clearance is noted.
+    """
 
     def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
         begin(mbs, t, item)
+        if u[0] * u[0] + u[1] * u[1] >= least:
+            noted.add(item)
         fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
         return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
 

@@ -425,6 +425,27 @@ MULTIBODY = [
         ("a script's own function left out", "(own is None or own(mbs, t))", "True"),
     ),
     *mutations(
+        "multibody/calls/clearances.py",
+        "test_clearances.py",
+        ("every step looked at", "            noted.clear()\n", ""),
+        (
+            "initial state not looked at",
+            "noted.update(int(each.number) for each in watched)",
+            "pass",
+        ),
+    ),
+    *mutations(
+        "multibody/supports/support_connectors.py",
+        "test_clearances.py",
+        ("journals outside across a line unseen", "x * x + y * y >= least", "x * x >= least"),
+        (
+            "journals that brake outside unseen",
+            "u[0] * u[0] + u[1] * u[1] >= least",
+            "u[0] * u[0] >= least",
+        ),
+        ("a hundred clearances looked at as one", "bearing._gap() ** 2", "bearing._gap()"),
+    ),
+    *mutations(
         "multibody/supports/seats.py",
         "test_supports_in_scenes.py::test_a_foundation_feels_the_forces",
         (
