@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import spacing
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, dynamic_matrices
 
 
 def solved(
@@ -112,10 +112,11 @@ def _blocks(
     result = np.zeros(shape, dtype=complex)
     for side, row, column in np.ndindex(sides, *counts):
         m = columns[side % len(columns), column]
-        rate = (values + 1j * m * system.speed)[:, None, None]
         n = int(rows[side % len(rows), row] - m)
-        M, D, K = (terms.get(n, 0.0) for terms in (system.M, system.D, system.K))
-        result[side, :, row, :, column] = (rate * M + D) * rate + K
+        given = [terms.get(n) for terms in (system.M, system.D, system.K)]
+        if any(X is not None for X in given):
+            rates = values + 1j * m * system.speed
+            result[side, :, row, :, column] = dynamic_matrices(given, rates)
     return result.reshape(sides, len(values), *(count * system.size for count in counts))
 
 

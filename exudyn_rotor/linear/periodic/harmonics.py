@@ -10,7 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.linear.periodic.periodic_system import (
+    PeriodicSystem,
+    Terms,
+    dynamic_matrices,
+    times,
+)
 
 
 def hill_matrices(
@@ -64,8 +69,8 @@ def feedback(
             excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
         if np.ndim(excited) == 0:
             continue
-        rate = (values + 1j * n * system.speed)[:, None, None]
-        dynamic = rate**2 * system.M[0] + rate * system.D[0] + system.K[0]
+        given = system.M[0], system.D[0], system.K[0]
+        dynamic = dynamic_matrices(given, values + 1j * n * system.speed)
         answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
         answers[n] = answer
         for m in range(len(orders)):
@@ -141,7 +146,8 @@ def convolved(terms: Terms, shapes: np.ndarray, orders: np.ndarray) -> np.ndarra
         kept = len(orders) - abs(steps)
         if kept > 0 and not between:
             to, at = max(steps, 0), max(-steps, 0)
-            result[to : to + kept] += X @ shapes[at : at + kept]
+            given = shapes[at : at + kept]
+            result[to : to + kept] += X @ given if np.iscomplexobj(X) else times(X, given)
     return result
 
 

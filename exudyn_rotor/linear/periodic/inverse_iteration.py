@@ -9,6 +9,7 @@ from exudyn_rotor.linear.periodic.harmonics import adjoint_slopes, convolved, sl
 from exudyn_rotor.linear.periodic.periodic_system import (
     ConstantSystems,
     PeriodicSystem,
+    dynamic_matrices,
     times,
 )
 from exudyn_rotor.threads import shared
@@ -109,15 +110,10 @@ def moved_together(
 
 
 def _dynamic(systems: ConstantSystems, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return ``λ²M + λD + K`` of systems at those λ (s, j) that are wanted, by real products."""
-    result = np.empty((np.count_nonzero(wanted), systems.D[0].size), dtype=complex)
-    powers = np.stack([values**2, values, np.ones_like(values)], axis=-1)[wanted]
-    ends = np.cumsum(np.count_nonzero(wanted, axis=1))
-    terms = np.stack([np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K], axis=1)
-    for few, each in zip(map(slice, ends - np.diff(ends, prepend=0), ends), terms, strict=True):
-        each = each.reshape(3, -1)
-        result.real[few], result.imag[few] = powers.real[few] @ each, powers.imag[few] @ each
-    return result.reshape(-1, *systems.D.shape[1:])
+    """Return ``λ²M + λD + K`` of systems at those λ (s, j) that are wanted."""
+    terms = zip(np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K, strict=True)
+    each = zip(terms, values, wanted, strict=True)
+    return np.concatenate([dynamic_matrices(given, few[kept]) for given, few, kept in each])
 
 
 def settled(

@@ -7,7 +7,7 @@ with the matrices given by their Fourier terms in θ; constant where only the te
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import gcd
 
@@ -165,6 +165,19 @@ def times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Return real matrices (…, n, k) times complex vectors (…, k, j), by real products."""
     parts = np.ascontiguousarray(vectors, dtype=complex).view(float)
     return (matrices @ parts).view(complex)
+
+
+def dynamic_matrices(terms: Sequence[np.ndarray | None], rates: np.ndarray) -> np.ndarray:
+    """Return ``λ²M + λD + K`` at all λ of `rates` (j,), shape (j, k, k); None counts as zero."""
+    kept = [i for i, X in enumerate(terms) if X is not None]
+    powers = np.vander(rates, 3)[:, kept]
+    given = np.stack([terms[i].ravel() for i in kept])
+    if np.iscomplexobj(given):
+        result = powers @ given
+    else:
+        result = np.empty((len(rates), given.shape[1]), dtype=complex)
+        result.real, result.imag = powers.real @ given, powers.imag @ given
+    return result.reshape(len(rates), *terms[kept[0]].shape)
 
 
 def fold(exponents: np.ndarray, base: float) -> np.ndarray:
