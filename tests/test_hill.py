@@ -12,8 +12,9 @@ from test_stability import anisotropic, mathieu, random_system
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import hill, truncation
-from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.exponents import exponents, motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
+from exudyn_rotor.linear.periodic.fundamental import sum_of_exponents
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
@@ -221,3 +222,41 @@ def test_a_mass_that_one_direction_alone_holds(held, k, drag):
     apart = np.abs(fold(values[:, None] - exact, system.base))
     assert len(found.values) == 2
     assert apart.min(axis=0).max() < 1e-6  # of the double root 0, the root of rounding
+
+
+def swelling(a: float, stiffness: float) -> PeriodicSystem:
+    """Return the equation of ``x = y exp(a sin 2t)`` with ``ÿ + 0.3ẏ + stiffness y = 0``.
+
+    Its exponents are those of y. With ``g = a sin 2t`` it is
+    ``ẍ + (0.3 − 2ġ) ẋ + (stiffness − 0.3ġ + ġ² − g̈) x = 0``.
+    """
+    one = np.eye(1)
+    damping = {0: 0.3 * one, 1: -2.0 * a * one, -1: -2.0 * a * one}
+    first = (-0.3 * a - 2.0j * a) * one
+    second = a**2 * one
+    terms = {0: stiffness * one + 2.0 * second, 1: first, -1: first.conj(), 2: second, -2: second}
+    return PeriodicSystem(2.0, {0: one}, damping, terms)
+
+
+@pytest.mark.parametrize("stiffness", [40.0, -2.0])
+@pytest.mark.parametrize("a", [5.0, 10.0, 20.0, 30.0])
+def test_exponents_of_motions_that_swell_within_a_turn(a, stiffness):
+    """By up to e⁶⁰, at which Hill's method alone takes stable ones for unstable."""
+    system, exact = swelling(a, stiffness), np.roots([1.0, 0.3, stiffness]).astype(complex)
+    found = motions(system)
+    apart = np.abs(fold(found.values[:, None] - exact, system.base))
+    assert np.all(apart.min(axis=1) <= 2.0 * found.bounds + 1e-8)
+    if a >= 20.0:
+        with pytest.raises(UnconvergedError, match="sum of the exponents"):
+            motions(system, "hill")
+    else:
+        assert np.array_equal(motions(system, "hill").values, found.values)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sum_of_exponents_is_the_mean_trace(seed):
+    """With a constant and a periodic mass matrix, against Floquet's method."""
+    for system in (random_system(seed), turning_rotor(seed)):
+        expected, error = sum_of_exponents(system)
+        assert error < 1e-9
+        assert np.sum(exponents(system, "floquet", 1e-12)).real == pytest.approx(expected, abs=1e-7)

@@ -15,6 +15,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 
 MOST_STEPS = 2**14
 _CHUNK = 128
+_SAMPLES = 16  # a period and harmonic, of the mean of what is not a polynomial of the coefficients
 
 
 def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
@@ -52,6 +53,23 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
         f"floquet at {system.speed:g} rad/s: error {error:.1e} with {MOST_STEPS} steps a period, "
         f"more than the tolerance {tolerance:.1e}; use method='hill', or fewer high modes"
     )
+
+
+def sum_of_exponents(system: PeriodicSystem) -> tuple[float, float]:
+    """Return the sum of the real parts of all 2k exponents, and its error [1/s].
+
+    It is ``−tr M⁻¹D``, the mean over a period: by Liouville's formula the determinant of the
+    fundamental matrix grows with the trace of the state matrix. Where M is periodic, the means of
+    half and of all samples tell the error. Source: Chicone, Ordinary Differential Equations with
+    Applications (2006), Ch. 2.
+    """
+    if len(system.M) == 1:
+        return -np.trace(np.linalg.solve(system.M[0].real, system.D[0].real)), 0.0
+    count = _SAMPLES * (1 + system.order // system.step)
+    angles = 2.0 * np.pi / (system.step * count) * np.arange(count)
+    M, D, _ = _sampled(system, angles)
+    traces = np.trace(np.linalg.solve(M, D), axis1=-2, axis2=-1)
+    return -traces.mean(), abs(traces.mean() - traces[::2].mean())
 
 
 def _scale(system: PeriodicSystem) -> np.ndarray:

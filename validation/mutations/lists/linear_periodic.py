@@ -104,6 +104,17 @@ LINEAR_PERIODIC = [
         ),
     ),
     *mutations(
+        "linear/periodic/exponents.py",
+        "test_hill.py::test_exponents_of_motions_that_swell_within_a_turn",
+        ("exponents with a wrong sum given", "if apart > allowed:", "if apart > 1e9 * allowed:"),
+    ),
+    *mutations(
+        "linear/periodic/fundamental.py",
+        "test_hill.py::test_sum_of_exponents_is_the_mean_trace",
+        ("sum with the wrong sign", "return -np.trace(", "return np.trace("),
+        ("half of the sum", "traces.mean(), abs", "0.5 * traces.mean(), abs"),
+    ),
+    *mutations(
         "linear/periodic/floquet_modes.py",
         "test_hill.py::test_modes_gone_within_a_turn_are_not_waited_for",
         ("modes that are gone within a turn waited for", " | gone(values[columns], speed)", ""),
