@@ -11,7 +11,7 @@ from test_stability import anisotropic, mathieu, random_system
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic import hill, truncation
+from exudyn_rotor.linear.periodic import fundamental, hill, truncation
 from exudyn_rotor.linear.periodic.exponents import exponents, motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.fundamental import sum_of_exponents
@@ -260,3 +260,13 @@ def test_sum_of_exponents_is_the_mean_trace(seed):
         expected, error = sum_of_exponents(system)
         assert error < 1e-9
         assert np.sum(exponents(system, "floquet", 1e-12)).real == pytest.approx(expected, abs=1e-7)
+
+
+def test_a_multiplier_that_rounding_makes_zero_is_known_from_above(monkeypatch):
+    monkeypatch.setattr(fundamental, "monodromy", lambda *_: np.diag([1e30, 0.0]))
+    values, _, bounds = fundamental.floquet_motions(mathieu(2.0, 1.0))
+    assert values[0].real == pytest.approx(30.0 * np.log(10.0) / np.pi)
+    assert np.all(np.isfinite(values))
+    # what the matrix errs by, relative to its norm, is 1e-9: the multiplier may be 1e21
+    assert (values + bounds)[1].real >= 21.0 * np.log(10.0) / np.pi
+    assert np.isfinite(bounds[1])

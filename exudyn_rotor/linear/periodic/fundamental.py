@@ -11,10 +11,17 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.linear.periodic.periodic_system import (
+    EPSILON,
+    PeriodicSystem,
+    UnconvergedError,
+    fold,
+)
 
 MOST_STEPS = 2**14
 _CHUNK = 128
+# share of the largest entry that stands for a multiplier of which rounding leaves nothing
+_LEAST = EPSILON**2
 _SAMPLES = 16  # a period and harmonic, of the mean of what is not a polynomial of the coefficients
 
 
@@ -122,6 +129,7 @@ def floquet_motions(
     scale = _scale(system)
     scaled = scale[:, None] * fundamental / scale
     multipliers, states = np.linalg.eig(scaled)
+    multipliers = np.where(multipliers == 0.0, _LEAST * np.abs(scaled).max(), multipliers)
     base = abs(system.base or system.speed)
     values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
     condition = np.linalg.norm(np.linalg.pinv(states), axis=1)

@@ -115,6 +115,11 @@ LINEAR_PERIODIC = [
         ("half of the sum", "traces.mean(), abs", "0.5 * traces.mean(), abs"),
     ),
     *mutations(
+        "linear/periodic/fundamental.py",
+        "test_hill.py::test_a_multiplier_that_rounding_makes_zero_is_known_from_above",
+        ("multipliers of zero without an exponent", "multipliers == 0.0", "multipliers == -1.0"),
+    ),
+    *mutations(
         "linear/periodic/floquet_modes.py",
         "test_hill.py::test_modes_gone_within_a_turn_are_not_waited_for",
         ("modes that are gone within a turn waited for", " | gone(values[columns], speed)", ""),
