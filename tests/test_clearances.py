@@ -39,6 +39,9 @@ KINDS = {
     "short journal": ShortJournalBearing(interface="left", **SHORT),
     "film": JournalBearing(interface="left", film=film()),
     "lemon bore": JournalBearing(interface="left", film=film(0.5)),
+    "upright lemon bore": JournalBearing(  # half of the clearance along x, 0.87 along y
+        interface="left", film=film(0.5, (0.5 * np.pi, 1.5 * np.pi))
+    ),
     "squeeze film": SqueezeFilmDamper(interface="left", centring_stiffness=1e6, **SHORT),
     "seal": AnnularSeal(
         interface="left", radius=0.1, length=0.04, clearance=CLEARANCE, pressure_drop=1e6,
@@ -164,17 +167,22 @@ def test_a_run_ends_at_the_first_step_outside(case, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("options", "rate"),
-    [({"spin": SPEED}, 0.0), ({"initial_speed": SPEED}, 0.0), ({"base": sled}, 2.0)],
+    ("kind", "options", "motion"),
+    [
+        ("short journal", {"spin": SPEED}, {}),
+        ("short journal", {"initial_speed": SPEED}, {}),
+        ("short journal", {"base": sled}, {"rate": 2.0}),
+        ("upright lemon bore", {"spin": SPEED}, {"place": -0.6 * CLEARANCE}),
+    ],
 )
-def test_steps_inside_are_not_looked_at(options, rate, monkeypatch):
-    """But the initial state of each run; also where all moves by many clearances."""
+def test_steps_inside_are_not_looked_at(kind, options, motion, monkeypatch):
+    """But the initial state is; where all moves, and beyond the least clearance of a bore, too."""
     looks = []
     monkeypatch.setattr(clearances, "_left", lambda mbs, watched, t: looks.append(t))
-    mbs, body, _ = scene([KINDS["short journal"]], -100.0, **options)
-    start(mbs, body, rate)
-    assert run(mbs)
-    assert run(mbs)
+    mbs, body, _ = scene([KINDS[kind]], -100.0, **options)
+    start(mbs, body, **motion)
+    assert run(mbs, 1e-3)
+    assert run(mbs, 1e-3)
     assert looks == [0.0, 0.0]
 
 

@@ -5,8 +5,8 @@ accepted there means nothing. Importing this module lets ``mbs.SolveDynamic()`` 
 after an accepted step, beside the script's own function for that, and stop with an error. Where a
 :class:`ClearanceStop` acts at the same interface, contact is meant, and nothing is looked at.
 
-Connectors note where they are evaluated further out than the least clearance. A step without such
-an evaluation is not looked at, for Exudyn evaluates forces at the state that it accepts.
+Connectors note when they are evaluated outside. A step without such an evaluation is not looked at,
+for Exudyn evaluates forces at the state that it accepts.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
+from exudyn_rotor.bearings.journal_bearing import TangentFilm
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.calls.sparse_solver import check_solver
 from exudyn_rotor.multibody.mark import Mark, mark_of
@@ -28,7 +29,7 @@ from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.wrapping import wraps_method
 
 _BEARINGS = "exudyn_rotor: bearings that journals must not leave"  # key in mbs.sys
-_FAR_OUT = "exudyn_rotor: connectors of bearings evaluated beyond the least clearance"
+_OUTSIDE = "exudyn_rotor: connectors of bearings evaluated outside their clearance"
 _KINDS = exudyn.OutputVariableType
 
 
@@ -77,9 +78,23 @@ def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectInd
     body.mbs.sys.setdefault(_BEARINGS, []).append(watched)
 
 
-def far_out(mbs: exudyn.MainSystem) -> set[int]:
-    """Return where connectors note that they were evaluated beyond their least clearance."""
-    return mbs.sys.setdefault(_FAR_OUT, set())
+def noting_outside(
+    mbs: exudyn.MainSystem, bearing: Bearing | TangentFilm
+) -> Callable[[int, float, float], None]:
+    """Return what a connector calls by its number and place beyond the least clearance."""
+    noted = _outside(mbs)
+
+    def note(item: int, x: float, y: float) -> None:
+        distance = hypot(x, y)
+        if distance >= bearing._gap(np.array([x / distance, y / distance])):
+            noted.add(item)
+
+    return note
+
+
+def _outside(mbs: exudyn.MainSystem) -> set[int]:
+    """Return the connectors that were evaluated outside since the last look."""
+    return mbs.sys.setdefault(_OUTSIDE, set())
 
 
 @contextmanager
@@ -92,7 +107,7 @@ def _stopped_outside(mbs: exudyn.MainSystem) -> Iterator[None]:
     given = mbs.GetPostStepUserFunction()
     own = given["function"] if given else None
     left: list[str] = []
-    noted = far_out(mbs)
+    noted = _outside(mbs)
     noted.update(int(each.number) for each in watched)  # the initial state is looked at
 
     def look(mbs: exudyn.MainSystem, t: float) -> bool:

@@ -28,7 +28,7 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw, TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, varies
-from exudyn_rotor.multibody.calls.clearances import far_out, watch_clearance
+from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 from exudyn_rotor.theory.rotating_axes import axial_rotation
@@ -42,6 +42,7 @@ _BRAKING = "springForceTorqueUserFunction"
 Numbers = Sequence[float]
 SpinReader = Callable[[exudyn.MainSystem], tuple[float, float]]
 Beginning = Callable[[exudyn.MainSystem, float, int], None]
+Note = Callable[[int, float, float], None]
 
 
 # ------------------------------------------------------------------ displacements
@@ -153,7 +154,7 @@ def _bearing_function(
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     brakes, begin = body.formulation.has_spin, _no_memory
-    least, noted = bearing._gap() ** 2, far_out(body.mbs)
+    least, note = bearing._gap() ** 2, noting_outside(body.mbs, bearing)
     if isinstance(bearing, JournalBearing) and bearing.remembers:
         law = RememberingLaw(bearing.film, torque=brakes)
         begin = _beginning(body, law, axes)
@@ -161,14 +162,14 @@ def _bearing_function(
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
     if brakes:
-        return _BRAKING, _braking_function(law, spin, begin, least, noted)
+        return _BRAKING, _braking_function(law, spin, begin, least, note)
     (a, d), (b, e), (c, f) = axes[:, :2].tolist()
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         begin(mbs, t, item)
         x, y = a * u[0] + b * u[1] + c * u[2], d * u[0] + e * u[1] + f * u[2]
         if x * x + y * y >= least:
-            noted.add(item)
+            note(item, x, y)
         vx, vy = a * v[0] + b * v[1] + c * v[2], d * v[0] + e * v[1] + f * v[2]
         fx, fy = law(x, y, vx, vy, *spin(mbs))
         return [-a * fx - d * fy, -b * fx - e * fy, -c * fx - f * fy]
@@ -177,17 +178,17 @@ def _bearing_function(
 
 
 def _braking_function(
-    law: LawWithTorque, spin: SpinReader, begin: Beginning, least: float, noted: set[int]
+    law: LawWithTorque, spin: SpinReader, begin: Beginning, least: float, note: Note
 ) -> Callable:
     """Return force and torque, in the axes of the connector's base.
 
-    A place beyond the square `least` of the least clearance is noted.
+    Beyond the square `least` of the least clearance it calls `note`.
     """
 
     def force(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
         begin(mbs, t, item)
         if u[0] * u[0] + u[1] * u[1] >= least:
-            noted.add(item)
+            note(item, u[0], u[1])
         fx, fy, torque = law(u[0], u[1], v[0], v[1], *spin(mbs))
         return [-fx, -fy, 0.0, 0.0, 0.0, -torque]
 

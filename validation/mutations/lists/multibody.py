@@ -429,6 +429,11 @@ MULTIBODY = [
         "test_clearances.py",
         ("every step looked at", "            noted.clear()\n", ""),
         (
+            "all beyond the least clearance noted",
+            "if distance >= bearing._gap(",
+            "if bearing._gap(",
+        ),
+        (
             "initial state not looked at",
             "noted.update(int(each.number) for each in watched)",
             "pass",
