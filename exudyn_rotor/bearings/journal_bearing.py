@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque, by_tangent
+from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
-_KEPT = 16  # equilibria
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
 _AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
@@ -61,9 +61,7 @@ class JournalBearing(Bearing):
 
     film: OilFilm
     whirl_ratio: float = 1.0
-    _last: dict[tuple[float, ...], FilmState | str] = field(
-        default_factory=dict, init=False, repr=False
-    )
+    _equilibria: Equilibria[FilmState] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -136,20 +134,8 @@ class JournalBearing(Bearing):
         return self._state(speed, load).coefficients(self.whirl_ratio)
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
-        """Return the film in equilibrium; some are kept, for several ask for them in turn."""
-        load = self._static_load(load)
-        key = checks.number(speed, "speed", "rad/s"), *load.tolist()
-        if key not in self._last:
-            try:
-                found = self.film.equilibrium(speed, load)
-            except ValueError as error:
-                found = str(error)
-            if len(self._last) >= _KEPT:
-                self._last.clear()
-            self._last[key] = found
-        if isinstance(self._last[key], str):
-            raise ValueError(self._last[key])
-        return self._last[key]
+        """Return the film in equilibrium."""
+        return self._equilibria.at(speed, self._static_load(load), self.film.equilibrium)
 
 
 class TangentFilm:

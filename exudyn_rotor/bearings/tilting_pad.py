@@ -28,6 +28,7 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Law, Linearised
 from exudyn_rotor.bearings.controlled_support import PadSupport
+from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
@@ -35,7 +36,6 @@ from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 
-_KEPT = 16  # equilibria
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
 _CLOSE = 1e-9  # of the load: it stops there
 _TILTS = 24  # tried, between those at which an edge touches
@@ -94,9 +94,7 @@ class TiltingPadBearing(Bearing):
     pivot: float = 0.5
     whirl_ratio: float = 1.0
     pad_inertia: float | None = None
-    _last: dict[tuple[float, ...], _Pads | str] = field(
-        default_factory=dict, init=False, repr=False
-    )
+    _equilibria: Equilibria[_Pads] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -192,20 +190,8 @@ class TiltingPadBearing(Bearing):
         return PadSupport(self.interface, masses, self.tangents, tuple(films), static)
 
     def _state(self, speed: float, load: ArrayLike | None) -> _Pads:
-        """Return the pads in equilibrium; some are kept, for several ask in turn."""
-        load = self._static_load(load)
-        key = checks.number(speed, "speed", "rad/s"), *load.tolist()
-        if key not in self._last:
-            try:
-                found = self._solved(speed, load)
-            except ValueError as error:
-                found = str(error)
-            if len(self._last) >= _KEPT:
-                self._last.clear()
-            self._last[key] = found
-        if isinstance(self._last[key], str):
-            raise ValueError(self._last[key])
-        return self._last[key]
+        """Return the pads in equilibrium."""
+        return self._equilibria.at(speed, self._static_load(load), self._solved)
 
     def _solved(self, speed: float, load: np.ndarray) -> _Pads:
         size = float(np.linalg.norm(load))
