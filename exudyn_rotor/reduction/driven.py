@@ -8,6 +8,7 @@ import numpy as np
 
 from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.other_basis import in_basis
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.selection import without_mean_rotation
 
@@ -32,21 +33,8 @@ def _others(reduced: ReducedRotor) -> np.ndarray:
 
 
 def _in_basis(reduced: ReducedRotor, T: np.ndarray) -> ReducedRotor:
-    shapes = reduced.shapes
-    if shapes is not None:
-        stress = None if shapes.stress is None else shapes.stress @ T
-        shapes = replace(shapes, matrix=shapes.matrix @ T, stress=stress)
-    return replace(
-        reduced,
-        invariants=reduced.invariants.in_basis(T),
-        rigid_kinds=tuple(kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN),
-        interfaces={
-            name: replace(interface, motion=interface.motion @ T)
-            for name, interface in reduced.interfaces.items()
-        },
-        mode_mass=T.T @ reduced.mode_mass @ T,
-        shapes=shapes,
-    )
+    kinds = (kind for kind in reduced.rigid_kinds if kind is not ModeKind.SPIN)
+    return in_basis(reduced, T, kinds)
 
 
 def _finer(attached: Attached, T: np.ndarray) -> tuple[ReducedRotor | None, np.ndarray | None]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.reduction.other_basis import in_basis
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.threads import one_thread
 
@@ -144,13 +145,4 @@ def _beside(rotor: ReducedRotor, attached: ReducedRotor, in_attached: np.ndarray
     columns = columns[:, lengths > 0.5]
     _, turn = np.linalg.eigh(columns.T @ attached.invariants.K @ columns)
     T = np.hstack([in_attached, columns @ turn])
-    return replace(
-        attached,
-        invariants=attached.invariants.in_basis(T),
-        rigid_kinds=rotor.rigid_kinds,
-        interfaces={
-            name: replace(interface, motion=interface.motion @ T)
-            for name, interface in attached.interfaces.items()
-        },
-        mode_mass=T.T @ attached.mode_mass @ T,
-    )
+    return in_basis(attached, T, rotor.rigid_kinds)
