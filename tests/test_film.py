@@ -1,4 +1,4 @@
-"""Oil films of finite length: closed forms, published tables, balances, derivatives."""
+"""Oil films of finite length: closed forms, balances, derivatives."""
 
 import re
 
@@ -7,7 +7,6 @@ import pytest
 
 from exudyn_rotor import OilFilm, Pad, grooved_pads, plot_pressure
 from exudyn_rotor.bearings.film.grid import Axial
-from validation.references import film as tables
 
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 STILL = (0.0, 0.0)
@@ -101,94 +100,9 @@ def test_surface_carries_the_same_oil_through_a_void():
     assert conserving.force == pytest.approx(reynolds.force, rel=2e-3)
 
 
-# ------------------------------------------------------------------ published tables
-
-
-LUND = [(title, bearing, row) for title, bearing, table in tables.lund_cases() for row in table]
-SOMEYA, SOMEYA_LONG = tables.someya_cases()
-LOBED = tables.lobed_cases()[1]
-
-
-@pytest.mark.parametrize(
-    ("bearing", "row"),
-    [case[1:] for case in LUND],
-    ids=[f"{title}, S = {row[0]:g}" for title, _, row in LUND],
-)
-def test_coefficients_are_those_of_lunds_tables(bearing, row):
-    """Plain bores with two grooves, L/D = 0.5 and 1, and an elliptical one (ASME 1978)."""
-    sommerfeld, ratio, attitude, *given = row
-    # the place −n1 turns both axes of the table by half a turn, which changes no coefficient
-    state = carried(bearing, sommerfeld)
-    assert np.linalg.norm(state.position) / CLEARANCE == pytest.approx(ratio, abs=2e-3)
-    assert np.isnan(attitude) or np.degrees(state.attitude) == pytest.approx(attitude, abs=0.2)
-    for found, expected in zip(tables.coefficients(state), (given[:4], given[4:]), strict=True):
-        assert found == pytest.approx(expected, abs=1e-2 * np.max(expected))
-
-
 def test_sommerfeld_number_is_that_of_the_load():
     state = carried(film(), 0.5)
     assert state.sommerfeld_number == pytest.approx(0.5, rel=1e-8)
-
-
-@pytest.mark.parametrize(
-    ("case", "row"),
-    [(SOMEYA, row) for row in SOMEYA[2][::2]]
-    + [(SOMEYA_LONG, row) for row in SOMEYA_LONG[2][5::2]],
-    ids=lambda value: f"ε = {value[1]:g}" if isinstance(value, np.ndarray) else value[0],
-)
-def test_coefficients_are_those_of_someyas_tables_across_the_line_of_centres(case, row):
-    """Two grooves of 10°, L/D = 0.5 and 1; his stiffness is that of a bore which turns.
-
-    Six of eight; the radial ones are larger in his table than its own static rows say. At L/D = 1
-    from ε = 0.4 on: below, where the film ends in the groove, his attitude is 1° to 3° larger.
-    """
-    ours, his = tables.compared(tables.carried(case[1], row[0]), row)
-    ours[:, 0, 0] = his[:, 0, 0]
-    assert ours == pytest.approx(his, abs=0.015)
-
-
-@pytest.mark.parametrize("row", LOBED[2][[0, 2, 5, 7]], ids=lambda row: f"{row[0]:g}")
-def test_coefficients_are_those_of_someyas_elliptical_table(row):
-    """Two lobes, L/D = 1, preload 2/3: all eight. His C11/S near the middle scatter by 2.5 %."""
-    state = tables.carried(LOBED[1], row[0])
-    assert np.degrees(state.attitude) == pytest.approx(row[2], abs=0.3)
-    for found, expected in zip(tables.coefficients(state), (row[5:9], row[9:]), strict=True):
-        assert found == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
-
-
-def test_radial_stiffness_is_that_of_someyas_static_rows():
-    """Slope of his F_r(ε), L/D = 0.5, ε = 0.6 to 0.85: digits and spline leave 1 %; printed 4 %."""
-    table = SOMEYA[2]
-    for row, expected in zip(table[6:11], tables.own_stiffness(table)[6:11], strict=True):
-        ours, _ = tables.compared(tables.carried(SOMEYA[1], row[0]), row)
-        assert ours[0, 0, 0] * np.abs(row[5:9]).max() == pytest.approx(expected, rel=1e-2)
-
-
-@pytest.mark.parametrize(
-    "case",
-    [case for case in tables.ross_cases() if case["method"] == "perturbation"],
-    ids=lambda case: f"{case['geometry']}, {case['load']:g}",
-)
-def test_coefficients_are_those_of_ross(case):
-    """ROSS 2.3.0, two of its entries times √2 (`validation.references.film`).
-
-    With 120 × 14 elements in place of 80 × 10 its damping of the lobed bore is 2.7 % less.
-    """
-    state = tables.ross_state(case)
-    assert state.eccentricity_ratio == pytest.approx(case["ratio"], rel=5e-3)
-    for found, name in zip(state.coefficients(), ("stiffness", "damping"), strict=True):
-        expected = np.reshape(case[name], (2, 2))
-        assert found == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
-
-
-def test_losses_are_those_of_someyas_table():
-    """Two grooves of 10°, L/D = 0.5, S = 0.517: flow and friction (Databook 1989, p. 14)."""
-    state = carried(film(width=10.0, axial_nodes=12), 0.517)
-    assert state.eccentricity_ratio == pytest.approx(0.500, abs=2e-3)
-    assert np.degrees(state.attitude) == pytest.approx(51.1, abs=0.4)
-    flow = state.side_flow / (CLEARANCE * RADIUS * state.speed * state.film.length)
-    assert flow == pytest.approx(0.366, rel=1e-2)
-    assert state.torque / (CLEARANCE * 1e3) == pytest.approx(11.3, rel=1e-2)
 
 
 # ------------------------------------------------------------------ balances

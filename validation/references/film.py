@@ -1,10 +1,7 @@
 """Oil films of finite length against closed forms, tables of coefficients, ROSS and finer grids.
 
-The tables and their sources are in ``film_tables.py``. ROSS 2.3.0 cuts negative pressures
-(``film_ross.json``, by ``film_ross.py`` beside it). Its perturbation divides differences of
-dimensionless forces by the size of that force, for the force across the load (in its code k_yx and
-k_yy) by |(F_y, F_y)| instead of |(F_x, F_y)|: those two are 1/√2 of what they should be, and
-compared times √2.
+The tables and their sources are in ``film_tables.py``, Butenschön's beside ours in
+``film_plain.py``, ROSS's models beside ours in ``film_beside_ross.py``.
 
     python -m validation film
 """
@@ -12,18 +9,18 @@ compared times √2.
 from __future__ import annotations
 
 import argparse
-import json
 import time
-from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from exudyn_rotor import OilFilm, grooved_pads
+from exudyn_rotor import OilFilm, TiltingPadBearing, grooved_pads
 from validation.references import film_tables
-from validation.references.film_tables import rows
+from validation.references.film_beside_ross import ross, ross_grids
+from validation.references.film_plain import butenschoen
+from validation.references.film_tables import CLEARANCE, RADIUS, SPEED, VISCOSITY, rows
 
-RADIUS, CLEARANCE, VISCOSITY, SPEED, LOAD = 0.05, 1e-4, 0.02, 300.0, 1e3
+LOAD = 1e3
 SIDES = [np.pi / 2, 3 * np.pi / 2]
 
 
@@ -33,11 +30,15 @@ def film(length: float = RADIUS, width: float = 20.0, preload: float = 0.0, **op
     return OilFilm(RADIUS, length, VISCOSITY, pads, **{"nodes": 240, **options})
 
 
+def spin(bearing: OilFilm, sommerfeld: float) -> float:
+    """Return the speed [rad/s] of a Sommerfeld number."""
+    area = 2.0 * RADIUS * bearing.length
+    return 2.0 * np.pi * sommerfeld * LOAD / (VISCOSITY * area) * (CLEARANCE / RADIUS) ** 2
+
+
 def carried(bearing: OilFilm, sommerfeld: float):
     """Return the equilibrium at a Sommerfeld number, the load along n1."""
-    area = 2.0 * RADIUS * bearing.length
-    turns = sommerfeld * LOAD / (VISCOSITY * area) * (CLEARANCE / RADIUS) ** 2
-    return bearing.equilibrium(2.0 * np.pi * turns, [LOAD, 0.0])
+    return bearing.equilibrium(spin(bearing, sommerfeld), [LOAD, 0.0])
 
 
 def coefficients(state) -> tuple[np.ndarray, np.ndarray]:
@@ -233,52 +234,37 @@ def lobed() -> list[str]:
     return lines
 
 
-def ross_cases() -> list[dict]:
-    """Return ROSS's cases; its perturbation's k_yx and k_yy times √2 (see above)."""
-    cases = json.loads(Path(__file__).with_name("film_ross.json").read_text())
-    for case in cases:
-        if case["method"] == "perturbation":
-            case["stiffness"][2:] = (np.sqrt(2.0) * np.array(case["stiffness"][2:])).tolist()
+def tilting_cases() -> list[tuple[str, TiltingPadBearing, np.ndarray]]:
+    """Return Someya's tilting pads of 80°: what each is of, the loaded pads, the rows.
+
+    That on one pad is called L/D = 0.5 where it was found; the load that the pad carries is that of
+    L/D = 1, and 1.4 times that of L/D = 0.5.
+    """
+    cases = []
+    for title, length, first in (("between", 0.5, 0.0), ("on", 1.0, 45.0)):
+        gaps = np.radians(first + 90.0 * np.arange(4))
+        pads = grooved_pads(CLEARANCE, gaps, np.radians(10.0))
+        loaded = [pad for pad in pads if np.cos(pad.start + 0.5 * pad.arc) > 0.1]
+        oil = OilFilm(RADIUS, 2.0 * RADIUS * length, VISCOSITY, loaded, nodes=240, axial_nodes=12)
+        bearing = TiltingPadBearing(interface="pads", film=oil, load=[LOAD, 0.0])
+        cases.append((title, bearing, rows(film_tables.SOMEYA_TILTING[title])))
     return cases
 
 
-def ross_state(case: dict):
-    """Return our equilibrium of a case of ROSS."""
-    clearance = CLEARANCE / (1.0 - case["preload"])
-    pads = grooved_pads(clearance, [0.0, np.pi], np.radians(20.0), case["preload"])
-    bearing = OilFilm(RADIUS, RADIUS, VISCOSITY, pads, "half-sommerfeld", nodes=240)
-    return bearing.equilibrium(SPEED, [0.0, -case["load"]])
-
-
-def ross() -> list[str]:
-    """Return ROSS's rows beside ours, and what its stiffness says of its own equilibria."""
-    lines = ["ROSS            load   ε: ROSS  here   angle: ROSS  here   K (11, 12, 21, 22)   C"]
-    places = {}
-    for case in ross_cases():
-        state = ross_state(case)
-        ours = np.array([m.ravel() for m in state.coefficients()])
-        theirs = np.array([case["stiffness"], case["damping"]])
-        angle = np.arctan2(state.position[1], state.position[0])
-        lines.append(
-            f"{case['geometry']:8} {case['method'][:7]:7} {case['load']:5.0f} {case['ratio']:7.4f} "
-            f"{state.eccentricity_ratio:7.4f} {np.degrees(case['angle']):8.2f} "
-            f"{np.degrees(angle):7.2f}   "
-            + " ".join(f"{d:6.1%}" for d in (theirs - ours)[0] / np.max(np.abs(ours[0])))
-            + "  "
-            + " ".join(f"{d:6.1%}" for d in (theirs - ours)[1] / np.max(np.abs(ours[1])))
-        )
-        if case["geometry"] == "circular":
-            place = case["ratio"] * np.exp(1j * case["angle"]) * CLEARANCE
-            places[case["load"], case["method"]] = np.array([place.real, place.imag]), ours, theirs
-    few, mid, many = (places[load, "perturbation"] for load in (4500.0, 5000.0, 5500.0))
-    moved = many[0] - few[0]
-    for name, matrix in (
-        ("ours", mid[1][0]),
-        ("ROSS, perturbation", mid[2][0]),
-        ("ROSS, lund", places[5000.0, "lund"][2][0]),
-    ):
-        force = matrix.reshape(2, 2) @ moved
-        lines.append(f"{name:20} K · (step of ROSS's equilibrium by 1000 N) = {force.round()} N")
+def tilting() -> list[str]:
+    """Return Someya's tilting pads beside ours, whirl at the speed, deviations along the load."""
+    lines = ["tilting pads, load      S      ε: table   here   stiffness   damping"]
+    for title, bearing, table in tilting_cases():
+        for s, ratio, *his in table:
+            speed = spin(bearing.film, s)
+            place = np.linalg.norm(bearing.equilibrium(speed)) / CLEARANCE
+            stiffness, damping = bearing.coefficients(speed)
+            unit = CLEARANCE / LOAD
+            ours = unit * stiffness[0, 0], unit * speed * damping[0, 0]
+            lines.append(
+                f"{title:16} {s:10.4f} {ratio:8.2f} {place:9.4f}"
+                + "".join(f"{a / b - 1.0:10.1%}" for a, b in zip(ours, his, strict=True))
+            )
     return lines
 
 
@@ -311,7 +297,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Print all tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.parse_args(arguments)
-    for table in (closed_forms, lund, someya, lobed, ross, grids):
+    for table in (closed_forms, lund, butenschoen, someya, lobed, tilting, ross, ross_grids, grids):
         print("\n".join([*table(), ""]))
     return 0
 

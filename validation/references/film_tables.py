@@ -4,15 +4,23 @@ LUND…: J. W. Lund and K. K. Thomsen in *Topics in Fluid Film Bearing and Rotor
 Design*, ASME 1978, grooves of 20°: L/D = 0.5 (table 1a) as the course 41524 of DTU holds it
 (I. F. Santos, 2023), L/D = 1 and the elliptical bore as the tests of ROSS do
 (``test_fluid_film_literature.py``, 2026). SOMEYA…: T. Someya, *Journal-Bearing Databook*, 1989,
-p. 14 and 17, grooves of 10°, as the course 41542 of DTU holds them (I. F. Santos, 2021), and p. 41
-and 53, as a work of that course does (github.com/VictorLier/Tribology, Assignment2/Someya.py).
+p. 14 and 17, grooves of 10°, as the course 41542 of DTU holds them (I. F. Santos, 2021), and p. 41,
+53, 83 and 107, as a work of that course does (github.com/VictorLier/Tribology,
+Assignment2/Someya.py). BUTENSCHOEN: H. J. Butenschön, *Das hydrodynamische, zylindrische Gleitlager
+endlicher Breite unter instationärer Belastung*, Karlsruhe 1976, as the tests of the package
+mboct-mbdyn-pkg hold it (inst/mbdyn_post_ehd_load_output_01.tst and 02).
 
 Columns: S, ε, attitude [°]; SOMEYA side flow over c R Ω L and torque over c W; stiffness over W/c
 (11, 12, 21, 22; 1 along the load), damping over W/(c Ω). ε and c are those of the pads' clearance,
-ε of SOMEYA_ELLIPTICAL that of the least.
+ε of SOMEYA_ELLIPTICAL that of the least. SOMEYA_TILTING: S, ε, stiffness, damping along the load.
+BUTENSCHOEN: ε; of a journal that turns, load over μ Ω L D (R/c)², attitude [°] and side flow over
+c R² Ω; of one that moves to the bore and away from it, load over μ (ė/c) L D (R/c)².
 """
 
 import numpy as np
+
+# of the bearing in which the tables are compared
+RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 1e-4, 0.02, 300.0
 
 LUND = """
 6.430 0.071 81.89  1.55 14.41 -6.60 1.88 28.75 1.89 1.89 13.31
@@ -24,7 +32,11 @@ LUND = """
 0.580 0.477 51.01  2.67  3.70 -0.78 1.75  6.96 1.94 1.94  2.40
 0.378 0.570 45.43  3.33  3.64 -0.43 1.68  6.76 1.87 1.87  1.89
 0.244 0.655 40.25  4.21  3.74 -0.13 1.64  6.87 1.82 1.82  1.54
+0.194 0.695 37.72  4.78  3.84  0.01 1.62  7.03 1.80 1.80  1.40
 0.151 0.734 35.20  5.48  3.98  0.15 1.61  7.26 1.79 1.79  1.27
+0.133 0.753 33.93  5.89  4.07  0.22 1.60  7.41 1.79 1.79  1.20
+0.126 0.761 33.42  6.07  4.11  0.25 1.60  7.48 1.79 1.79  1.18
+0.116 0.772 32.65  6.36  4.17  0.30 1.60  7.59 1.79 1.79  1.15
 0.086 0.809 30.04  7.51  4.42  0.47 1.59  8.03 1.79 1.79  1.03
 0.042 0.879 24.41 11.45  5.23  0.92 1.60  9.48 1.80 1.80  0.82
 """
@@ -101,6 +113,71 @@ SOMEYA_ELLIPTICAL = """
 0.0202 1.15   64.0 0.265 0.865 11.7 4.80 0.570  1.56 10.3 0.873  0.873  0.995
 0.0104 1.15   53.9 0.247 0.559 20.2 6.60 2.24   1.90 11.5 1.55   1.58   0.731
 """
+
+# plain bores by their length over diameter; the squeeze at L/D = 0.5, ε = 0.1 and 0.2, 0.9814 and
+# 1.2236, is 5 % above and 0.6 % below the line of its neighbours
+BUTENSCHOEN = {
+    1: """
+0.1  0.1196   79.41   0.1603  3.0122   1.9579
+0.2  0.2518   73.858  0.3196  3.8485   1.6134
+0.3  0.4091   68.264  0.4765  5.0479   1.3494
+0.4  0.6108   62.571  0.6318  6.8503   1.1391
+0.5  0.8903   56.705  0.7852  9.7319   0.971
+0.6  1.3146   50.536  0.9374  14.769   0.8342
+0.7  2.0432   43.859  1.0888  24.842   0.7242
+0.8  3.5663   36.235  1.2392  50.349   0.6293
+0.9  8.4352   26.482  1.3898  160.25   0.5518
+0.95 18.7895  19.45   1.4655  490.18   0.5177
+""",
+    0.5: """
+0.1  0.0368   81.767  0.0939  0.9814   0.5732
+0.2  0.0783   75.142  0.1878  1.2236   0.4632
+0.3  0.1304   68.493  0.2816  1.6904   0.3803
+0.4  0.2026   61.778  0.3755  2.4202   0.3164
+0.5  0.3124   54.993  0.4694  3.675    0.2664
+0.6  0.4982   48.049  0.5634  6.0649   0.2265
+0.7  0.8595   40.803  0.6578  11.373   0.1944
+0.8  1.7339   32.938  0.7529  26.676   0.1685
+0.9  5.0881   23.566  0.8453  104.75   0.1466
+0.95 13.3083  17.265  0.8984  371.98   0.1372
+""",
+    0.25: """
+0.1  0.0098   82.481  0.0492  0.2499   0.1509
+0.2  0.021    75.287  0.0984  0.3354   0.1212
+0.3  0.0354   68.204  0.1476  0.4675   0.0989
+0.4  0.056    61.208  0.1968  0.6845   0.082
+0.5  0.0888   54.069  0.246   1.0715   0.0688
+0.6  0.1476   46.825  0.2953  1.8455   0.0583
+0.7  0.2708   39.326  0.3446  3.6891   0.05
+0.8  0.6043   31.249  0.394   9.6161   0.0432
+0.9  2.1595   21.79   0.4436  46.559   0.0376
+0.95 6.9248   15.632  0.4687  205.15   0.0351
+""",
+}
+# four tilting pads, the load between two (p. 83) or on one (p. 107); of those without preload that
+# carry no load the tables have other ideas, so the rows under light loads are left out
+SOMEYA_TILTING = {
+    "between": """
+0.756  0.5 1.94 3.33
+0.550  0.6 2.26 3.21
+0.381  0.7 2.65 3.06
+0.259  0.8 3.15 3.01
+0.168  0.9 3.72 2.97
+0.103  1.0 4.47 2.99
+0.0576 1.1 5.63 3.11
+0.0277 1.2 7.83 3.05
+""",
+    "on": """
+0.507   0.4  2.77 4.93
+0.316   0.5  3.45 4.67
+0.185   0.6  4.43 4.57
+0.0987  0.7  5.83 4.55
+0.0449  0.8  7.99 4.73
+0.0272  0.85 10.3 5.10
+0.0143  0.9  14.5 5.86
+0.00529 0.95 27.5 7.35
+""",
+}
 
 
 def rows(text: str) -> np.ndarray:

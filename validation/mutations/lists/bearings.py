@@ -126,7 +126,7 @@ BEARINGS = [
     ),
     *mutations(
         "bearings/film/state.py",
-        "test_film.py::test_losses_are_those_of_someyas_table "
+        "test_film_tables.py::test_losses_are_those_of_someyas_table "
         "test_film.py::test_power_that_goes_in_is_dissipated "
         "test_film.py::test_supply_pressure_pushes_the_journal_away_from_its_groove "
         "test_film.py::test_rigid_mass_is_at_the_limit_of_whirl",
