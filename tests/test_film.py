@@ -266,6 +266,7 @@ def test_rigid_mass_is_at_the_limit_of_whirl():
         (lambda: grooved_pads(-1e-4), "clearance: needs a finite number [m] > 0"),
         (lambda: grooved_pads(1e-4, preload=0.5), "preload: needs grooves"),
         (lambda: grooved_pads(1e-4, [0.0, 0.1], 0.2), "grooves: need ascending"),
+        (lambda: grooved_pads(1e-4, [0.0]), "groove_width: a single groove without width"),
         (lambda: film(preload=1.0), "preload: needs a finite number ≥ 0 and < 1"),
         (lambda: OilFilm(RADIUS, 0.05, 0.02, []), "pads: needs one at least"),
         (lambda: OilFilm(RADIUS, 0.05, 0.02, [Pad(0, 4, 1e-4), Pad(3, 1, 1e-4)]), "pads: overlap"),

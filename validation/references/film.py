@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -212,10 +213,12 @@ def lobed_cases() -> list[tuple[str, OilFilm, np.ndarray]]:
 def lobed() -> list[str]:
     """Return Someya's rows of two lobes beside ours, coefficients in parts of the largest entry.
 
-    C11/S of his is one number near the middle, where a film is linear.
+    C11/S of his is one number near the middle, where a film is linear. Last what our lobes carry of
+    the load W, along it, with the journal where his stands.
     """
     lines = [
         "two lobes     S        ε: table  here   attitude      flow          K       C    his C11/S"
+        "   at his place: lower, upper lobe"
     ]
     for title, bearing, table in lobed_cases():
         for row in table:
@@ -225,11 +228,16 @@ def lobed() -> list[str]:
                 for a, b in zip(coefficients(state), (row[5:9], row[9:]), strict=True)
             ]
             unit = CLEARANCE * RADIUS * state.speed * bearing.length
+            place = row[1] * bearing.clearance * polar_axes(np.radians(row[2]))[:, 0]
+            lobes = [
+                -replace(bearing, pads=[pad]).force(place, [0.0, 0.0], state.speed)[0] / LOAD
+                for pad in bearing.pads[::-1]
+            ]
             lines.append(
                 f"{title:9} {row[0]:8.4f} {row[1]:8.4f} {state.eccentricity_ratio:7.4f} "
                 f"{row[2]:6.1f} {np.degrees(state.attitude):5.1f} {row[3]:7.3f} "
                 f"{state.side_flow / unit:6.3f} {worst[0]:8.1%} {worst[1]:7.1%} "
-                f"{row[9] / row[0]:9.1f}"
+                f"{row[9] / row[0]:9.1f} {lobes[0]:18.3f} {lobes[1]:8.3f}"
             )
     return lines
 

@@ -79,9 +79,11 @@ def grooved_pads(
         Radius of curvature of the pads less the journal's [m].
     grooves : sequence of float, optional
         Angles of the middles of the grooves, ascending within one turn, from n1 to n2 [rad]; none
-        for a plain bore.
+        for a plain bore. Its film begins where the pressure leaves zero without a slope, in front
+        of the widest gap. In most tables it begins at the widest gap, which at ε = 0.1, L/D = 1
+        leaves 2 % less load and an attitude smaller by 4°.
     groove_width : float, optional
-        Extent of every groove [rad].
+        Extent of every groove [rad]; of a single one above 0.
     preload : float, optional
         m = 1 − (assembled clearance)/(clearance of the pads), 0 ≤ m < 1; two pads with a preload
         are an elliptical (lemon) bore.
@@ -93,7 +95,7 @@ def grooved_pads(
     Raises
     ------
     TypeError, ValueError
-        For grooves that overlap, and a preload without grooves.
+        For grooves that overlap, a single one without width, and a preload without grooves.
 
     Examples
     --------
@@ -115,6 +117,10 @@ def grooved_pads(
         if preload > 0.0:
             raise ValueError("preload: needs grooves, which tell one pad from the next")
         return (Pad(0.0, WHOLE, clearance),)
+    if len(middles) == 1 and groove_width == 0.0:
+        raise ValueError(
+            "groove_width: a single groove without width is none; give one above 0 rad"
+        )
     arcs = np.diff(middles, append=middles[0] + WHOLE) - groove_width
     if np.any(arcs <= 0.0):
         raise ValueError(
