@@ -1,6 +1,6 @@
 """Write ``film_ross.json``: journal bearings of finite length by the open package ROSS.
 
-Run in an environment with ross-rotordynamics 2.3.0: ``python film_ross.py``, 5 minutes. Its
+Run in an environment with ross-rotordynamics 2.3.0 and plotly 5: ``python film_ross.py``. Its
 `PlainJournal` gets an oil of constant viscosity, so that it is isothermal, and floods the bore:
 negative pressures are cut. Axes x, y with the load in −y; two pads of 160° about ±y.
 
@@ -50,7 +50,7 @@ class Held(PlainJournal):
         super().__init__(**options)
 
     def run_thermo_hydro_dynamic(self, speed: float) -> None:
-        """Take the place in stead of a search for the equilibrium."""
+        """Take the place instead of a search for the equilibrium."""
         self.equilibrium_pos = np.array(self.place)
         self._equilibrium_pos_by_speed[float(speed)] = self.equilibrium_pos
         self._forces(self.equilibrium_pos, speed)

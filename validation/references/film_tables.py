@@ -154,8 +154,8 @@ BUTENSCHOEN = {
 0.95 6.9248   15.632  0.4687  205.15   0.0351
 """,
 }
-# four tilting pads, the load between two (p. 83) or on one (p. 107); of those without preload that
-# carry no load the tables have other ideas, so the rows under light loads are left out
+# four tilting pads, the load between two (p. 83) or on one (p. 107), without the rows under light
+# loads, where it matters what pads do that carry nothing
 SOMEYA_TILTING = {
     "between": """
 0.756  0.5 1.94 3.33

@@ -105,7 +105,7 @@ def reference(shaft: dict, rigid_hubs: bool = False) -> dict:
 def main() -> None:
     """Write the reference file."""
     data = {
-        "source": f"ross-rotordynamics {ross.__version__}, validation/reference/timoshenko_ross.py",
+        "source": f"ross-rotordynamics {ross.__version__}, validation/references/timoshenko_ross.py",
         "material": {"youngsModulus": YOUNG, "poissonsRatio": POISSON, "density": DENSITY},
         "speeds": SPEEDS,
         "uniform": reference(UNIFORM),
