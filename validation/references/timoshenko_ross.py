@@ -104,8 +104,9 @@ def reference(shaft: dict, rigid_hubs: bool = False) -> dict:
 
 def main() -> None:
     """Write the reference file."""
+    script = "validation/references/timoshenko_ross.py"
     data = {
-        "source": f"ross-rotordynamics {ross.__version__}, validation/references/timoshenko_ross.py",
+        "source": f"ross-rotordynamics {ross.__version__}, {script}",
         "material": {"youngsModulus": YOUNG, "poissonsRatio": POISSON, "density": DENSITY},
         "speeds": SPEEDS,
         "uniform": reference(UNIFORM),
