@@ -71,7 +71,7 @@ def results() -> list:
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
         RollingBearingResponse(
             ("left", "node 2"), speeds, np.array([[0, 0], [1, -1]]), np.repeat(motion, 2, axis=2),
-            3.3, ("left", "right"), table, table - 1.0, speeds, speeds, np.array([[0, 1], [2, -3]]),
+            3.3, ("left", "right"), table, table - 1.0, *[speeds] * 4, np.array([[0, 1], [2, -3]]),
             coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         EnergyBalance(speeds, *RNG.uniform(size=(6, 3))),

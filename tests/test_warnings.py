@@ -39,7 +39,7 @@ from exudyn_rotor import (
     stress_history,
     unbalance_response,
 )
-from exudyn_rotor.linear.response import rolling_response
+from exudyn_rotor.linear.response import rolling_motion
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
 
@@ -72,8 +72,18 @@ def motion_with_few_harmonics(_):
         interface="seat", count=8, pitch_radius=0.03, element_radius=0.006, stiffness=7e9
     )
     given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": 1e-6}
-    with patch.object(rolling_response, "_MOST_UNKNOWNS", 40):
+    with patch.object(rolling_motion, "_MOST_UNKNOWNS", 40):
         rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [0.0], **given)
+
+
+def unstable_motion_on_rolling_bearings(_):
+    mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
+    balls = RollingBearing(
+        interface="seat", count=8, pitch_radius=0.0326, element_radius=0.006, stiffness=7e9,
+        clearance=1e-5, damping=600.0,
+    )  # fmt: skip
+    given = {"supports": balls, "gravity": [0.0, -9.81, 0.0]}
+    rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [680.0], **given)
 
 
 def eccentric_rotor_in_a_linear_analysis(beam):
@@ -284,6 +294,9 @@ PLACES = {
     ),
     "linear/response/rolling_response.py:_warn_of_left_out": (
         motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics",
+    ),
+    "linear/response/rolling_response.py:_warn_of_instability": (
+        unstable_motion_on_rolling_bearings, UserWarning, "the steady motion is unstable",
     ),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
         response_below_the_operating_range, UserWarning, "count, and the response is known from",

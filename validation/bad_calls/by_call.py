@@ -193,6 +193,8 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("RollingBearingResponse", "coordinate_orders"): v.ARRAY,
     ("RollingBearingResponse", "element_loads"): v.ARRAY,
     ("RollingBearingResponse", "errors"): v.ARRAY,
+    ("RollingBearingResponse", "exponent_errors"): v.ANY_VALUES,
+    ("RollingBearingResponse", "exponents"): v.ANY_VALUES,
     ("RollingBearingResponse", "linear_errors"): v.ANY_VALUES,
     ("RollingBearingResponse", "motion"): v.OBJECT,
     ("RollingBearingResponse", "open_shares"): v.ARRAY,

@@ -210,18 +210,24 @@ class ContactBalance:
         g = self._spectrum(self.contacts(self.values(c))[1])[self._places]
         return dict(zip(self.orders, g, strict=True))
 
-    def contacts(self, q: np.ndarray) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
-        """Return loads of the elements, and g (…, d) with its derivative (…, B, 2, 2), at q."""
-        psi = 2.0 * np.pi * np.arange(self.points[0]) / self.points[0]
+    def contacts(
+        self, q: np.ndarray, psi: np.ndarray | None = None
+    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
+        """Return loads of the elements, and g (…, d) with its derivative (…, B, 2, 2), at q.
+
+        At angles ψ (…); those of the grid by default.
+        """
+        if psi is None:
+            psi = 2.0 * np.pi * np.arange(self.points[0])[:, None] / self.points[0]
         found = [
-            contacts(one, q[..., b, :], psi[:, None] / (one.count * one.cage_ratio))
+            contacts(one, q[..., b, :], psi / (one.count * one.cage_ratio))
             for b, one in enumerate(self.bearings)
         ]
         loads, forces, tangents = (list(each) for each in zip(*found, strict=True))
         springs = self.springs.reshape(-1, 2)
         g = np.stack(forces, axis=-2) + springs * q
         slopes = springs[:, :, None] * np.eye(2) - np.stack(tangents, axis=-3)
-        return loads, g.reshape(*self.points, -1), slopes
+        return loads, g.reshape(*q.shape[:-2], -1), slopes
 
     def answered(self, g: np.ndarray) -> np.ndarray:
         """Return ``H g`` of (2) (h, …) for harmonics (h, d, …), without those beyond K and N."""

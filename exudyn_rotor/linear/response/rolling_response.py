@@ -9,9 +9,7 @@ M. Tiwari, K. Gupta, O. Prakash, J. Sound Vib. 238 (2000), 723, by the same meth
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +18,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
@@ -29,18 +26,16 @@ from exudyn_rotor.linear.models.linear_model import (
     linear_model,
     warn_of_left_out_stiffening,
 )
-from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
-from exudyn_rotor.linear.response.contact_balance import ContactBalance, Harmonics, Rest, unknowns
+from exudyn_rotor.linear.response.contact_balance import Harmonics
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
     HarmonicForce,
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, checked_places, in_frame, place, places
+from exudyn_rotor.linear.response.places import At, Place, checked_places, in_frame, places
+from exudyn_rotor.linear.response.rolling_motion import RollingProblem, SteadyMotion
 from exudyn_rotor.linear.response.rolling_result import RollingBearingResponse
 from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
@@ -49,15 +44,9 @@ from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import checked_speeds
 from exudyn_rotor.threads import one_thread
 
-_Balances = Callable[[tuple[int, int]], ContactBalance]
-
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
-_FIRST, _WIDE = (4, 0), (4, 4)  # harmonics of the ball pass and of the spin
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
-_MOST_UNKNOWNS = 1500
-_STEP = 1e-3  # of the tolerance, by which the last step of Newton's method may change the motion
 _ROUND = 1e-12  # share of the largest harmonic
-_UNLOADED = 1e-9  # share of the largest static load that counts as none
 
 
 def rolling_bearing_response(
@@ -121,12 +110,17 @@ def rolling_bearing_response(
     UnconvergedError
         Where no steady motion of these two frequencies is found.
 
+    Warns
+    -----
+    UserWarning
+        Where a steady motion is unstable, or lacks more harmonics than `tolerance` allows.
+
     Notes
     -----
-    Whether a steady motion is stable is not looked at. With clearance and little damping it often
-    is not: where the ball pass has twice a natural frequency, and near resonances, runs show far
-    larger motions at half the frequency, jumps and chaos. A run from
-    :meth:`RollingBearingResponse.state` tells.
+    With clearance and little damping a steady motion is often unstable: where the ball pass has
+    twice a natural frequency, and near resonances, runs show far larger motions at half the
+    frequency, jumps and chaos. :attr:`RollingBearingResponse.verdicts` tell where, and a run from
+    :meth:`RollingBearingResponse.state` what becomes of it.
 
     Examples
     --------
@@ -181,12 +175,14 @@ def rolling_bearing_response(
     if unbalances or (own and not model.is_balanced):
         unbalance = unbalance_load(model, unbalances, own)
     _check_loaded(static, values[0] * unbalance)
-    problem = _Problem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
+    problem = RollingProblem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
     with one_thread():
         solved = problem.swept(values[::-1] if downwards else values, tolerance)
     solved = solved[::-1] if downwards else solved
     _warn_of_left_out(max(solved, key=lambda one: one.error), tolerance)
-    return _result(problem, observed, values, solved)
+    found = _result(problem, observed, values, solved)
+    _warn_of_instability(found)
+    return found
 
 
 def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> None:
@@ -198,11 +194,23 @@ def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> No
         )
 
 
-def _warn_of_left_out(worst: _Solved, tolerance: float) -> None:
+def _warn_of_left_out(worst: SteadyMotion, tolerance: float) -> None:
     if worst.error > tolerance:
         warnings.warn(
             f"rolling bearings at {worst.balance.rest.speed:g} rad/s: contacts that open and close "
             f"leave {worst.error:.0e} of the motion to higher harmonics",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+
+def _warn_of_instability(found: RollingBearingResponse) -> None:
+    speeds = found.speeds[[verdict == "unstable" for verdict in found.verdicts]]
+    if speeds.size:
+        shown = ", ".join(f"{speed:g}" for speed in speeds[:5]) + ", …" * (speeds.size > 5)
+        warnings.warn(
+            f"rolling bearings: at {speeds.size} of {len(found.speeds)} speeds ({shown} rad/s) the "
+            "steady motion is unstable; the rotor moves otherwise, which a run shows",
             UserWarning,
             stacklevel=user_level(),
         )
@@ -230,119 +238,11 @@ def _spring(bearing: RollingBearing) -> float:
     return float(0.5 * np.trace(contacts(bearing, deep, 0.0)[2]))
 
 
-@dataclass(frozen=True, eq=False)
-class _Solved:
-    """Harmonics q (h, d) of one speed, and what comes of them."""
-
-    balance: ContactBalance
-    q: np.ndarray
-    error: float
-    linear_error: float
-
-    def reach(self, tolerance: float) -> tuple[int, int]:
-        """Return with how many harmonics to begin nearby."""
-        K, N = self.balance.reach
-        return (max(K // 2, _FIRST[0]) if self.error < 0.1 * tolerance else K), N
-
-
-@dataclass(frozen=True, eq=False)
-class _Problem:
-    """Rotor, bearings with their springs k₀ (d,), and loads at any speed, rotor frame."""
-
-    model: LinearModel
-    bearings: Sequence[RollingBearing]
-    springs: np.ndarray
-    passes: float
-    static: Mapping[int, np.ndarray]
-    unbalance: np.ndarray  # per Ω²
-
-    @cached_property
-    def seats(self) -> list[list[tuple[Place, float]]]:
-        """Rings of each bearing, see :class:`Rest`."""
-        found = []
-        for one in self.bearings:
-            rings = {one.interface: 1.0, ON_FOUNDATION.format(one.interface): -1.0}
-            known = [name for name in rings if name in self.model.interfaces]
-            found.append([(place(self.model, name), rings[name]) for name in known])
-        return found
-
-    def swept(self, speeds: np.ndarray, tolerance: float) -> list[_Solved]:
-        """Return the motions, each beginning with the one before."""
-        found: list[_Solved] = []
-        for speed in speeds:
-            try:
-                near = found[-1] if found else None
-                found.append(self.solved(float(speed), near, tolerance))
-            except UnconvergedError as error:
-                raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
-        return found
-
-    def solved(self, speed: float, near: _Solved | None, tolerance: float) -> _Solved:
-        """Return the steady motion, beginning with one near it."""
-        loads = dict(self.static)
-        loads[0] = loads.get(0, 0.0) + speed**2 * self.unbalance
-        space = self.model.space(1, speed).prepared([speed])
-        rest = Rest(space, speed, self.passes * speed, self.seats, loads)
-        of = partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
-        mean = self._mean_place(of((0, 0)), tolerance)
-        for start in _starts(of, near, mean, tolerance):
-            try:
-                balance, q, error = _refined(of, *start, tolerance)
-            except UnconvergedError as failed:
-                lost = failed
-                continue
-            linear_error = np.nan
-            if mean is not None:
-                linear = balance.linear(balance.padded(mean, (0, 0)))
-                linear_error = balance.distance(linear, q)
-            return _Solved(balance, q, error, linear_error)
-        raise lost
-
-    def _mean_place(self, balance: ContactBalance, tolerance: float) -> np.ndarray | None:
-        """Return where the bearings rest on average (1, d); None where one has no load."""
-        loads = np.linalg.norm((self.springs * balance.start[0].real).reshape(-1, 2), axis=1)
-        if loads.min() <= _UNLOADED * loads.max():
-            return None
-        return balance.solved(balance.quasi_static(), _STEP * tolerance)
-
-
-def _starts(
-    of: _Balances, near: _Solved | None, mean: np.ndarray | None, tolerance: float
-) -> Iterator[tuple[ContactBalance, np.ndarray]]:
-    """Yield equations and harmonics near which the steady motion may be."""
-    if near is not None:
-        balance = of(near.reach(tolerance))
-        yield balance, balance.padded(near.q, near.balance.reach)
-    balance = of(_FIRST)
-    if mean is not None:
-        yield balance, balance.linear(balance.padded(mean, (0, 0)))
-    balance = of(_WIDE)
-    yield balance, balance.damped()
-
-
-def _refined(
-    of: _Balances,
-    balance: ContactBalance,
-    q: np.ndarray,
-    tolerance: float,
-) -> tuple[ContactBalance, np.ndarray, float]:
-    """Return the motion in as many harmonics as needed or possible, and what is left out."""
-    while True:
-        q = balance.solved(q, _STEP * tolerance)
-        by_pass, by_spin = balance.left_out(q, tolerance)
-        error, (K, N) = float(np.hypot(by_pass, by_spin)), balance.reach
-        more = (
-            K + max(K // 2, 2) if by_pass > 0.5 * tolerance else K,
-            N + max(N // 2, 2) if by_spin > 0.5 * tolerance else N,
-        )
-        if error <= tolerance or unknowns(more, len(balance.bearings)) > _MOST_UNKNOWNS:
-            return balance, q, error
-        balance = of(more)
-        q = balance.padded(q, (K, N))
-
-
 def _result(
-    problem: _Problem, observed: Sequence[Place], speeds: np.ndarray, solved: Sequence[_Solved]
+    problem: RollingProblem,
+    observed: Sequence[Place],
+    speeds: np.ndarray,
+    solved: Sequence[SteadyMotion],
 ) -> RollingBearingResponse:
     """Return the motions (s, p, h, 6) of places, and loads of elements."""
     rows = np.array([one.motion for one in observed])
@@ -374,6 +274,7 @@ def _result(
         np.array([[np.mean(~each.any(axis=-1)) for each in one] for one in loads]),
         np.array([one.linear_error for one in solved]),
         np.array([one.error for one in solved]),
+        *np.array([one.growth for one in solved]).T,
         coordinate_orders,
         coordinates=coordinates,
         basis=kept_basis(problem.model),

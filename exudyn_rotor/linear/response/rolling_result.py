@@ -50,6 +50,11 @@ class RollingBearingResponse(RunStart):
         there. Relative to the motion of the bearings; NaN where one without load has no such place.
     errors : ndarray, shape (s,)
         Size of the harmonics left out, relative to the motion.
+    exponents : ndarray, shape (s,)
+        Largest exponent of small motions beside the steady one [1/s]: below zero they decay; NaN
+        where it is not known.
+    exponent_errors : ndarray, shape (s,)
+        Its error [1/s]; infinite where it is not known.
     coordinate_orders : ndarray of int, shape (c, 2)
         As `orders`, of :attr:`coordinates`, rotor frame.
 
@@ -61,8 +66,10 @@ class RollingBearingResponse(RunStart):
     >>> motion[0, 0, :, 1] = -2e-5, 1e-6j
     >>> response = RollingBearingResponse(
     ...     ("left",), [100.0], [[0, 0], [1, 0]], motion, 3.25, ("left",), [[200.0]], [[0.0]],
-    ...     [0.01], [1e-4], [[0, 0]],
+    ...     [0.01], [1e-4], [-20.0], [1.0], [[0, 0]],
     ... )
+    >>> response.verdicts
+    ('stable',)
     >>> print(response.end_to_end("left").round(8))
     [[0.e+00 2.e-06]]
     """
@@ -77,12 +84,23 @@ class RollingBearingResponse(RunStart):
     open_shares: np.ndarray = numbers("abscissa", "bearings", least=0.0, most=1.0)
     linear_errors: np.ndarray = numbers("abscissa", finite=False)
     errors: np.ndarray = numbers("abscissa", least=0.0)
+    exponents: np.ndarray = numbers("abscissa", finite=False)
+    exponent_errors: np.ndarray = numbers("abscissa", finite=False)
     coordinate_orders: np.ndarray = numbers("harmonics", 2, dtype=int)
 
     @property
     def abscissa(self) -> np.ndarray:
         """The spin speeds [rad/s]."""
         return self.speeds
+
+    @property
+    def verdicts(self) -> tuple[str, ...]:
+        """'stable', 'unstable' or 'not determined' at every speed, by exponent and error."""
+        sure = np.abs(self.exponents) > self.exponent_errors
+        return tuple(
+            ("unstable" if exponent > 0.0 else "stable") if known else "not determined"
+            for exponent, known in zip(self.exponents, sure, strict=True)
+        )
 
     def phasor(
         self, place: str | None = None, direction: str = "n2", passing: int = 1, spin: int = 0
@@ -195,7 +213,13 @@ class RollingBearingResponse(RunStart):
         for b, name in enumerate(self.bearings):
             columns[f"element load, {name} [N]"] = np.tile(self.element_loads[:, b], count)
             columns[f"open, {name}"] = np.tile(self.open_shares[:, b], count)
-        ends = {"linear error": self.linear_errors, "error": self.errors}
+        ends = {
+            "linear error": self.linear_errors,
+            "error": self.errors,
+            "exponent [1/s]": self.exponents,
+            "exponent error [1/s]": self.exponent_errors,
+            "motion": np.array(self.verdicts),
+        }
         return columns | {name: np.tile(each, count) for name, each in ends.items()}
 
     def table(self, place: str | None = None, *, units: str = "SI") -> str:
@@ -209,21 +233,24 @@ class RollingBearingResponse(RunStart):
         lines = [
             f"{name}, {self.passes:.4g} elements pass in a revolution",
             f"{'spin speed':>12} {'end to end [m]':>21} {'amplitude along n2 [m]':>22} "
-            f"{'element':>10} {'':>6} {'linear':>8} {'':>8}",
+            f"{'element':>10} {'':>6} {'linear':>8} {'':>8} {'exponent':>9}",
             f"{'[' + unit.speed + ']':>12} {'n1':>10} {'n2':>10} {'pass':>11} {'spin':>10} "
-            f"{'load [N]':>10} {'open':>6} {'error':>8} {'error':>8}",
+            f"{'load [N]':>10} {'open':>6} {'error':>8} {'error':>8} {'[1/s]':>9}  motion",
         ]
         rows = zip(unit.speeds(self.speeds), *ends.T, *sizes, loads, self.open_shares.max(axis=1),
-                   self.linear_errors, self.errors, strict=True)  # fmt: skip
-        for at, x, y, passing, spin, load, away, linear, error in rows:
+                   self.linear_errors, self.errors, self.exponents, self.verdicts,
+                   strict=True)  # fmt: skip
+        for at, x, y, passing, spin, load, away, linear, error, exponent, verdict in rows:
             lines.append(
                 f"{at:12.6g} {x:10.3e} {y:10.3e} {passing:11.3e} {spin:10.3e} {load:10.4g} "
-                f"{away:6.3f} {in_table(linear):>8} {error:8.1e}"
+                f"{away:6.3f} {in_table(linear):>8} {error:8.1e} {exponent:9.3g}  {verdict}"
             )
         return "\n".join(lines)
 
     def plot(self, place: str | None = None, *, ax: Axes | None = None, units: str = "Hz") -> Axes:
         """Draw the motion from end to end along n1 and n2 [µm] over the spin speed.
+
+        Crosses mark where it is unstable, circles where that is not determined.
 
         Parameters
         ----------
@@ -238,6 +265,13 @@ class RollingBearingResponse(RunStart):
         colors = plotting.COLORS[:2]
         for label, values, color in zip(("n1", "n2"), self.end_to_end(name).T, colors, strict=True):
             ax.plot(unit.speeds(self.speeds), 1e6 * values, ".-", color=color, label=label)
+        unsure = (("unstable", "x", "k"), ("not determined", "o", "0.5"))
+        for verdict, marker, color in unsure:
+            at = np.array(self.verdicts) == verdict
+            if at.any():
+                shown = {"color": color, "mfc": "none", "label": verdict}
+                way = 1e6 * self.end_to_end(name)[at]
+                ax.plot(np.repeat(unit.speeds(self.speeds)[at], 2), way.ravel(), marker, **shown)
         ax.set_xlabel(f"spin speed [{unit.speed}]")
         ax.set_ylabel("motion from end to end [µm]")
         ax.set_title(name, loc="right", fontsize=10)

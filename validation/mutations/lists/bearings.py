@@ -304,10 +304,31 @@ BEARINGS = [
         ),
     ),
     *mutations(
+        "linear/response/contact_stability.py",
+        "test_rolling_stability.py",
+        ("contacts harden what they hold", "2 * j + 2] = -block", "2 * j + 2] = block"),
+        ("bearings of a rotor stand", "else turned", "else still"),
+        ("outer rings go with the inner ones", "[sign * (still", "[(still"),
+        ("ball pass slower by the spin's change", "2.0 * np.pi * n / period", "2.0 * rest.speed"),
+        ("supports of uneven rotors are even", "found += (np.exp", "found += 0.0 * (np.exp"),
+    ),
+    *mutations(
+        "linear/periodic/impulses.py",
+        "test_rolling_stability.py",
+        ("impulses push away", "return -step * np.c", "return step * np.c"),
+        ("dampers drive", "both = -step", "both = step"),
+        ("exponent of two periods", "+ _LEAST) / period", "+ _LEAST) / (2.0 * period)"),
+        ("impulse at the end of a step", "steps)) + 0.5)", "steps)) + 1.0)"),
+    ),
+    *mutations(
+        "linear/response/rolling_motion.py",
+        "test_rolling_bearing_response.py",
+        ("unbalance grows with the speed", "speed**2 * self.unbalance", "speed * self.unbalance"),
+    ),
+    *mutations(
         "linear/response/rolling_response.py",
         "test_rolling_bearing_response.py",
         ("weight lifts", "BaseAcceleration(-across)", "BaseAcceleration(across)"),
-        ("unbalance grows with the speed", "speed**2 * self.unbalance", "speed * self.unbalance"),
         ("folded harmonics turn the other way", "a.conj() if turned else a", "a"),
     ),
 ]

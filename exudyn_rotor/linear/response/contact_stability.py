@@ -1,0 +1,215 @@
+"""Stability of a steady motion on rolling bearings: do small motions beside it grow?
+
+Beside the motion (1) of :mod:`contact_balance` the contacts are springs that change with the ball
+pass and the spin, on the rest that is linear:
+
+    M δẍ + D δẋ + K δx = Cᵀ (k₀ − k(ψ, θ)) C δx,    C = T(θ) U − B                            (1)
+
+with U the inner rings in the rotor's axes, B the outer ones on a foundation, k the stiffness of the
+contacts at the steady motion, and k₀ the springs that K holds in their place. The steady motion is
+stable where the largest exponent of (1) is below zero.
+
+Ball pass and spin need no common period. One has nearby spin speeds at which m balls pass in n
+revolutions, m/n close to Zκ. The frequency of the ball pass is kept, so that such a speed changes
+gyroscopic terms by a little, and the harmonics of the spin. Two fractions tell the error by that,
+two steps that of the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import scipy.linalg
+
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.whole_space import WholeSpace
+from exudyn_rotor.linear.periodic.impulses import ChangingEquations
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.response.contact_balance import ContactBalance
+
+_PER_CYCLE = 12  # steps in a cycle of the fastest motion on the contacts
+_PER_WAVE = 8  # and in the shortest wave of the steady motion, as its grid has points
+_MOST_STEPS = 40_000
+_NEAR = 0.03  # relative change of the spin speed that is looked at
+_SAME = 1e-12  # relative difference of ratios that is rounding
+_SURE = 0.1  # of the exponent: an error that is small enough
+_SLOW = 400  # cycles in a ball pass, from which on the bearings are looked at as they stand
+_ANGLES = 16  # of the cage, there
+_MOST_COORDINATES = 60
+
+
+def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[float, float]:
+    """Return the largest exponent of motions beside a steady one, and its error [1/s].
+
+    Parameters
+    ----------
+    balance : ContactBalance
+    c : ndarray, shape (h, d)
+        Harmonics of the steady motion.
+    space : WholeSpace
+        Equations of the rest at any spin speed, the spin held.
+
+    Returns
+    -------
+    tuple of float
+        NaN and infinity where it would take too many steps. At rest, and where balls pass so slowly
+        that motions beside it do not feel them pass, the largest one at any angle of the cage.
+    """
+    rest = balance.rest
+    beside = _Beside(balance, c, space, rest.speed)
+    cycle = 2.0 * np.pi / beside.fastest
+    if rest.passing * cycle * _SLOW < 2.0 * np.pi:
+        angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
+        values = np.array([beside.equations(psi).standing_exponent(0.0) for psi in angles])
+        return float(values.max()), 1e-9 * beside.fastest
+    shortest = (
+        2.0 * np.pi / (max(balance.reach[0], 4) * rest.passing + balance.reach[1] * rest.speed)
+    )
+    step = min(cycle / _PER_CYCLE, shortest / _PER_WAVE)
+    ratio, value, error, last, by_step = rest.passing / rest.speed, np.nan, np.inf, np.nan, np.nan
+    for m, n in _near(ratio, int(_MOST_STEPS * step * rest.speed / (2.0 * np.pi))):
+        period = 2.0 * np.pi * m / rest.passing
+        speed, steps = 2.0 * np.pi * n / period, int(np.ceil(period / step))
+        near = _Beside(balance, c, space, speed).equations()
+        found = near.largest_exponent(period, steps)
+        if np.isnan(by_step):
+            # the step's error falls with its square
+            by_step = near.largest_exponent(period, 2 * steps) - found
+        by_speed = 0.0 if abs(m - n * ratio) <= _SAME * m else abs(found - last)
+        if not np.isnan(by_speed):
+            value, error = found + 4.0 / 3.0 * by_step, by_speed + abs(by_step)
+        if error <= _SURE * abs(value):
+            break
+        last = found
+    return value, error
+
+
+def _near(ratio: float, most: int) -> Iterator[tuple[int, int]]:
+    """Yield fractions m/n near a ratio, n up to `most`, each twice as near as the one before."""
+    nearest = 2.0 * _NEAR
+    for n in range(1, most + 1):
+        m = round(n * ratio)
+        off = abs(m / (n * ratio) - 1.0)
+        if off <= 0.5 * nearest:
+            yield m, n
+            nearest = off
+
+
+@dataclass(frozen=True, eq=False)
+class _Beside:
+    """Equations (1) beside harmonics c (h, d), of a rest at a nearby spin speed."""
+
+    balance: ContactBalance
+    c: np.ndarray
+    space: WholeSpace
+    speed: float
+
+    @cached_property
+    def rest(self) -> PeriodicSystem:
+        """The rest without a spin that nothing holds."""
+        return self.space.at(self.speed)
+
+    @cached_property
+    def rings(self) -> list[tuple[int, float, np.ndarray, bool]]:
+        """Bearing, sign, motion (2, k) and whether it stands, of every ring."""
+        return [
+            (b, sign, ring.motion[:2], ring.stands)
+            for b, seat in enumerate(self.balance.rest.seats)
+            for ring, sign in seat
+        ]
+
+    @cached_property
+    def _all_places(self) -> np.ndarray:
+        """Motions (r, k) of the rings, each in its own axes."""
+        places = np.vstack([motion for *_, motion, _ in self.rings])
+        return places if self.space.others is None else places @ self.space.others
+
+    @cached_property
+    def _basis(self) -> np.ndarray | None:
+        """Slow motions, and those by forces on the rings, of a rest with many coordinates."""
+        if self.rest.size <= _MOST_COORDINATES:
+            return None
+        M, K = self.rest.M[0].real, self.rest.K[0].real
+        slow = scipy.linalg.eigh(K + K.T, 2.0 * M, subset_by_index=[0, _MOST_COORDINATES - 1])[1]
+        pushed = np.linalg.lstsq(K, self._all_places.T, rcond=1e-12)[0]
+        return np.linalg.qr(np.hstack([slow, pushed / np.linalg.norm(pushed, axis=0)]))[0]
+
+    @cached_property
+    def system(self) -> PeriodicSystem:
+        """The rest, in not too many coordinates."""
+        return self.rest if self._basis is None else self.rest.projected(self._basis)
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Motions of the rings by these coordinates."""
+        return self._all_places if self._basis is None else self._all_places @ self._basis
+
+    @cached_property
+    def fastest(self) -> float:
+        """Largest frequency of the places on the stiffest contacts [rad/s]."""
+        slopes = self.balance.contacts(self.balance.values(self.c))[2]
+        stiffest = (np.abs(slopes).max(axis=(0, 1, 3, 4)) + self.balance.springs[::2]).max()
+        moved = self.places @ np.linalg.solve(self.system.M[0].real, self.places.T)
+        return float(np.sqrt(stiffest * np.linalg.norm(moved, 2)))
+
+    def equations(self, psi: float | None = None) -> ChangingEquations:
+        """Return the equations over time; with balls that stand at an angle ψ, if it is given."""
+        system, rings = self.system, self.places
+        M, D, K = (terms[0].real for terms in (system.M, system.D, system.K))
+        others = np.zeros((0, system.size)) if system.is_constant else system.ports.T
+        changes = partial(self._changes, others, psi)
+        return ChangingEquations(M, D, K, np.vstack([rings, others]), changes, self.fastest)
+
+    def _changes(
+        self, others: np.ndarray, psi: float | None, times: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray | None]:
+        """Return changes of stiffness and damping (t, p, p) at the places, see (1)."""
+        p = len(self.places)
+        passed = self.balance.rest.passing * times if psi is None else np.full(len(times), psi)
+        theta = self.speed * times
+        size = p + len(others)
+        stiffness = np.zeros((len(times), size, size))
+        stiffness[:, :p, :p] = self._of_contacts(passed, theta)
+        if not len(others):
+            return stiffness, None
+        stiffness[:, p:, p:] = _varying(self.system.K, others, theta)
+        damping = np.zeros_like(stiffness)
+        damping[:, p:, p:] = _varying(self.system.D, others, theta)
+        return stiffness, damping
+
+    def _of_contacts(self, psi: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return ``−Cᵀ(k₀ − k)C`` by the rings' motions in their axes, (t, r, r)."""
+        slopes = self._slopes(psi, theta)
+        cos, sin = np.cos(theta), np.sin(theta)
+        turned = np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
+        still = np.broadcast_to(np.eye(2), turned.shape)
+        into = [sign * (still if stands else turned) for _, sign, _, stands in self.rings]
+        found = np.zeros((len(psi), len(self.places), len(self.places)))
+        for i, (b, *_) in enumerate(self.rings):
+            for j, (other, *_) in enumerate(self.rings):
+                if b == other:
+                    block = np.swapaxes(into[i], 1, 2) @ slopes[:, b] @ into[j]
+                    found[:, 2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = -block
+        return found
+
+    def _slopes(self, psi: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return ``k₀ − k`` of the bearings at the steady motion, shape (t, B, 2, 2)."""
+        K, N = self.balance.reach
+        harmonics = self.c.reshape(2 * K + 1, -1)
+        passed = np.exp(1j * np.outer(psi, np.arange(-K, K + 1))) @ harmonics
+        spun = np.exp(1j * np.outer(theta, np.arange(-N, N + 1)))
+        q = np.einsum("tn,tnd->td", spun, passed.reshape(len(psi), 2 * N + 1, -1)).real
+        return self.balance.contacts(q.reshape(len(psi), -1, 2), psi)[2]
+
+
+def _varying(terms: dict[int, np.ndarray], motions: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """Return the part of Fourier terms that varies with θ, by orthonormal motions, (t, p, p)."""
+    found = np.zeros((len(theta), len(motions), len(motions)))
+    for n, X in terms.items():
+        if n:
+            part = motions @ X @ motions.T
+            found += (np.exp(1j * n * theta)[:, None, None] * part).real
+    return found

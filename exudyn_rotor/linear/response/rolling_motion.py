@@ -1,0 +1,142 @@
+"""Steady motions on rolling bearings, speed by speed: where they begin, and harmonics enough.
+
+A motion begins with the one at the speed before, with linear equations about the mean place, or
+with more damping that is taken away; harmonics are added until those left out are small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.response.contact_balance import ContactBalance, Rest, unknowns
+from exudyn_rotor.linear.response.contact_stability import growth
+from exudyn_rotor.linear.response.places import Place, place
+
+_Balances = Callable[[tuple[int, int]], ContactBalance]
+
+_FIRST, _WIDE = (4, 0), (4, 4)  # harmonics of the ball pass and of the spin
+_MOST_UNKNOWNS = 1500
+_STEP = 1e-3  # of the tolerance, by which the last step of Newton's method may change the motion
+_UNLOADED = 1e-9  # share of the largest static load that counts as none
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyMotion:
+    """Harmonics q (h, d) of one speed, and what comes of them."""
+
+    balance: ContactBalance
+    q: np.ndarray
+    error: float
+    linear_error: float
+    growth: tuple[float, float]  # and its error [1/s]
+
+    def reach(self, tolerance: float) -> tuple[int, int]:
+        """Return with how many harmonics to begin nearby."""
+        K, N = self.balance.reach
+        return (max(K // 2, _FIRST[0]) if self.error < 0.1 * tolerance else K), N
+
+
+@dataclass(frozen=True, eq=False)
+class RollingProblem:
+    """Rotor, bearings with their springs k₀ (d,), and loads at any speed, rotor frame."""
+
+    model: LinearModel
+    bearings: Sequence[RollingBearing]
+    springs: np.ndarray
+    passes: float
+    static: Mapping[int, np.ndarray]
+    unbalance: np.ndarray  # per Ω²
+
+    @cached_property
+    def seats(self) -> list[list[tuple[Place, float]]]:
+        """Rings of each bearing, see :class:`Rest`."""
+        found = []
+        for one in self.bearings:
+            rings = {one.interface: 1.0, ON_FOUNDATION.format(one.interface): -1.0}
+            known = [name for name in rings if name in self.model.interfaces]
+            found.append([(place(self.model, name), rings[name]) for name in known])
+        return found
+
+    def swept(self, speeds: np.ndarray, tolerance: float) -> list[SteadyMotion]:
+        """Return the motions, each beginning with the one before."""
+        found: list[SteadyMotion] = []
+        for speed in speeds:
+            try:
+                near = found[-1] if found else None
+                found.append(self.solved(float(speed), near, tolerance))
+            except UnconvergedError as error:
+                raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
+        return found
+
+    def solved(self, speed: float, near: SteadyMotion | None, tolerance: float) -> SteadyMotion:
+        """Return the steady motion, beginning with one near it."""
+        loads = dict(self.static)
+        loads[0] = loads.get(0, 0.0) + speed**2 * self.unbalance
+        space = self.model.space(1, speed).prepared([speed])
+        rest = Rest(space, speed, self.passes * speed, self.seats, loads)
+        of = partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
+        mean = self._mean_place(of((0, 0)), tolerance)
+        for start in _starts(of, near, mean, tolerance):
+            try:
+                balance, q, error = _refined(of, *start, tolerance)
+            except UnconvergedError as failed:
+                lost = failed
+                continue
+            linear_error = np.nan
+            if mean is not None:
+                linear = balance.linear(balance.padded(mean, (0, 0)))
+                linear_error = balance.distance(linear, q)
+            grown = growth(balance, q, self.model.space(1, speed, held=True))
+            return SteadyMotion(balance, q, error, linear_error, grown)
+        raise lost
+
+    def _mean_place(self, balance: ContactBalance, tolerance: float) -> np.ndarray | None:
+        """Return where the bearings rest on average (1, d); None where one has no load."""
+        loads = np.linalg.norm((self.springs * balance.start[0].real).reshape(-1, 2), axis=1)
+        if loads.min() <= _UNLOADED * loads.max():
+            return None
+        return balance.solved(balance.quasi_static(), _STEP * tolerance)
+
+
+def _starts(
+    of: _Balances, near: SteadyMotion | None, mean: np.ndarray | None, tolerance: float
+) -> Iterator[tuple[ContactBalance, np.ndarray]]:
+    """Yield equations and harmonics near which the steady motion may be."""
+    if near is not None:
+        balance = of(near.reach(tolerance))
+        yield balance, balance.padded(near.q, near.balance.reach)
+    balance = of(_FIRST)
+    if mean is not None:
+        yield balance, balance.linear(balance.padded(mean, (0, 0)))
+    balance = of(_WIDE)
+    yield balance, balance.damped()
+
+
+def _refined(
+    of: _Balances,
+    balance: ContactBalance,
+    q: np.ndarray,
+    tolerance: float,
+) -> tuple[ContactBalance, np.ndarray, float]:
+    """Return the motion in as many harmonics as needed or possible, and what is left out."""
+    while True:
+        q = balance.solved(q, _STEP * tolerance)
+        by_pass, by_spin = balance.left_out(q, tolerance)
+        error, (K, N) = float(np.hypot(by_pass, by_spin)), balance.reach
+        more = (
+            K + max(K // 2, 2) if by_pass > 0.5 * tolerance else K,
+            N + max(N // 2, 2) if by_spin > 0.5 * tolerance else N,
+        )
+        if error <= tolerance or unknowns(more, len(balance.bearings)) > _MOST_UNKNOWNS:
+            return balance, q, error
+        balance = of(more)
+        q = balance.padded(q, (K, N))
