@@ -30,7 +30,12 @@ MAY_BE_NAN = {
         "half_power",
         "amplification",
         "linear_errors",
+        "exponent_errors",
     )
+}
+MAY_BE_NAN_OF_ONE = {
+    ("CriticalSpeedMap", "field.speeds"),
+    ("RollingBearingResponse", "field.exponents"),
 }
 
 
@@ -69,7 +74,7 @@ def wrong_values(key: str, value: np.ndarray, owner: str) -> dict[str, np.ndarra
         wrong["empty name"] = np.full(np.atleast_1d(value).shape, "")
         return wrong
     wrong["text"] = np.full(value.shape, "stiff")
-    may_be_nan = key in MAY_BE_NAN or (owner, key) == ("CriticalSpeedMap", "field.speeds")
+    may_be_nan = key in MAY_BE_NAN or (owner, key) in MAY_BE_NAN_OF_ONE
     if value.dtype.kind in "fc" and not may_be_nan:
         for label, number in (("NaN", np.nan), ("infinite", -np.inf)):
             wrong[label] = value.copy()

@@ -114,8 +114,9 @@ def add_supports(
 
     The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
     torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
-    its drive lacks it. What carries the bearing takes the reaction, but for the friction of tilting
-    pads, which the ground takes.
+    its drive lacks it. What carries the bearing takes the reaction; where it turns about the axis,
+    bearings see a free spin against it. The force of a bearing pulls at the middles of journal and
+    bore, so that about the axis the base lacks the moment ``u × F`` of their distance u.
 
     Examples
     --------

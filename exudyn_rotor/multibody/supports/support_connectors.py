@@ -31,6 +31,7 @@ from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
+from exudyn_rotor.multibody.supports.turning_base import carrying_marker, on_turning_base
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
@@ -92,7 +93,8 @@ def bearing_connector(
 
     Its torque acts on a spin that is free; a prescribed one does not feel it.
     """
-    name, force = _bearing_function(body, bearing, seat.axes, _spin_reader(body))
+    stands = None if seat.base is None else base
+    name, force = _bearing_function(body, bearing, seat.axes, _spin_reader(body), stands)
     if name == _BRAKING:
         item = RigidBodySpringDamper(
             markerNumbers=[base, rigid_marker(body, bearing.interface)],
@@ -120,7 +122,8 @@ def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
 
     def let(spin: SpinReader) -> None:
         for one in rolling:
-            function = _bearing_function(body, one.support, body.standing_axes, spin)
+            base = carrying_marker(body.mbs, one.objects[0], one.base)
+            function = _bearing_function(body, one.support, body.standing_axes, spin, base)
             body.mbs.SetObjectParameter(one.objects[0], *function)
 
     let(held)
@@ -139,7 +142,8 @@ def tangent_films(body: RotorItems) -> Iterator[tuple[TangentFilm, ...]]:
 
     def let(laws: Iterable[Bearing | TangentFilm]) -> None:
         for one, law in zip(journals, laws, strict=True):
-            function = _bearing_function(body, law, body.standing_axes, spin)
+            base = carrying_marker(body.mbs, one.objects[0], one.base)
+            function = _bearing_function(body, law, body.standing_axes, spin, base)
             body.mbs.SetObjectParameter(one.objects[0], *function)
 
     let(films)
@@ -150,7 +154,11 @@ def tangent_films(body: RotorItems) -> Iterator[tuple[TangentFilm, ...]]:
 
 
 def _bearing_function(
-    body: RotorItems, bearing: Bearing | TangentFilm, axes: np.ndarray, spin: SpinReader
+    body: RotorItems,
+    bearing: Bearing | TangentFilm,
+    axes: np.ndarray,
+    spin: SpinReader,
+    base: exudyn.MarkerIndex | None,
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     brakes, begin = body.formulation.has_spin, _no_memory
@@ -161,6 +169,8 @@ def _bearing_function(
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
+    if body.formulation.has_spin:
+        law = on_turning_base(law, body.mbs, base, axes)
     if brakes:
         return _BRAKING, _braking_function(law, spin, begin, least, note)
     (a, d), (b, e), (c, f) = axes[:, :2].tolist()

@@ -1,23 +1,27 @@
 """Tilting pads in a scene: their tilts as coordinates, and the films between them and the journal.
 
 The tilts [rad] are the coordinates of one ``NodeGenericODE2``, with the pads' inertia. They move
-the virtual nodes of a massless ``ObjectFFRFreducedOrder`` that goes with the base, but does not
-turn with it: of each pad by −R δ t where it tilts by δ (:mod:`exudyn_rotor.bearings.tilting_pad`).
-Each film is a connector between such nodes and the journal, so that Exudyn knows all derivatives.
+the virtual nodes of a massless ``ObjectFFRFreducedOrder`` that goes with the base: of each pad by
+−R δ t where it tilts by δ (:mod:`exudyn_rotor.bearings.tilting_pad`). Each film is a connector
+between such nodes and the journal, so that Exudyn knows all derivatives. Where the spin is free,
+the massless body turns with the base, too, on which friction then bears; what the base's rotation
+adds to that of a pad is left out.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import exudyn
 import numpy as np
 from exudyn.itemInterface import (
+    GenericJoint,
     MarkerNodeRigid,
     NodeRigidBodyRxyz,
     ObjectGenericODE2,
-    SphericalJoint,
+    VGenericJoint,
     VNodeRigidBodyRxyz,
     VObjectGenericODE2,
-    VSphericalJoint,
 )
 
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
@@ -49,13 +53,19 @@ def add_pads(
         )
     )
     carrier = mbs.AddObject(massless_body([frame, tilts], count))
-    hold(mbs, frame, range(0 if seat.base is None else 3, 6))
-    if seat.base is not None:
-        joint = SphericalJoint(
-            markerNumbers=[seat.marker(mbs), mbs.AddMarker(MarkerNodeRigid(nodeNumber=frame))],
-            visualization=VSphericalJoint(show=False),
+    turns = body.formulation.has_spin
+    if seat.base is None:
+        hold(mbs, frame)
+    else:
+        base = replace(seat, axes=np.eye(3)).marker(mbs)
+        joint = GenericJoint(
+            markerNumbers=[base, mbs.AddMarker(MarkerNodeRigid(nodeNumber=frame))],
+            constrainedAxes=[1, 1, 1, *[int(turns)] * 3],
+            visualization=VGenericJoint(show=False),
         )
         mbs.AddObject(joint)
+        if not turns:
+            hold(mbs, frame, range(3, 6))
     films = []
     for number, one in enumerate(bearing.pad_bearings):
         motion = np.zeros((6, count))

@@ -118,6 +118,17 @@ ENERGY = [
         ("ground does not shake it", "if S is None else S,", "if S is None else 0.0 * S,"),
     ),
     *mutations(
+        "multibody/supports/turning_base.py",
+        "test_friction_on_bases.py",
+        ("a turning bore takes nothing off the spin", "angle, speed - w)", "angle, speed)"),
+        ("journal moves the other way by the turning bore", "vx + w * y, vy - w", "vx - w * y, vy + w"),
+    ),
+    *mutations(
+        "multibody/supports/tilting_pads.py",
+        "test_friction_on_bases.py",
+        ("friction of pads bears on the ground", "turns = body.formulation.has_spin", "turns = False"),
+    ),
+    *mutations(
         "multibody/supports/base_motion.py",
         _SHAKEN,
         ("ground held at its samples", "a + share * (b - a)", "a"),

@@ -1,0 +1,41 @@
+"""Laws of bearings on a base that turns about the spin axis.
+
+A law holds in axes of the bore. One that turns about the axis at the rate w sees the rotor turn at
+Ω − w, and move by ``v − w e × u``, with the displacement u and the velocity v of the journal
+against it: a film drags by what the two turn against each other. The angle of the bore is small and
+left out. With a prescribed spin, which feels no friction, so is w, as in linear analyses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import exudyn
+import numpy as np
+
+_ANGULAR_VELOCITY = exudyn.OutputVariableType.AngularVelocity
+
+
+def carrying_marker(
+    mbs: exudyn.MainSystem, connector: exudyn.ObjectIndex, base: object | None
+) -> exudyn.MarkerIndex | None:
+    """Return the marker of the base in a bearing's connector; None for the ground."""
+    return None if base is None else mbs.GetObject(connector)["markerNumbers"][0]
+
+
+def on_turning_base(
+    law: Callable, mbs: exudyn.MainSystem, base: exudyn.MarkerIndex | None, axes: np.ndarray
+) -> Callable:
+    """Return a law as it is on a marker of a base; `axes` are (n1, n2, e) as columns."""
+    if base is None:
+        return law
+    a, b, c = axes[:, 2].tolist()
+
+    def turned(
+        x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        omega = mbs.GetMarkerOutput(base, _ANGULAR_VELOCITY)
+        w = float(a * omega[0] + b * omega[1] + c * omega[2])
+        return law(x, y, vx + w * y, vy - w * x, angle, speed - w)
+
+    return turned
