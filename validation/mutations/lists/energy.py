@@ -120,13 +120,13 @@ ENERGY = [
     *mutations(
         "multibody/supports/turning_base.py",
         "test_friction_on_bases.py",
-        ("a turning bore takes nothing off the spin", "angle, speed - w)", "angle, speed)"),
-        ("journal moves the other way by the turning bore", "vx + w * y, vy - w", "vx - w * y, vy + w"),
+        ("a turning bore leaves the spin", "angle, speed - w)", "angle, speed)"),
+        ("journal moves by minus the bore", "vx + w * y", "vx - w * y"),
     ),
     *mutations(
         "multibody/supports/tilting_pads.py",
         "test_friction_on_bases.py",
-        ("friction of pads bears on the ground", "turns = body.formulation.has_spin", "turns = False"),
+        ("friction of pads bears on the ground", "turns = body.form", "turns = False and body.form"),
     ),
     *mutations(
         "multibody/supports/base_motion.py",
