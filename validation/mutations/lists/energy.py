@@ -126,7 +126,7 @@ ENERGY = [
     *mutations(
         "multibody/supports/tilting_pads.py",
         "test_friction_on_bases.py",
-        ("friction of pads bears on the ground", "turns = body.form", "turns = False and body.form"),
+        ("pads brake by the ground", "turns = body.form", "turns = False and body.form"),
     ),
     *mutations(
         "multibody/supports/base_motion.py",
