@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 
 import exudyn
+import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _LOOSEST, _TIGHTEST = 1e-5, 1e-9
+_COORDINATE = 0.01  # m, Exudyn's default
 _MOST_STEPS = 2**31  # Exudyn counts steps with 32 bits
 
 
@@ -34,7 +36,8 @@ def recommended_settings(
     settings : exudyn.SimulationSettings, optional
         Settings to change and return; Exudyn's defaults otherwise.
     body : RotorBody or FullRotorBody, optional
-        The rotor of the run; give it where it is a full one, which needs a sparse linear solver.
+        The rotor of the run; give it where it is a full one, which needs a sparse linear solver, or
+        a small one: mass times length below 1 kg m.
 
     Raises
     ------
@@ -53,7 +56,13 @@ def recommended_settings(
         The default, 1e-8, iterates far below the error of the step size; 1e-5 changes the motion
         by 1e-5 of its size and saves a third of the iterations.
     ``newton.absoluteTolerance`` : a hundredth of the relative one
-        Decides where nothing moves.
+        Decides where nothing moves. It is a force [N], so that without `body` it is that of a rotor
+        of a metre and some kilograms: the forces of a rotor of a millimetre are below it, and
+        contacts and films would not be iterated. With a `body` of the mass m and the length L it is
+        less by the share ``m L`` of 1 kg m, as forces are that accelerate it through its length.
+    ``newton.numericalDifferentiation.minimumCoordinateSize`` : 0.01, times L/1 m where that is less
+        With a `body` only. Exudyn differentiates Python functions by a step of 1e-7 of this [m],
+        which has to be small beside the depth of a contact.
     ``newton.modifiedNewtonContractivity`` : 0.1
         The Jacobian is renewed when an iteration gains less than a digit. This costs nothing in a
         rotor with its frame in the centre of mass, and keeps iterations few where supports seen
@@ -91,6 +100,18 @@ def recommended_settings(
     newton.relativeTolerance = tolerance
     newton.absoluteTolerance = 1e-2 * tolerance
     newton.modifiedNewtonContractivity = 0.1
+    if body is not None:
+        length, mass = _size(body), body.motion.invariants.mass
+        newton.absoluteTolerance *= min(1.0, mass * length)
+        newton.numericalDifferentiation.minimumCoordinateSize = _COORDINATE * min(1.0, length)
     if isinstance(body, FullRotorBody):
         settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
     return settings
+
+
+def _size(body: RotorItems) -> float:
+    """Return how far an interface is from the centre of mass at most, or the radius of gyration."""
+    rotor, inv = body.selection.source, body.motion.invariants
+    places = [one.reference - rotor.center_of_mass for one in rotor.interfaces.values()]
+    distances = np.linalg.norm(np.reshape(places, (-1, 3)), axis=1)
+    return float(distances.max(initial=math.sqrt(inv.Theta / inv.mass)))

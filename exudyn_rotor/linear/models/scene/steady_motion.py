@@ -8,7 +8,7 @@ forces leave unbalanced into a change of all harmonics.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -35,6 +35,7 @@ _MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
 _ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
 _FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the start
+_FEW_STRIDES = 8  # with many samples
 _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
@@ -82,7 +83,8 @@ def steady_motion(
         except UnconvergedError:
             if found is not None or not probe.speed:
                 raise
-            system, found = search.followed()
+            search, system, found = _followed(search)
+            samples = search.samples
         if system is not None:
             return system, search.orders, found
         samples *= 2
@@ -92,6 +94,18 @@ def steady_motion(
         "moves from node to node? about='equilibrium' leaves the rotor's own unbalance out, as "
         "linear_model(rotor, supports=…) does; a damped run from rest shows the motion"
     )
+
+
+def _followed(search: _Search) -> tuple[_Search, PeriodicSystem | None, np.ndarray]:
+    """Return the search that found the motion, its equations, and the harmonics.
+
+    A film that is all but closed somewhere is unlike itself at few angles: then it takes more.
+    """
+    try:
+        return search, *search.followed()
+    except UnconvergedError:
+        finer = replace(search, samples=_MOST_UNRESOLVED)
+        return finer, *finer.followed(_FEW_STRIDES)
 
 
 def motion_at_rest(
@@ -181,10 +195,10 @@ class _Search:
         """
         return self._newton(self._start(start), 0.0, _MOST_ITERATIONS)
 
-    def followed(self) -> tuple[PeriodicSystem | None, np.ndarray]:
+    def followed(self, most: int = _MOST_STRIDES) -> tuple[PeriodicSystem | None, np.ndarray]:
         """Return as :meth:`found`, beginning with the equilibria at rest where there are any.
 
-        What is unbalanced there at the speed is taken away in steps.
+        What is unbalanced there at the speed is taken away in up to so many steps.
         """
         Y = self._start(None)
         try:
@@ -197,7 +211,7 @@ class _Search:
             Y[np.isin(self.orders, common)] = still[np.isin(orders, common)]
         first = self._residual(self._points(Y))
         left, stride = 1.0, _FIRST_STRIDE
-        for _ in range(_MOST_STRIDES):
+        for _ in range(most):
             goal = max(left - stride, 0.0)
             try:
                 system, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
@@ -252,10 +266,11 @@ class _Search:
     def _lost(self) -> UnconvergedError:
         return UnconvergedError(
             f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
-            "that nothing holds, a resonance without damping, or a stop or a bearing with "
-            "clearance that the rotor leaves and hits? A damped run from rest shows what it does "
-            "there, and rolling_bearing_response its motion on rolling bearings; about='given' "
-            "needs no steady motion"
+            "that nothing holds, a resonance without damping, a stop or a bearing with clearance "
+            "that the rotor leaves and hits, or an oil film that unbalance all but closes, or that "
+            "whirls at half the speed? A run shows what the rotor does there: a damped one from "
+            "rest, or one from the steady_state with less unbalance; rolling_bearing_response "
+            "shows its motion on rolling bearings; about='given' needs no steady motion"
         )
 
     def _residual(self, points: list[LinearPoint]) -> np.ndarray:
