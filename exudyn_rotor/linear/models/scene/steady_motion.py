@@ -62,13 +62,15 @@ class Scene(Protocol):
 
 def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
     """Return the equations about the steady motion; raises as :func:`steady_motion`."""
-    return steady_motion(scene, probe, _AT_REST)[0]
+    return steady_motion(scene, probe, None)[0]
 
 
 def steady_motion(
-    scene: Scene, probe: Probe, tolerance: float
+    scene: Scene, probe: Probe, tolerance: float | None
 ) -> tuple[PeriodicSystem, np.ndarray, np.ndarray]:
     """Return equations, orders (h,) and harmonics (h, k), at as many angles as needed.
+
+    Without a `tolerance` the motion is as good as the equations need it.
 
     Raises
     ------
@@ -77,11 +79,11 @@ def steady_motion(
     """
     samples, found = _FIRST_SAMPLES, None
     while samples <= _MOST_SAMPLES:
-        search = _Search(scene, probe, samples, tolerance)
+        search = _Search(scene, probe, samples, tolerance or _AT_REST, tolerance is None)
         try:
             system, found = search.found(found)
         except UnconvergedError:
-            if found is not None or not probe.speed:
+            if not probe.speed or samples > _MOST_UNRESOLVED:
                 raise
             search, system, found = _followed(search)
             samples = search.samples
@@ -104,6 +106,8 @@ def _followed(search: _Search) -> tuple[_Search, PeriodicSystem | None, np.ndarr
     try:
         return search, *search.followed()
     except UnconvergedError:
+        if search.samples == _MOST_UNRESOLVED:
+            raise
         finer = replace(search, samples=_MOST_UNRESOLVED)
         return finer, *finer.followed(_FEW_STRIDES)
 
@@ -166,10 +170,7 @@ class _Search:
     probe: Probe
     samples: int
     tolerance: float
-
-    @property
-    def for_equations(self) -> bool:
-        return self.tolerance == _AT_REST
+    for_equations: bool
 
     @cached_property
     def angles(self) -> np.ndarray:
