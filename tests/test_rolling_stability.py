@@ -72,9 +72,17 @@ def test_exponent_with_dampers_that_come_and_go():
     period = 2.0 * np.pi / 3.0
     # the other motion stands still
     assert equations.largest_exponent(period, 64) == pytest.approx(0.0, abs=1e-9)
-    assert np.linalg.det(equations._monodromy(period / 64, 64)) == pytest.approx(
-        np.exp(-period), rel=1e-9
+    monodromy, log = equations._monodromy(period / 64, 64)
+    assert np.linalg.det(monodromy) * np.exp(2.0 * log) == pytest.approx(np.exp(-period), rel=1e-9)
+
+
+def test_growth_beyond_the_largest_float():
+    """Of ẍ = 100 x, by the right side alone: exp(10 t) over a hundred seconds."""
+    one = np.ones((1, 1))
+    equations = ChangingEquations(
+        one, 0.0 * one, 0.0 * one, one, lambda t: (np.full((len(t), 1, 1), -100.0), None), 10.0
     )
+    assert equations.largest_exponent(100.0, 40_000) == pytest.approx(10.0, rel=1e-4)
 
 
 def grown(one, found, unbalance, periods):

@@ -53,11 +53,12 @@ class ChangingEquations:
 
         By so many steps; NaN where it feels none. Multipliers that are rounding count as that.
         """
-        monodromy = self._monodromy(period / steps, steps)
+        monodromy, log = self._monodromy(period / steps, steps)
         sizes = np.abs(np.linalg.eigvals(monodromy))
         rounding = np.finfo(float).eps * sizes.max()
         values, felt = self._felt(monodromy)
-        return float(np.log(np.abs(values[felt]).max(initial=rounding) + _LEAST) / period)
+        largest = np.abs(values[felt]).max(initial=rounding)
+        return float((np.log(largest + _LEAST) + log) / period)
 
     def standing_exponent(self, time: float) -> float:
         """Return the largest one of the equations as they are at an instant; NaN as above."""
@@ -97,18 +98,20 @@ class ChangingEquations:
         of = np.linalg.norm(self.places @ right[:size], axis=0)
         return values, by * of > _FELT * reach * np.linalg.norm(self.places, 2)
 
-    def _monodromy(self, step: float, steps: int) -> np.ndarray:
-        """Return what steps make of scaled states."""
+    def _monodromy(self, step: float, steps: int) -> tuple[np.ndarray, float]:
+        """Return what steps make of scaled states, over a size, and the logarithm of that."""
         size = len(self.M)
         over = scipy.linalg.expm(step * self._rates(self.D, self.K))
         P, zero = self.places, np.zeros_like(self.places)
         seen = np.block([[P, zero], [zero, P]])
         pulled = over[:, size:] @ self._pulled
-        found = np.eye(2 * size)
+        found, log = np.eye(2 * size), 0.0
         for first in range(0, steps, _CHUNK):
             times = step * (np.arange(first, min(first + _CHUNK, steps)) + 0.5)
             found = _product(over + pulled @ self._impulses(times, step) @ seen) @ found
-        return self._scaled(found)
+            largest = np.abs(found).max()
+            found, log = found / largest, log + np.log(largest)
+        return self._scaled(found), log
 
     def _impulses(self, times: np.ndarray, step: float) -> np.ndarray:
         """Return impulses by (P x, P ẋ) before them, at times (t,); shape (t, p, 2p)."""
