@@ -317,7 +317,7 @@ BEARINGS = [
         "test_rolling_stability.py",
         ("impulses push away", "return -step * np.c", "return step * np.c"),
         ("dampers drive", "both = -step", "both = step"),
-        ("exponent of two periods", "+ _LEAST) / period", "+ _LEAST) / (2.0 * period)"),
+        ("exponent of two periods", "+ log) / period", "+ log) / (2.0 * period)"),
         ("impulse at the end of a step", "steps)) + 0.5)", "steps)) + 1.0)"),
     ),
     *mutations(
