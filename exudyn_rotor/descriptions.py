@@ -12,7 +12,11 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing, Linearised
-from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
+from exudyn_rotor.bearings.controlled_support import (
+    ControlledSupport,
+    FilmSupport,
+    PadSupport,
+)
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support, acts
@@ -31,6 +35,7 @@ SUPPORTS = (Support, Bearing, MagneticBearing)
 DESCRIBED = (ReducedRotor, SolidRotor, RotorTrain, Foundation, *MODELS)
 _FEW = 4  # entries of an array that is written out
 _WIDTH = 66  # of the last column
+_KINDS = {ControlledSupport: "magnetic", FilmSupport: "film with voids", PadSupport: "tilting pads"}
 _ROUNDING = 1e-9  # of matrices of an axisymmetric rotor
 _UNITS = dict(zip(COEFFICIENTS, ("N/m", "N s/m", "N m/rad", "N m s/rad"), strict=True))
 
@@ -137,8 +142,8 @@ def _lines(named: Iterable[tuple[str, Any]]) -> list[Line]:
                 for name in COEFFICIENTS
                 if acts(value := getattr(one, name))
             ]
-        elif isinstance(one, ControlledSupport | PadSupport):
-            kind = "tilting pads" if isinstance(one, PadSupport) else "magnetic"
+        elif isinstance(one, tuple(_KINDS)):
+            kind = _KINDS[type(one)]
             seen = "" if one.sensor == one.interface else f", sensors at {one.sensor}"
             lines.append((where, "inertial", kind, f"{one.size} coordinates of its own{seen}"))
         else:

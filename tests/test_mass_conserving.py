@@ -177,7 +177,7 @@ def bearings(reduced, gravity=GRAVITY, **options):
     loads = bearing_loads(reduced, ["left", "right"], gravity)
     film = oil(**options)
     return [
-        JournalBearing(interface=name, film=film, load=load, whirl_ratio=0.5)
+        JournalBearing(interface=name, film=film, load=load)
         for name, load in zip(("left", "right"), loads, strict=True)
     ]
 
@@ -328,7 +328,5 @@ def test_refused():
     one = JournalBearing(interface="left", film=oil())
     with pytest.raises(ValueError, match="add_supports gives it to a scene"):
         _ = one.law
-    with pytest.raises(ValueError, match="whirl_ratio: needs"):
-        JournalBearing(interface="left", film=oil(), whirl_ratio=0.0)
     with pytest.raises(ValueError, match="coefficients at speed alone"):
         oil().state([0.0, 0.0], [0.0, 0.0], 0.0).coefficients()

@@ -1,7 +1,8 @@
-"""Linear supports with coordinates of their own: active bearings, and pads that tilt."""
+"""Linear supports with coordinates of their own: active bearings, films that remember, and pads."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,52 @@ class ControlledSupport:
 
 
 @dataclass(frozen=True, eq=False)
+class FilmSupport:
+    """A film whose voids remember, with what they remember as own coordinates.
+
+    The ports are those of :class:`ControlledSupport` without that of sensors: the journal's
+    displacement, then pairs of own coordinates, which stand still.
+
+    Attributes
+    ----------
+    interface : str
+        The journal.
+    inertia : ndarray, shape (b,)
+        Of each pair of own coordinates [kg].
+    matrices : callable
+        Damping and stiffness (2 + 2b, 2 + 2b) by the spin speed [rad/s]; a ValueError where the
+        journal has no equilibrium.
+    static_stiffness : Coefficient
+        Of unbalance, with which critical speeds are found [N/m].
+    """
+
+    interface: str
+    inertia: np.ndarray
+    matrices: Callable[[float], tuple[np.ndarray, np.ndarray]]
+    static_stiffness: Coefficient
+
+    @property
+    def sensor(self) -> str:
+        """The journal's interface."""
+        return self.interface
+
+    @property
+    def size(self) -> int:
+        """Number of own coordinates."""
+        return 2 * len(self.inertia)
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Inertia of every own coordinate, shape (2b,) [kg]."""
+        return np.repeat(self.inertia, 2)
+
+    @property
+    def direct_stiffness(self) -> float:
+        """None: all of it depends on the speed."""
+        return 0.0
+
+
+@dataclass(frozen=True, eq=False)
 class PadSupport:
     """Films of pads that tilt about pivots, with the pads' tilts as own coordinates, which stand.
 
@@ -93,3 +140,6 @@ class PadSupport:
     def direct_stiffness(self) -> float:
         """None: all of it acts on what the pads see."""
         return 0.0
+
+
+Controlled = ControlledSupport | FilmSupport | PadSupport

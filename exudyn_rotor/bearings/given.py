@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
+from exudyn_rotor.bearings.controlled_support import Controlled
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support, acts
 from exudyn_rotor.reduction.fields import ReducedInterface
@@ -32,16 +32,17 @@ def checked_supports(supports: Sequence[Given] | Given) -> tuple[Support, ...]:
     linear, controlled = linear_supports(supports)
     if controlled:
         raise ValueError(
-            f"supports: the bearing at {controlled[0].interface!r}, magnetic or of pads with "
-            "inertia, has states of its own, which this analysis does not take; give a Support "
-            "with its stiffness and damping, or pads without pad_inertia"
+            f"supports: the bearing at {controlled[0].interface!r}, magnetic, of pads with inertia "
+            "or with a film that conserves mass, has states of its own, which this analysis does "
+            "not take; give a Support with its stiffness and damping, pads without pad_inertia, or "
+            "a film with 'reynolds'"
         )
     return linear
 
 
 def linear_supports(
     supports: Sequence[Given] | Given,
-) -> tuple[tuple[Support, ...], tuple[ControlledSupport | PadSupport, ...]]:
+) -> tuple[tuple[Support, ...], tuple[Controlled, ...]]:
     """Return supports for linear analyses, those without and with coordinates of their own.
 
     Raises
@@ -50,7 +51,7 @@ def linear_supports(
         For anything else, and a bearing without a load that needs one.
     """
     linear: list[Support] = []
-    controlled: list[ControlledSupport | PadSupport] = []
+    controlled: list[Controlled] = []
     for given in given_supports(supports):
         one = given if isinstance(given, Support) else given.linearised()
         (linear if isinstance(one, Support) else controlled).append(one)
@@ -58,7 +59,7 @@ def linear_supports(
 
 
 def check_interfaces(
-    supports: Iterable[Given | ControlledSupport | PadSupport],
+    supports: Iterable[Given | Controlled],
     known: Mapping[str, Interface | ReducedInterface],
 ) -> None:
     """Refuse a support at an interface that the rotor does not have, or that cannot tilt.
@@ -83,5 +84,5 @@ def check_interfaces(
                 )
 
 
-def _asked(place: str, support: Given | ControlledSupport | PadSupport) -> str:
+def _asked(place: str, support: Given | Controlled) -> str:
     return "" if place == support.interface else f" as that of its sensor, {place!r}"

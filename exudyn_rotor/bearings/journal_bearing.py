@@ -9,13 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque, by_tangent
+from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque, Linearised, by_tangent
+from exudyn_rotor.bearings.controlled_support import FilmSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.film.void_states import COUNT
+from exudyn_rotor.bearings.support import Support
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
+_LITTLE, _GRAVITY = 1e-2, 9.81  # of the mass that the film carries: what counts for its states
 _AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
 
@@ -29,6 +33,7 @@ class JournalBearing(Bearing):
     is thicker all around than ``film.thinnest``, which the grid resolves; beyond, the force goes on
     by its tangent, so that Newton's method comes back. A film that conserves mass goes on with the
     voids of the last accepted step; a run begins with those of a journal that rests where it is.
+    Linear analyses have what its voids remember as coordinates (:class:`VoidStates`).
 
     Parameters
     ----------
@@ -36,9 +41,6 @@ class JournalBearing(Bearing):
         Interface of the rotor that is the journal.
     film : OilFilm
         With the directions n1 and n2 of the rotor at rest.
-    whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance, at which linear analyses take
-        a film that conserves mass; see :meth:`FilmState.coefficients`.
     load : array_like, shape (2,), optional
         Static load on the journal along (n1, n2) [N], which linear analyses need.
 
@@ -60,13 +62,11 @@ class JournalBearing(Bearing):
     """
 
     film: OilFilm
-    whirl_ratio: float = 1.0
     _equilibria: Equilibria[FilmState] = field(default_factory=Equilibria, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.instance(self.film, "film", OilFilm)
-        checks.keep_numbers(self, {"whirl_ratio": ""}, above=0.0)
 
     @property
     def remembers(self) -> bool:
@@ -129,9 +129,32 @@ class JournalBearing(Bearing):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness [N/m] and damping [N s/m] about the equilibrium, each (2, 2).
 
+        Of a film that conserves mass those of unbalance, see :meth:`FilmState.coefficients`.
         Parameters and errors are those of :meth:`equilibrium`.
         """
-        return self._state(speed, load).coefficients(self.whirl_ratio)
+        return self._state(speed, load).coefficients()
+
+    def linearised(self) -> Support | FilmSupport:
+        """Return the support for linear analyses: the film under the load at every speed.
+
+        With what voids remember as coordinates where they conserve mass.
+
+        Raises
+        ------
+        ValueError
+            Where the bearing has no load.
+        """
+        if not self.remembers:
+            return super().linearised()
+        mass = _LITTLE * float(np.linalg.norm(self._static_load(None))) / _GRAVITY
+
+        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
+            states = self._state(speed, None).void_states
+            scale = np.r_[1.0, 1.0, np.full(COUNT, mass)][:, None]
+            return scale * states.damping, scale * states.stiffness
+
+        inertia = np.full(COUNT // 2, mass)
+        return FilmSupport(self.interface, inertia, matrices, Linearised(self, 0))
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
         """Return the film in equilibrium."""
@@ -164,7 +187,7 @@ class TangentFilm:
             self._held = hypot(x, y) <= self._film.clearance - self._film.thinnest
             if self._held:
                 state = self._film._state(motion[:2], motion[2:], speed)
-                self._tangent = state, np.hstack(state.coefficients(self._bearing.whirl_ratio))
+                self._tangent = state, np.hstack(state.coefficients())
         if self._tangent is None:
             self._check_rest(vx, vy, speed)
             return self._whole(x, y, vx, vy, angle, speed)[:2]

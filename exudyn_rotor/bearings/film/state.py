@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Solution
+from exudyn_rotor.bearings.film.void_states import VoidStates
 from exudyn_rotor.cached import cached_property
 
+_AT_ONCE = 1e12  # of the speed: rate at which voids let go what they take up
 _WHIRLS = np.geomspace(0.05, 2.0, 24)  # ratios between which that of a limit is looked for
 
 
@@ -77,6 +79,23 @@ class FilmState:
         heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
         gradient = self._gradient(heights, rates)
         return gradient[:, :2], gradient[:, 2:]
+
+    @cached_property
+    def void_states(self) -> VoidStates:
+        """Linear equations of a film that conserves mass, with what its voids remember as states.
+
+        Raises
+        ------
+        ArithmeticError
+            Where their force differs by more than 1 % from that of :meth:`coefficients`.
+        """
+        u = np.moveaxis(self.film.grid.u, 2, 0)
+
+        def transfer(s: complex) -> np.ndarray:
+            return self._gradient(-u, -s * u[:, 0], s)
+
+        at_once = self._gradient(np.zeros_like(u), -u[:, 0], _AT_ONCE * abs(self.speed))
+        return VoidStates.of(transfer, at_once, self.speed)
 
     @property
     def slow_stiffness(self) -> np.ndarray:

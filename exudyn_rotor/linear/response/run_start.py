@@ -4,6 +4,7 @@ A response keeps the coordinates of its model in harmonics, seen from the rotor:
 reduced rotor's basis x, or those of the scene y. Of a reduced rotor, ``x = F f + T ζ`` with the
 motions F of the frame that its formulation has, and the basis Ψ = Q T of its modal coordinates.
 After x come the modes of a foundation, and pairs of controllers' coordinates, which turn as x does.
+What films remember begins as in a journal at rest.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.film.void_states import COUNT
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
@@ -177,7 +181,8 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
     The latter are those (6, k) of its points along (n1, n2, e), by all coordinates.
     """
     foundation = _foundation(body)
-    names = names_of_controllers((one.support.interface, len(at)) for one, at in _with_own(body))
+    own = _with_own(body)
+    names = names_of_controllers((one.support.interface, size) for one, _, size in own)
     if foundation is None:
         return names, {}
     given, own = foundation.foundation, body.selection.source.size
@@ -206,14 +211,19 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
     return bases[0] if bases else None
 
 
-def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray]]:
-    """Return supports with own coordinates and where these are: controllers, then pads that tilt.
+def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
+    """Return supports with own coordinates in linear analyses, where a scene has these, how many.
 
-    In the order of :class:`OwnCoordinates`.
+    In the order of :class:`OwnCoordinates`. What a film remembers is no coordinate of a scene.
     """
-    found = [(one, one.own_coordinates(body.mbs)) for one in body.supports]
-    found = [(one, places) for one, places in found if places.size]
-    return sorted(found, key=lambda each: isinstance(each[0].support, TiltingPadBearing))
+    kinds = MagneticBearing, JournalBearing, TiltingPadBearing
+    found = []
+    for one in body.supports:
+        places = one.own_coordinates(body.mbs)
+        remembers = isinstance(one.support, JournalBearing) and one.support.remembers
+        if size := COUNT if remembers else len(places):
+            found.append((one, places, size))
+    return sorted(found, key=lambda each: kinds.index(type(each[0].support)))
 
 
 def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:
@@ -226,9 +236,11 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
         q[places], q_t[places] = T @ x[:first], T @ x_t[:first]
     c, s = np.cos(state.angle), np.sin(state.angle)
     R, R_t = np.array([[c, s], [-s, c]]), state.speed * np.array([[-s, c], [-c, -s]])
-    for one, places in _with_own(body):
-        own, rates = (X[first : first + len(places)] for X in (x, x_t))
-        first += len(places)
+    for one, places, size in _with_own(body):
+        own, rates = (X[first : first + size] for X in (x, x_t))
+        first += size
+        if not len(places):
+            continue
         if isinstance(one.support, TiltingPadBearing):
             radius = one.support.film.radius
             q[places], q_t[places] = -own / radius, -rates / radius

@@ -22,7 +22,7 @@ from exudyn_rotor.linear.models.rotor.own_coordinates import (
     Controlled,
     OwnCoordinates,
     names_of_controllers,
-    pads_last,
+    in_order,
     places,
 )
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
@@ -64,7 +64,7 @@ class ControlledRotor(ExtendedRotor):
         """
         made = LinearRotor.of if isinstance(rotor, ReducedRotor) else LinearRotor.of_solid
         check_interfaces(controlled, rotor.interfaces)
-        controlled = pads_last(controlled)
+        controlled = in_order(controlled)
         held = [each for one in controlled for each in places(one, one.static_stiffness)]
         direct = [each for one in controlled for each in places(one, one.direct_stiffness)]
         plain = made(rotor, (*supports, *held), stiffening).with_supports((*supports, *direct))
@@ -122,7 +122,7 @@ class ControlledRotor(ExtendedRotor):
     @property
     def stiffness_varies(self) -> bool:
         """True where supports or a static displacement have a stiffness that is not in Ω²."""
-        return self.plain.stiffness_varies or self.own.has_pads
+        return self.plain.stiffness_varies or self.own.varies
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""

@@ -1,4 +1,4 @@
-"""Coordinates that supports bring with them: of magnetic bearings' controllers, of pads that tilt.
+"""Coordinates that supports bring with them: of controllers, of films that remember, of pads.
 
 A controller's coordinates are pairs along (n1, n2). In axes that turn with Ω, a pair with the
 inertia μ that stands still has the equations of a point mass beside the rotor,
@@ -6,7 +6,8 @@ inertia μ that stands still has the equations of a point mass beside the rotor,
     μ (q̈ + 2Ω ẽ q̇ − Ω² q),
 
 and what is between rotor and controller turns as any support does: where both control axes are
-alike, all coefficients are constant. The tilts of pads stand still; their films act as supports
+alike, all coefficients are constant. So do what films remember, that in their directions differ, as pairs:
+then equations repeat with every half turn. The tilts of pads stand still; their films act as supports
 between the journal and a pad.
 """
 
@@ -18,7 +19,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from exudyn_rotor.bearings.controlled_support import ControlledSupport, PadSupport
+from exudyn_rotor.bearings.controlled_support import (
+    Controlled,
+    ControlledSupport,
+    FilmSupport,
+    PadSupport,
+)
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.links import Element, join_turning, stacked, turned_terms
@@ -26,7 +32,6 @@ from exudyn_rotor.linear.models.points import ACROSS
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.theory.rotating_axes import axial_skew, into_rotor_frame
 
-Controlled = ControlledSupport | PadSupport
 Entry = TypeVar("Entry")
 Sums = tuple[dict[int, np.ndarray], dict[int, np.ndarray], dict[int, np.ndarray]]
 
@@ -37,8 +42,8 @@ class OwnCoordinates:
 
     Attributes
     ----------
-    supports : tuple of ControlledSupport and PadSupport
-        These last.
+    supports : tuple of ControlledSupport, FilmSupport and PadSupport
+        In this order.
     rates : tuple of float
         Speed of the rotor of each, over that of the axes, Ω.
     frame : {1.0, 0.0}
@@ -62,12 +67,12 @@ class OwnCoordinates:
     @cached_property
     def turning(self) -> int:
         """Number of coordinates that turn with the axes; they come first."""
-        return sum(one.size for one in self.supports if isinstance(one, ControlledSupport))
+        return sum(one.size for one in self.supports if not isinstance(one, PadSupport))
 
     @property
-    def has_pads(self) -> bool:
-        """Whether pads are among them, whose films depend on the speed."""
-        return self.turning < self.size
+    def varies(self) -> bool:
+        """Whether films are among them, which depend on the speed."""
+        return not all(isinstance(one, ControlledSupport) for one in self.supports)
 
     def rows(self, index: int) -> slice:
         """Return where the coordinates of a support are, from the first one of all."""
@@ -89,23 +94,20 @@ class OwnCoordinates:
         """
         sums = {}, {}, {}
         for index, one in enumerate(self.supports):
-            if isinstance(one, PadSupport):
-                continue
-            count = len(one.damping) // 2
-            lifted = np.kron(np.eye(count), ACROSS)
-            D, K = (lifted @ X @ lifted.T for X in (one.damping, one.stiffness))
-            K[:3, :3] = 0.0  # a support beside it
-            own = np.kron(np.eye(count - 2), ACROSS) @ self._selected(index, journals[index])
-            ports = stacked([journals[index], sensed[index], {0: own}])
-            turning = self.frame * D @ axial_skew(len(D))
-            parts = tuple(turned_terms(X, self.frame, one.interface) for X in (D, K, turning))
-            join_turning(sums, parts, ports)
+            if isinstance(one, ControlledSupport):
+                K = one.stiffness.copy()
+                K[:2, :2] = 0.0  # a support beside it
+                ends = [journals[index], sensed[index]]
+                self._join_pairs(sums, index, (one.damping, K), ends)
         return sums
 
     def films(self, speed: float, journals: Sequence[Terms]) -> Sums:
-        """Return what :meth:`between` does of films on pads, at a speed Ω [rad/s]."""
+        """Return what :meth:`between` does of films, at a speed Ω [rad/s]."""
         sums = {}, {}, {}
         for index, one in enumerate(self.supports):
+            if isinstance(one, FilmSupport):
+                matrices = one.matrices(self.rates[index] * speed)
+                self._join_pairs(sums, index, matrices, [journals[index]])
             if not isinstance(one, PadSupport):
                 continue
             own = self._selected(index, journals[index])
@@ -119,6 +121,23 @@ class OwnCoordinates:
                 join_turning(sums, cut, seen)
         return sums
 
+    def _join_pairs(
+        self,
+        sums: Sums,
+        index: int,
+        matrices: tuple[np.ndarray, np.ndarray],
+        ends: Sequence[Terms],
+    ) -> None:
+        """Add damping and stiffness between ends, motions (3, k), and own pairs of coordinates."""
+        pairs = self._selected(index, ends[0])
+        own = np.kron(np.eye(len(pairs) // 2), ACROSS) @ pairs
+        lifted = np.kron(np.eye(len(matrices[0]) // 2), ACROSS)
+        D, K = (lifted @ X @ lifted.T for X in matrices)
+        turning = self.frame * D @ axial_skew(len(D))
+        where = self.supports[index].interface
+        parts = tuple(turned_terms(X, self.frame, where) for X in (D, K, turning))
+        join_turning(sums, parts, stacked([*ends, {0: own}]))
+
     def _selected(self, index: int, motion: Terms) -> np.ndarray:
         """Return the coordinates of a support as rows of all."""
         count = next(iter(motion.values())).shape[1]
@@ -130,11 +149,12 @@ def places(one: Controlled, stiffness: object) -> tuple[Support, Support]:
     return Support(one.interface, stiffness), Support(one.sensor)
 
 
-def pads_last(
+def in_order(
     supports: Iterable[Entry], support_of: Callable[[Entry], Controlled] = lambda one: one
 ) -> list[Entry]:
     """Return supports, or what holds them, in the order of their coordinates."""
-    return sorted(supports, key=lambda one: isinstance(support_of(one), PadSupport))
+    kinds = ControlledSupport, FilmSupport, PadSupport
+    return sorted(supports, key=lambda one: kinds.index(type(support_of(one))))
 
 
 def names_of_controllers(controllers: Iterable[tuple[str, int]]) -> tuple[str, ...]:

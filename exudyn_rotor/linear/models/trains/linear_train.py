@@ -95,7 +95,7 @@ class LinearTrain(InAllCoordinates):
         """The equations in inertial axes where these are constant and those here are not."""
         harmonics = any(n for terms in (*self._constant, *self._between) for n in terms)
         varies = any(element.varies for element in self.elements)
-        if not (harmonics or varies or self.own.has_pads):
+        if not (harmonics or varies or self.own.varies):
             return None
         if any(element.turns for element in self.elements):
             return None
@@ -195,7 +195,7 @@ class LinearTrain(InAllCoordinates):
     @property
     def stiffness_varies(self) -> bool:
         """True where something has a stiffness that is not in Ω²."""
-        varies = any(element.stiffness_varies for element in self.elements) or self.own.has_pads
+        varies = any(element.stiffness_varies for element in self.elements) or self.own.varies
         return varies or any(p.alone.stiffness_varies for p in self.parts.values())
 
     @cached_property
@@ -342,7 +342,7 @@ class LinearTrain(InAllCoordinates):
         mass = sum(part.alone.invariants.mass for part in self.parts.values())
         rows = np.eye(self.size)[self.size - self.own.size :]
         pads = np.sqrt(given.share(mass) * self.own.masses)[:, None] * rows
-        standing = pads[self.own.turning :] if self.own.has_pads else None
+        standing = pads[self.own.turning :] if self.own.turning < self.own.size else None
         return with_pairs(replace(given, standing=standing), rows[: self.own.turning])
 
     @cached_property

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.linear.models.links import Element
-from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates, pads_last, places
+from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates, in_order, places
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.rotor.spin import Spin
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
@@ -32,7 +32,7 @@ def elements_of(train: RotorTrain) -> tuple[tuple[Element, ...], OwnCoordinates]
         linear, controlled = linear_supports(given)
         plain += [(name, one) for one in linear]
         own += [(name, one) for one in controlled]
-    own = pads_last(own, lambda each: each[1])
+    own = in_order(own, lambda each: each[1])
     pairs = [(name, each) for name, one in own for each in places(one, one.direct_stiffness)]
     elements = [Element.of_support(name, train.ratios[name], one) for name, one in plain]
     elements += [Element.of_link(link, train.ratios) for link in train.links]
