@@ -26,6 +26,7 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -100,6 +101,7 @@ def _train(train: RotorTrain, unevenness: dict[str, float] | None = None) -> str
 
 def _model(model: LinearModel) -> str:
     """Return supports, foundation, level of stiffening and free motions of a linear model."""
+    model = model.scene if isinstance(model, RememberingScene) else model
     plain = model.plain if isinstance(model, ControlledRotor) else model
     if isinstance(model, LinearTrain):
         lines = [_train(model.train, model.unevenness)]

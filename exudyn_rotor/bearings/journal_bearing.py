@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.support import Support
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
-_LITTLE, _GRAVITY = 1e-2, 9.81  # of the mass that the film carries: what counts for its states
+LITTLE, _GRAVITY = 1e-2, 9.81  # of the mass that the film carries: what counts for its states
 _AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
 
@@ -146,12 +146,10 @@ class JournalBearing(Bearing):
         """
         if not self.remembers:
             return super().linearised()
-        mass = _LITTLE * float(np.linalg.norm(self._static_load(None))) / _GRAVITY
+        mass = LITTLE * float(np.linalg.norm(self._static_load(None))) / _GRAVITY
 
         def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-            states = self._state(speed, None).void_states
-            scale = np.r_[1.0, 1.0, np.full(COUNT, mass)][:, None]
-            return scale * states.damping, scale * states.stiffness
+            return self._state(speed, None).void_states.matrices(mass)
 
         inertia = np.full(COUNT // 2, mass)
         return FilmSupport(self.interface, inertia, matrices, Linearised(self, 0))
@@ -164,35 +162,42 @@ class JournalBearing(Bearing):
 class TangentFilm:
     """Force of a journal bearing that goes on by its tangent, once held, from the next place.
 
-    The tangent is that of :meth:`FilmState.coefficients`: differences would cross the places at
-    which the film's edge moves to the next node.
+    The tangent is :func:`tangent_of`: differences would cross the places at which the film's edge
+    moves to the next node.
+
+    Attributes
+    ----------
+    bearing : JournalBearing
+    state : FilmState or None
+        At the place of the last tangent.
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
-        self._bearing, self._film, self._gap = bearing, bearing.film, bearing._gap
+        self.bearing, self._film, self._gap = bearing, bearing.film, bearing._gap
+        self.state: FilmState | None = None
         self._whole = FilmLaw(bearing.film, torque=True)
-        self._tangent: tuple[FilmState, np.ndarray] | None = None
+        self._gradient: np.ndarray | None = None
         self._held = False
 
     def hold(self, held: bool) -> None:
         """Hold the force by the tangent from the next place on, or let it go."""
-        self._held, self._tangent = held, None
+        self._held, self._gradient = held, None
 
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force as :attr:`Bearing.law`."""
         motion = np.array([x, y, vx, vy])
-        if self._held and self._tangent is None:
+        if self._held and self._gradient is None:
             self._held = hypot(x, y) <= self._film.clearance - self._film.thinnest
             if self._held:
-                state = self._film._state(motion[:2], motion[2:], speed)
-                self._tangent = state, np.hstack(state.coefficients())
-        if self._tangent is None:
+                self.state = self._film._state(motion[:2], motion[2:], speed)
+                self._gradient = np.hstack(tangent_of(self.state))
+        if self._gradient is None:
             self._check_rest(vx, vy, speed)
             return self._whole(x, y, vx, vy, angle, speed)[:2]
-        state, gradient = self._tangent
-        change = gradient @ (motion - np.append(state.position, state.velocity))
+        state = self.state
+        change = self._gradient @ (motion - np.append(state.position, state.velocity))
         fx, fy = (state.force - change).tolist()
         return fx, fy
 
@@ -205,14 +210,24 @@ class TangentFilm:
 
     def _check_rest(self, vx: float, vy: float, speed: float) -> None:
         """Refuse the motion of a film with a memory."""
-        if self._bearing.remembers and hypot(vx, vy) > _REST * self._film.clearance * abs(speed):
+        if self.bearing.remembers and hypot(vx, vy) > _REST * self._film.clearance * abs(speed):
             raise ValueError(
-                f"bearing at {self._bearing.interface!r}: a film with cavitation="
+                f"bearing at {self.bearing.interface!r}: a film with cavitation="
                 "'mass-conserving' has no force by place and velocity alone, so that a moving "
                 "journal is found by a run only; leave the unbalance out (linear_model(…, "
                 "about='equilibrium')), or begin a run with the steady_state of the same scene "
                 "with cavitation='reynolds'"
             )
+
+
+def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
+    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
+
+    The stiffness is that of a slow motion, by which equilibria are found.
+    """
+    stiffness, damping = state.coefficients()
+    remembers = state.film.cavitation == "mass-conserving"
+    return state.slow_stiffness if remembers else stiffness, damping
 
 
 class FilmLaw:

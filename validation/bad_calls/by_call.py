@@ -127,7 +127,6 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("InductionMotor", "breakdown_torque"): v.POSITIVE,
     ("InductionMotor", "synchronous_speed"): Kind(v.SIGNED.good - {"zero"}),
     ("Invariants.of", "basis"): v.ARRAY,
-    ("JournalBearing", "whirl_ratio"): v.POSITIVE,
     ("LimitedPower", "stall_torque"): Kind(v.SIGNED.good - {"zero"}),
     ("LinearActuator", "force_current"): v.POSITIVE,
     ("LinearActuator", "negative_stiffness"): v.NOT_NEGATIVE,

@@ -25,7 +25,7 @@ import scipy.linalg as la
 COUNT = 6  # coordinates
 _SAMPLES = 32  # frequencies on each side of the Gramians
 _FAST = 1e6  # of the speed, where nothing comes back in time
-_NOTHING = 1e-9  # of Z: states of rounding
+_NOTHING = 1e-6  # of Z: states of rounding
 _LOOKED_AT, MOST_ERROR = 2.0, 1e-2  # whirl ratio up to which (1) is held to that share of Z
 _IDLE = 3.0  # of the speed: decay of states that are not needed
 
@@ -81,6 +81,18 @@ class VoidStates:
                 f"the force errs by {error.max():.1%}; give fewer nodes around the circle"
             )
         return cls(*made, float(error.max()))
+
+    def matrices(self, mass: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return damping and stiffness where every q has an inertia [kg].
+
+        With q of such a length that film and journal feel each other alike.
+        """
+        driven = mass * np.linalg.norm(self.stiffness[2:, :2], axis=1)
+        felt = np.linalg.norm(self.stiffness[:2, 2:], axis=0)
+        needed = (driven > 0.0) & (felt > 0.0)
+        longer = np.sqrt(np.where(needed, driven, 1.0) / np.where(needed, felt, 1.0))
+        columns, rows = np.r_[1.0, 1.0, longer], np.r_[1.0, 1.0, mass / longer][:, None]
+        return rows * self.damping * columns, rows * self.stiffness * columns
 
 
 def _balanced(

@@ -19,6 +19,7 @@ from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import ABOUT, LinearScene
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.linear.models.trains.scene_train import scene_train
@@ -34,7 +35,15 @@ from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
 DENSE_SIZE = 600
 
 Target = LinearModel | ReducedRotor | SolidRotor | RotorTrain | exudyn.MainSystem
-MODELS = (LinearRotor, FullRotor, LinearScene, LinearTrain, RotorOnFoundation, ControlledRotor)
+MODELS = (
+    LinearRotor,
+    FullRotor,
+    LinearScene,
+    RememberingScene,
+    LinearTrain,
+    RotorOnFoundation,
+    ControlledRotor,
+)
 
 
 def linear_model(
@@ -124,7 +133,7 @@ def linear_model(
             train, level = scene_train(target, body)
             return LinearTrain.of(train, level)
         how = "the rotor in the scene, which add_rotor returned; a list of several"
-        return LinearScene.of(target, reduced_body(body, how=how), about=about)
+        return RememberingScene.of(LinearScene.of(target, reduced_body(body, how=how), about=about))
     if body is not None:
         raise TypeError(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "

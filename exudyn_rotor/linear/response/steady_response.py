@@ -24,6 +24,7 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.response.basis_check import (
     HARMONICS,
     looked_at,
@@ -376,13 +377,15 @@ def _folded(motion: Motion) -> Motion:
 def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, object]:
     """Return what a response keeps beside its motion: the level, and what runs begin with."""
     level = {"stiffening": model.stiffening}
+    if isinstance(model, RememberingScene):  # runs begin with films at rest
+        model = model.scene
     if kept_basis(model) is None:
         return level
     top = max(abs(n) for one in solved for n in one.coordinates)
     coordinates = np.zeros((len(solved), 2 * top + 1, model.size), dtype=complex)
     for row, one in zip(coordinates, solved, strict=True):
         for n, x in one.coordinates.items():
-            row[top + n] = x
+            row[top + n] = x[: model.size]
     beside = model.beside if isinstance(model, ExtendedRotor) else ()
     return level | {"coordinates": coordinates, "basis": kept_basis(model), "beside": beside}
 

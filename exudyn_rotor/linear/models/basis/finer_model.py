@@ -14,6 +14,7 @@ from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 
 
@@ -46,6 +47,12 @@ def finer_model(model: LinearModel) -> FinerModel | None:
         equations = plain.equations.with_supports(model.plain.supports)
         lacking = np.pad(plain.lacking, (0, model.size - model.plain.size))
         return FinerModel(replace(model, plain=equations), lacking, plain.bases)
+    if isinstance(model, RememberingScene):
+        plain = finer_model(model.plain)
+        if plain is None:
+            return None
+        lacking = np.pad(plain.lacking, (0, model.size - model.plain.size))
+        return FinerModel(replace(model, plain=plain.equations), lacking, plain.bases)
     if isinstance(model, LinearScene):
         source = model.body.selection.source
         rotor = finer_rotor(source)

@@ -104,6 +104,10 @@ class FinerScene(InAllCoordinates):
         more = at_marker @ self.rotor.interfaces[place].motion[:, self._kept :]
         return np.hstack([self.given.interface_motion(name), self._turned(more)])
 
+    def journal_motion(self, name: str) -> np.ndarray:
+        """Return the displacement (3, k) of a journal, as :meth:`LinearScene.journal_motion`."""
+        return self._motion(name)[:3]
+
     def at(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
         scene, alone, F = self.given.at(speed), self._alone, self._columns

@@ -21,8 +21,8 @@ from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.own_coordinates import (
     Controlled,
     OwnCoordinates,
-    names_of_controllers,
     in_order,
+    names_of_controllers,
     places,
 )
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation

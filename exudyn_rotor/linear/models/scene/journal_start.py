@@ -36,7 +36,7 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     places = _places(scene.body, speed)
     if not places:
         return harmonics
-    U = np.vstack([_across(scene, name) for name in places])
+    U = np.vstack([across(scene, name) for name in places])
     resistance = np.zeros(len(scene.free))
     resistance[scene.modal] = np.diag(scene.body.motion.invariants.K)
     W = 1.0 / (resistance + _SOFT * max(resistance.max(), 1.0))
@@ -63,7 +63,7 @@ def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
     return found[scene.free]
 
 
-def _across(scene: SceneCoordinates, name: str) -> np.ndarray:
+def across(scene: SceneCoordinates, name: str) -> np.ndarray:
     """Return the motion of a journal across the axis by the free coordinates, turning axes."""
     motion = np.zeros((3, len(scene.free)))
     motion[: scene.count, : scene.count] = np.eye(scene.count)

@@ -20,9 +20,12 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.models.scene.journal_start import across
 from exudyn_rotor.linear.models.scene.probe import Probe, probing
 from exudyn_rotor.linear.models.scene.scene_checks import check_scene
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates, nullspace
@@ -37,6 +40,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
+from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.support_connectors import held_cages
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
@@ -178,7 +182,35 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             Where no steady motion is found, or 192 angles do not resolve the coefficients.
         """
         with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
-            return equations_about(self, probe)
+            system = equations_about(self, probe)
+            films = [film.state for film in probe.films if film.bearing.remembers]
+        self._film_states[float(speed)] = films
+        return system
+
+    @cached_property
+    def _film_states(self) -> dict[float, list[FilmState]]:
+        """Films that conserve mass, in the equilibria that are known."""
+        return {}
+
+    def film_states(self, speed: float) -> list[FilmState]:
+        """Return the :attr:`remembering` films where :meth:`at` found them at a speed [rad/s]."""
+        return self._film_states[float(speed)]
+
+    @property
+    def remembering(self) -> list[SceneSupport]:
+        """Journal bearings whose films conserve mass."""
+        journals = [one for one in self.body.supports if isinstance(one.support, JournalBearing)]
+        return [one for one in journals if one.support.remembers]
+
+    def journal_motion(self, name: str) -> np.ndarray:
+        """Return the displacement (3, k) of a journal along (n1, n2), rotor frame."""
+        return np.vstack([across(self, name), np.zeros(len(self.free))]) @ self.N
+
+    def base_motion(self, support: SceneSupport) -> np.ndarray:
+        """Return the displacement (3, k) along (n1, n2, e) of what carries a support, inertial."""
+        marker = self.body.mbs.GetObject(support.objects[0])["markerNumbers"][0]
+        with probing(self, 0.0) as probe:
+            return self.body.standing_axes.T @ probe.motion_of(marker) @ self.N
 
     def steady_motion(self, speed: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the steady motion at a spin speed [rad/s] by its harmonics of the revolution.

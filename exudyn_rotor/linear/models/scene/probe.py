@@ -25,6 +25,7 @@ _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 _CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
 _SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
+_MOVED, _POSITION = 1e-4, exudyn.OutputVariableType.Position  # of a coordinate
 _KINK = 1e-4  # relative second-order error of a step that tells so
 
 
@@ -109,6 +110,19 @@ class Probe:
         matrices = motion.mass_matrix(0.0, zero), -by_v, -by_q
         full[(slice(None), *np.ix_(self.rotor, self.rotor))] = matrices
         return *full, np.r_[motion.forces(0.0, zero, zero), np.zeros(size - motion.size)]
+
+    def motion_of(self, marker: exudyn.MarkerIndex) -> np.ndarray:
+        """Return the displacement (3, free coordinates) of a marker beside the rotor."""
+        motion, still = np.zeros((3, len(self.scene.free))), np.zeros(len(self.scene.free))
+        for column in range(self.scene.modal.stop, len(self.scene.free)):
+            ends = []
+            for step in (_MOVED, -_MOVED):
+                moved = still.copy()
+                moved[column] = step
+                self._set(0.0, moved, still)
+                ends.append(self.mbs.GetMarkerOutput(marker, _POSITION))
+            motion[:, column] = (ends[0] - ends[1]) / (2.0 * _MOVED)
+        return motion
 
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""

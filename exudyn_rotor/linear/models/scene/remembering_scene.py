@@ -1,0 +1,188 @@
+"""A scene with films that conserve mass: what their voids remember is coordinates beside its own.
+
+A scene at rest tells the forces of films whose voids follow at once. In their place stand those of
+:class:`exudyn_rotor.bearings.film.void_states.VoidStates` about the same equilibrium, between the
+journals and what carries the bearings. Their coordinates are pairs that turn with the rotor, as in
+:mod:`exudyn_rotor.linear.models.rotor.own_coordinates`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.bearings.controlled_support import FilmSupport
+from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.film.void_states import COUNT
+from exudyn_rotor.bearings.journal_bearing import LITTLE, tangent_of
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.links import add, join
+from exudyn_rotor.linear.models.points import with_pairs
+from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
+from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates
+from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.whole_space import InAllCoordinates
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.theory.rotating_axes import turning_harmonics
+
+
+@dataclass(frozen=True, eq=False)
+class RememberingScene(InAllCoordinates):
+    """A scene with films that conserve mass; see :class:`LinearModel`.
+
+    Attributes
+    ----------
+    plain : LinearScene, or one with a finer rotor
+        Its coordinates come first.
+    scene : LinearScene
+    with_states : bool
+        Whether voids are coordinates; without, films have the stiffness of unbalance.
+    """
+
+    gives_all: ClassVar[bool] = True
+    is_full: ClassVar[bool] = False
+    mesh: ClassVar[None] = None
+    base_loads: ClassVar[None] = None
+    free_motions: ClassVar[tuple[str, ...]] = ()
+    radius: ClassVar[float] = 1.0
+    stiffness_varies: ClassVar[None] = None
+    standing_interfaces: ClassVar[tuple[str, ...]] = ()
+
+    plain: LinearModel
+    scene: LinearScene
+    with_states: bool = True
+
+    @classmethod
+    def of(cls, scene: LinearScene) -> LinearScene | RememberingScene:
+        """Return a scene with what its films remember; itself where none does."""
+        return cls(scene, scene) if scene.remembering else scene
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.plain.size + self._more
+
+    @property
+    def _more(self) -> int:
+        return COUNT * len(self.scene.remembering) * self.with_states
+
+    @property
+    def stiffening(self) -> str:
+        """Level of centrifugal stiffening."""
+        return self.scene.stiffening
+
+    @property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the interfaces that have a marker."""
+        return self.plain.interfaces
+
+    @property
+    def standing(self) -> np.ndarray:
+        """Coordinates of everything but the rotor and what turns with it."""
+        return self.plain.standing
+
+    @property
+    def is_balanced(self) -> bool:
+        """True where the rotor has no unbalance at all."""
+        return self.plain.is_balanced
+
+    @property
+    def has_structural_damping(self) -> bool:
+        """True where steady motions have structural damping, which other analyses leave out."""
+        return self.scene.has_structural_damping
+
+    @property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², shape (k,), rotor frame."""
+        return self._wide(self.plain.unit_unbalance)
+
+    @property
+    def mass_matrix(self) -> np.ndarray:
+        """Mean mass matrix, shape (k, k)."""
+        return la.block_diag(self.plain.mass_matrix, np.diag(self._masses))
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e)."""
+        return self._wide(self.plain.interface_motion(name))
+
+    def point_motions(self, most: int) -> PointMotions:
+        """Return those of the scene, and points for the pairs of the films' coordinates."""
+        given = self.plain.point_motions(most)
+        still = None if given.standing is None else self._wide(given.standing)
+        wide = replace(given, motion=self._wide(given.motion), standing=still)
+        return with_pairs(wide, np.eye(self.size)[self.plain.size :])
+
+    def undamped(self) -> RememberingScene:
+        """Return the scene with films' stiffness of unbalance; damping does not matter."""
+        return replace(self, with_states=False)
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s], about the equilibrium there.
+
+        Raises
+        ------
+        UnconvergedError
+            As :meth:`LinearScene.at`.
+        """
+        system = self.plain.at(speed)
+        own = self._films(self.scene.film_states(speed))
+        M, D, K = (
+            {n: np.pad(X, (0, self._more)) for n, X in terms.items()}
+            for terms in (system.M, system.D, system.K)
+        )
+        add(M, 0, np.diag(np.r_[np.zeros(self.plain.size), self._masses]))
+        for terms, X in zip((D, K), own.inertia_terms(speed), strict=True):
+            add(terms, 0, np.pad(X, (self.plain.size, 0)))
+        damping, stiffness, carried = own.films(speed, self._journals)
+        join(D, damping)
+        join(K, stiffness)
+        join(K, {n: speed * X for n, X in carried.items()})
+        H = None if system.H is None else np.pad(system.H, (0, self._more))
+        return replace(system, M=M, D=D, K=K, H=H)
+
+    def _films(self, states: Sequence[FilmState]) -> OwnCoordinates:
+        """Return the films less what the scene has of them already."""
+        supports = []
+        for one, state in zip(self.scene.remembering, states, strict=True):
+            if self.with_states:
+                D, K = state.void_states.matrices(self._mass)
+            else:
+                K, D = state.coefficients()
+            stiffness, damping = tangent_of(state)
+            D[:2, :2] -= damping
+            K[:2, :2] -= stiffness
+            both, inertia = (D, K), np.full(COUNT // 2 * self.with_states, self._mass)
+            supports.append(
+                FilmSupport(one.support.interface, inertia, lambda _, both=both: both, stiffness)
+            )
+        return OwnCoordinates(tuple(supports), (1.0,) * len(supports))
+
+    @property
+    def _mass(self) -> float:
+        return LITTLE * self.scene.mass / len(self.scene.remembering)
+
+    @property
+    def _masses(self) -> np.ndarray:
+        return np.full(self._more, self._mass)
+
+    @cached_property
+    def _journals(self) -> list[Terms]:
+        """Displacements (3, k) of journals against what carries the bearings, rotor frame."""
+        found = []
+        for one in self.scene.remembering:
+            motion = {0: self._wide(self.plain.journal_motion(one.support.interface))}
+            if one.base is not None:
+                base = self.scene.base_motion(one)
+                base = np.pad(base, ((0, 0), (0, self.size - base.shape[1])))
+                for n, R in turning_harmonics(3).items():
+                    motion[-n] = motion.get(-n, 0.0) - R @ base
+            found.append(motion)
+        return found
+
+    def _wide(self, rows: np.ndarray) -> np.ndarray:
+        """Return rows (…, k) of the scene with zeros for the films' coordinates."""
+        return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, self._more)])
