@@ -6,9 +6,9 @@ inertia μ that stands still has the equations of a point mass beside the rotor,
     μ (q̈ + 2Ω ẽ q̇ − Ω² q),
 
 and what is between rotor and controller turns as any support does: where both control axes are
-alike, all coefficients are constant. What films remember are such pairs, too: then equations repeat with
-every half turn, as those of supports do. The tilts of pads stand still; their films act as supports
-between the journal and a pad.
+alike, all coefficients are constant. What films remember are such pairs, too, so that equations
+repeat with every half turn, as those of supports do. The tilts of pads stand still; their films act
+as supports between the journal and a pad.
 """
 
 from __future__ import annotations
