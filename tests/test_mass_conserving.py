@@ -5,33 +5,24 @@ from dataclasses import replace
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.itemInterface import LoadForceVector, SensorObject
-from point_rotors import ring_rotor
-from scipy.spatial.transform import Rotation
-
-from exudyn_rotor import (
-    JournalBearing,
-    OilFilm,
-    add_rotor,
-    add_supports,
-    bearing_loads,
-    grooved_pads,
-    linear_model,
-    recommended_settings,
-    stability,
-    steady_state,
+from void_films import (
+    CLEARANCE,
+    GRAVITY,
+    SKEW,
+    SPEED,
+    TO_X,
+    bearings,
+    exponent,
+    kick,
+    oil,
+    oscillations,
+    rotor,
+    scene,
+    solve,
 )
+
+from exudyn_rotor import JournalBearing, OilFilm, grooved_pads, linear_model, steady_state
 from exudyn_rotor.bearings.journal_bearing import RememberingLaw
-
-CLEARANCE, SPEED = 1e-4, 580.0
-BEHIND = 0.19  # rad: a groove behind the thinnest film, so that the film begins again in the pad
-KINDS = exu.OutputVariableType
-GRAVITY = np.array([0.0, -9.81, 0.0])
-
-
-def oil(groove=BEHIND, cavitation="mass-conserving", **options):
-    pads = grooved_pads(CLEARANCE, [groove], np.radians(20.0))
-    return OilFilm(0.05, 0.05, 0.02, pads, cavitation, **{"nodes": 24, "axial_nodes": 0, **options})
 
 
 def circle(place, radius, whirl):
@@ -147,81 +138,12 @@ def test_limit_of_a_rigid_mass_is_that_of_its_exponents():
     assert exponent(state, 0.9 * mass, 0.5j * SPEED).real < 0.0
 
 
-def exponent(state, mass, start, step=0.0):
-    """Return s of ``det(M s² + Z(s)) = 0`` by Newton's method, voids by steps where there are."""
-    u = np.moveaxis(state.film.grid.u, 2, 0)
-
-    def determinant(s):
-        void_rate = (1.0 - np.exp(-s * step)) / step if step else s
-        Z = state._gradient(-u, -s * u[:, 0], void_rate)
-        return np.linalg.det((mass * s**2 * np.eye(2) + Z) / 1e8)
-
-    s = start
-    for _ in range(30):
-        h = 1e-6 * abs(s)
-        s -= determinant(s) * 2.0 * h / (determinant(s + h) - determinant(s - h))
-    return s
-
-
 # ------------------------------------------------------------------ scenes
 
 
-def rotor(turn=None, eccentric=0.0):
-    ring = ring_rotor(0.1, 0.15, 107.0)
-    if eccentric:
-        ring = ring.add_point_mass([0.1, 0.0, 0.0], eccentric)
-    return ring.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
-
-
-def bearings(reduced, gravity=GRAVITY, **options):
-    loads = bearing_loads(reduced, ["left", "right"], gravity)
-    film = oil(**options)
-    return [
-        JournalBearing(interface=name, film=film, load=load)
-        for name, load in zip(("left", "right"), loads, strict=True)
-    ]
-
-
-def scene(reduced, supports, gravity=GRAVITY, **options):
-    mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, reduced, gravity=gravity, **options)
-    added = add_supports(body, supports)
-    sensors = [
-        mbs.AddSensor(
-            SensorObject(
-                objectNumber=added[0].objects[0],
-                outputVariableType=kind,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
-        for kind in (
-            (KINDS.DisplacementLocal, KINDS.VelocityLocal, KINDS.ForceLocal)
-            if body.formulation.has_spin
-            else (KINDS.Displacement, KINDS.Velocity, KINDS.Force)
-        )
-    ]
-    mbs.Assemble()
-    return mbs, body, sensors
-
-
-def solve(mbs, end_time, step, **options):
-    settings = recommended_settings(end_time=end_time, step=step)
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 0.0
-    mbs.SolveDynamic(settings, **options)
-
-
-def test_scene_is_linearised_as_the_list_and_its_equilibrium_is_the_films():
+def test_a_moving_journal_is_not_linearised():
     reduced = rotor(eccentric=0.1)
-    supports = bearings(reduced)
-    mbs, body, _ = scene(reduced, supports, spin=SPEED)
-    models = (
-        linear_model(mbs, body=body, about="equilibrium"),
-        linear_model(reduced, supports=supports),
-    )
-    growths = [stability(model, [SPEED]).growth_of("lateral") for model in models]
-    np.testing.assert_allclose(*growths, rtol=1e-6)
+    mbs, body, _ = scene(reduced, bearings(reduced), spin=SPEED)
     with pytest.raises(ValueError, match="leave the unbalance out"):
         linear_model(mbs, body=body).at(SPEED)
 
@@ -234,39 +156,15 @@ def test_small_motion_in_a_scene_decays_as_the_linear_film_says():
     body.start_from(steady_state(body).state())
     state = supports[0]._state(SPEED, None)
 
-    def kick(mbs, t, load):
-        return [0.1 * np.sin(np.pi * t / 5e-3) if t < 5e-3 else 0.0, 0.0, 0.0]
-
-    for name in ("left", "right"):
-        mbs.AddLoad(
-            LoadForceVector(
-                markerNumber=body.marker(name), loadVector=[1, 0, 0], loadVectorUserFunction=kick
-            )
-        )
-    mbs.Assemble()
+    kick(body, [0.1, 0.0, 0.0])
     step = 2e-4
     solve(mbs, 0.07, step)
     record = mbs.GetSensorStoredData(sensor)
-    found = slowest_decay(record[record[:, 0] > 0.02][::5, 1:3], 5 * step)
+    found = max(oscillations(record[record[:, 0] > 0.02][::5, 1:3], 5 * step), key=np.real)
     s = exponent(state, 53.5, 0.5j * SPEED, step)
     expected = s * (1.0 - (abs(s) * step) ** 2 / 12.0)
     assert found.real == pytest.approx(expected.real, rel=1e-2)
     assert found.imag == pytest.approx(expected.imag, rel=1e-4)
-
-
-def slowest_decay(motion, step):
-    """Return the exponent of the slowest oscillation in samples (n, 2), by the matrix pencil."""
-    count = len(motion) // 2
-    columns = [[signal[i : i + count] for i in range(len(motion) - count)] for signal in motion.T]
-    U = np.linalg.svd(np.hstack([np.array(each).T for each in columns]), full_matrices=False)[0]
-    U = U[:, :7]
-    s = np.log(np.linalg.eigvals(np.linalg.pinv(U[:-1]) @ U[1:]).astype(complex)) / step
-    s = s[s.imag > 50.0]
-    return s[np.argmax(s.real)]
-
-
-SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
-TO_X = Rotation.from_euler("y", 90.0, degrees=True).as_matrix()
 
 
 @pytest.mark.parametrize(

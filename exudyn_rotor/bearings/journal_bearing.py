@@ -147,16 +147,23 @@ class JournalBearing(Bearing):
         if not self.remembers:
             return super().linearised()
         mass = LITTLE * float(np.linalg.norm(self._static_load(None))) / _GRAVITY
-
-        def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
-            return self._state(speed, None).void_states.matrices(mass)
-
         inertia = np.full(COUNT // 2, mass)
-        return FilmSupport(self.interface, inertia, matrices, Linearised(self, 0))
+        return FilmSupport(self.interface, inertia, _OfVoids(self, mass), Linearised(self, 0))
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
         """Return the film in equilibrium."""
         return self._equilibria.at(speed, self._static_load(load), self.film.equilibrium)
+
+
+@dataclass(frozen=True, eq=False)
+class _OfVoids:
+    """Damping and stiffness of a :class:`FilmSupport`, whose coordinates have a mass [kg]."""
+
+    bearing: JournalBearing
+    mass: float
+
+    def __call__(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        return self.bearing._state(speed, None).void_states.matrices(self.mass)
 
 
 class TangentFilm:
@@ -225,9 +232,10 @@ def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
 
     The stiffness is that of a slow motion, by which equilibria are found.
     """
-    stiffness, damping = state.coefficients()
-    remembers = state.film.cavitation == "mass-conserving"
-    return state.slow_stiffness if remembers else stiffness, damping
+    if state.film.cavitation != "mass-conserving":
+        return state.coefficients()
+    slow = state.slow_stiffness
+    return slow, state.coefficients()[1] if state.speed else np.zeros_like(slow)
 
 
 class FilmLaw:

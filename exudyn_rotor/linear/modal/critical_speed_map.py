@@ -220,10 +220,7 @@ def critical_speed_map(
     names = checks.labels(interfaces, "interfaces", target.interfaces)
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
-    supports = tuple(
-        one if isinstance(one, MagneticBearing | Support) else one.linearised()
-        for one in given_supports(supports)
-    )
+    supports = tuple(map(_made_once, given_supports(supports)))
     order, max_speed, waves = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
     options.check_basis_accuracy(accuracy)
@@ -255,6 +252,14 @@ def critical_speed_map(
     if errors is not None:
         warn_of_critical(basis, speeds, errors)
     return result
+
+
+def _made_once(given: Given) -> Given:
+    """Return a bearing as the support that it is for all stiffnesses, if it is one."""
+    if isinstance(given, MagneticBearing | Support):
+        return given
+    made = given.linearised()
+    return made if isinstance(made, Support) else given
 
 
 def _at_stiffness(

@@ -24,6 +24,7 @@ from exudyn_rotor.linear.models.rotor.own_coordinates import names_of_controller
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -252,7 +253,7 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
 
 def kept_basis(model: LinearModel) -> str | None:
     """Return the basis of a model's coordinates that a response keeps; None to keep none."""
-    if isinstance(model, LinearScene):
+    if isinstance(model, LinearScene | RememberingScene):
         return "scene"
     return "rotor" if isinstance(model, LinearRotor | ExtendedRotor) else None
 
