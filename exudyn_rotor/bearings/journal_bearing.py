@@ -230,12 +230,12 @@ class TangentFilm:
 def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
     """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
 
-    The stiffness is that of a slow motion, by which equilibria are found.
+    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
+    where they look for an equilibrium.
     """
-    if state.film.cavitation != "mass-conserving":
-        return state.coefficients()
-    slow = state.slow_stiffness
-    return slow, state.coefficients()[1] if state.speed else np.zeros_like(slow)
+    if state.film.cavitation == "mass-conserving":
+        return state.slow_stiffness, state.slow_damping
+    return state.coefficients()
 
 
 class FilmLaw:

@@ -103,6 +103,12 @@ class FilmState:
         u = np.moveaxis(self.film.grid.u, 2, 0)
         return self._gradient(-u, np.zeros_like(u)[:, 0])
 
+    @property
+    def slow_damping(self) -> np.ndarray:
+        """Damping of a velocity that stays while voids do not change any more, (2, 2) [N s/m]."""
+        u = np.moveaxis(self.film.grid.u, 2, 0)
+        return self._gradient(np.zeros_like(u), -u[:, 0])
+
     def _gradient(
         self, heights: np.ndarray, rates: np.ndarray, void_rate: complex = 0.0
     ) -> np.ndarray:

@@ -11,7 +11,10 @@ Gramians with the weight ``1/(1 + (ν/Ω)²)²`` on the motion, by the values of
 Gosea, S. Gugercin, C. Beattie, *Data-driven balancing of linear dynamical systems*, SIAM J. Sci.
 Comput. 44, 2022; weights: D. F. Enns, *Model reduction with balanced realizations*, CDC 1984).
 
-Each pair of the reduced poles is one coordinate q with ``q̈ − β q̇ − α q = b x + b' ẋ``.
+Coordinates q are every other state η of a Schur form, q = T η, in units of the speed: so q and
+``q̇ = T A η + T B x`` tell all states, ``η = S⁻¹ (q, q̇ − T B x)`` with S of the rows T and T A, and
+
+    q̈ = T A² η + T A B x + T B ẋ.                                                         (2)
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ import scipy.linalg as la
 COUNT = 6  # coordinates
 _SAMPLES = 32  # frequencies on each side of the Gramians
 _FAST = 1e6  # of the speed, where nothing comes back in time
-_NOTHING = 1e-6  # of Z: states of rounding
+_NOTHING = 1e-7  # of Z: states of rounding
 _LOOKED_AT, MOST_ERROR = 2.0, 1e-2  # whirl ratio up to which (1) is held to that share of Z
 _IDLE = 3.0  # of the speed: decay of states that are not needed
 
@@ -67,11 +70,11 @@ class VoidStates:
         size = np.linalg.norm(Z, 2, axis=(1, 2))
         count = 2 * COUNT
         while True:
-            poles, drive, felt = _modal(*_balanced(nu / unit, late, count, _NOTHING * size.min()))
-            if np.all(poles.real < 0.0):
+            states = _balanced(nu / unit, late, count, _NOTHING * size.min())
+            if np.all(np.linalg.eigvals(states[0]).real < 0.0):
                 break
             count -= 2
-        made = _second_order(poles * unit, drive * unit, felt, fast, unit)
+        made = _second_order(*_paired(*states), fast, unit)
         looked_at = nu <= _LOOKED_AT * unit
         found = np.array([_impedance(*made, 1j * v) for v in nu[looked_at]])
         error = np.linalg.norm(found - Z[looked_at], 2, axis=(1, 2)) / size[looked_at]
@@ -125,7 +128,7 @@ def _balanced(
     B = (both @ felt.reshape(size, 2)).real
     C = (driven.transpose(1, 0, 2).reshape(2, size) @ both.conj().T).real
     U, sizes, Vt = la.svd(L)
-    kept = slice(0, min(count, int(np.sum(sizes > nothing))))
+    kept = slice(0, min(count, int(np.sum(sizes > nothing)) // 2 * 2))
     root = np.sqrt(sizes[kept])
     U, V = U[:, kept] / root, Vt[kept].T / root
     return U.T @ A @ V, U.T @ B, C @ V
@@ -137,59 +140,55 @@ def _real(count: int) -> np.ndarray:
     return np.kron(np.kron(one, np.eye(count)), np.eye(2))
 
 
-def _modal(
+def _paired(
     A: np.ndarray, B: np.ndarray, C: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return poles (2c,), what drives their states (2c, 2) and what is felt of them (2, 2c).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return A, B, C with 2 COUNT states, those side by side belonging together, and T.
 
-    Pairs stand side by side, the positive imaginary part first; real ones by their size. States are
-    of the size of a slow motion of the journal, in phase with that along n1. States that are not
-    needed decay, and nothing drives them.
+    States that are not needed decay, and nothing drives them.
     """
-    poles, vectors = la.eig(A) if len(A) else (np.zeros(0, dtype=complex), np.zeros((0, 0)))
-    drive, felt = la.solve(vectors, B.astype(complex)) if len(A) else B, C @ vectors
-    upper = np.flatnonzero(poles.imag > 0.0)
-    upper = upper[np.argsort(poles[upper].imag)]
-    still = np.flatnonzero(poles.imag == 0.0)
-    still = still[np.argsort(-poles[still].real)]
-    lengths = np.linalg.norm(drive, axis=1) / np.abs(poles)
-    factor = np.exp(-1j * np.angle(drive[:, 0])) / np.maximum(lengths, 1e-300)
-    drive, felt = factor[:, None] * drive, felt / factor
-    paired = np.column_stack([poles[upper], poles[upper].conj()]).ravel()
-    missing = 2 * COUNT - len(poles)
-    idle = -_IDLE * (1.0 + np.arange(missing) / (2.0 * COUNT))
-    order = np.column_stack([upper, upper]).ravel()
-    conj = np.arange(len(order)) % 2 == 1
-    both = [np.where(conj, X.conj(), X) for X in (drive[order].T, felt[:, order])]
-    drive = np.vstack([both[0].T, drive[still], np.zeros((missing, 2))])
-    felt = np.hstack([both[1], felt[:, still], np.zeros((2, missing))])
-    return np.r_[paired, poles[still], idle], drive, felt
+    if len(A):
+        A, turn, still = la.schur(A, sort=lambda real, imaginary: imaginary == 0.0)
+        B, C = turn.T @ B, C @ turn
+    else:
+        still = 0
+    missing = 2 * COUNT - len(A)
+    idle = np.diag(-_IDLE * (1.0 + np.arange(missing) / (2.0 * COUNT)))
+    A, B, C = (
+        la.block_diag(A, idle),
+        np.pad(B, ((0, missing), (0, 0))),
+        np.pad(C, ((0, 0), (0, missing))),
+    )
+    T = np.kron(np.eye(COUNT), [1.0, 0.0])
+    real = np.arange(2 * COUNT) < still
+    real |= np.arange(2 * COUNT) >= 2 * COUNT - missing
+    for row in np.flatnonzero(real[::2]):
+        # of two real poles the share of each that tells them apart best
+        one, other = 2 * row, 2 * row + 1
+        beside, apart = A[one, other], A[other, other] - A[one, one]
+        angle = 0.5 * np.arctan2(np.copysign(1.0, beside) * apart, abs(beside))
+        T[row, [one, other]] = np.cos(angle), np.sin(angle)
+    sense = np.copysign(1.0, (T @ B)[:, :1])
+    return A, B, C, sense * T
 
 
 def _second_order(
-    poles: np.ndarray,
-    drive: np.ndarray,
-    felt: np.ndarray,
+    A: np.ndarray,
+    B: np.ndarray,
+    C: np.ndarray,
+    T: np.ndarray,
     fast: tuple[np.ndarray, np.ndarray],
     unit: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return damping and stiffness of :class:`VoidStates`.
-
-    Of two states η with the poles in A, ``q = T η``, T = (1, 1), and ``q̇ = T A η + T B x`` tell
-    both: ``η = S⁻¹ (q, q̇ − T B x)`` with the rows T and T A in S.
-    """
+    """Return damping and stiffness of :class:`VoidStates` by Eq. (2)."""
     K, D = (np.pad(X, (0, COUNT)).astype(float) for X in fast)
-    for index in range(COUNT):
-        pair, row = slice(2 * index, 2 * index + 2), 2 + index
-        p, b, c = poles[pair], drive[pair], felt[:, pair]
-        inverse = np.linalg.inv(np.array([[1.0, 1.0], p / unit])) / np.array([1.0, unit])
-        alpha, beta = (p**2 @ inverse).real
-        slow, rate = (c @ inverse).T.real
-        sum_b, fast_b = b.sum(axis=0).real, (p @ b).real
-        K[:2, row], D[:2, row] = slow, rate
-        K[:2, :2] -= np.outer(rate, sum_b)
-        K[row, :2], D[row, :2] = beta * sum_b - fast_b, -sum_b
-        K[row, row], D[row, row] = -alpha, -beta
+    inverse = np.linalg.inv(np.vstack([T, T @ A]))
+    (slow, rate), (by_place, by_rate) = (np.split(X @ inverse, 2, axis=1) for X in (C, T @ A @ A))
+    driven = T @ B
+    K[:2, :2] -= rate @ driven
+    K[:2, 2:], D[:2, 2:] = slow, rate / unit
+    K[2:, :2], D[2:, :2] = unit**2 * (by_rate @ driven - T @ A @ B), -unit * driven
+    K[2:, 2:], D[2:, 2:] = -(unit**2) * by_place, -unit * by_rate
     return D, K
 
 
