@@ -198,6 +198,11 @@ def test_trains_processes_and_speeds_give_the_same():
     train = RotorTrain({"one": reduced}, {"one": 1.0}, {"one": supports}, [])
     growth = stability(train, speeds, accuracy=None).growth_of("lateral")
     np.testing.assert_allclose(growth, alone.growth_of("lateral"), rtol=1e-7)
+    damped = [Support(name, 1e8, damping=1e5) for name in POINTS]
+    given = {"slow": reduced, "fast": reduced}, {"slow": 1.0, "fast": 2.0}
+    train = RotorTrain(*given, {"slow": damped, "fast": supports}, [])
+    growth = stability(train, [0.5 * SPEED], accuracy=None).growth_of("lateral")
+    np.testing.assert_allclose(growth, alone.growth_of("lateral")[1:], rtol=1e-6)
     with ProcessPoolExecutor(1) as executor:
         sent = stability(reduced, speeds, supports=supports, accuracy=None, executor=executor)
     np.testing.assert_allclose(sent.growth, alone.growth, atol=1e-7 * SPEED)

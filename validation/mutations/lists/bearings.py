@@ -113,6 +113,32 @@ BEARINGS = [
         ),
     ),
     *mutations(
+        "bearings/film/void_states.py",
+        "test_void_states.py::test_states_have_the_force_of_the_film "
+        "test_void_states.py::test_states_decay_and_those_that_are_not_needed_do_nothing "
+        "test_void_states.py::test_exponents_are_those_of_the_film",
+        ("states driven the other way", "@ B), -unit * driven", "@ B), unit * driven"),
+        ("states felt without the journal's own rate", "-= rate @ driven", "+= rate @ driven"),
+        ("states that grow", "-unit * by_rate", "unit * by_rate"),
+        ("voids that come back at once", "pairs = -(ahead", "pairs = (ahead"),
+    ),
+    *mutations(
+        "linear/models/rotor/own_coordinates.py",
+        "test_void_states.py::test_trains_processes_and_speeds_give_the_same",
+        (
+            "films of a rotor at another's speed",
+            "matrices(self.rates[index] * speed)",
+            "matrices(speed)",
+        ),
+    ),
+    *mutations(
+        "linear/models/scene/remembering_scene.py",
+        "test_void_states.py::test_scenes_are_linearised_as_lists",
+        ("slow stiffness of films beside that of states", "K[:2, :2] -= stiffness", "pass"),
+        ("slow damping of films beside that of states", "D[:2, :2] -= damping", "pass"),
+        ("foundation moves against the film", "- R @ base", "+ R @ base"),
+    ),
+    *mutations(
         "bearings/journal_bearing.py",
         "test_mass_conserving.py::test_small_motion_in_a_scene_decays_as_the_linear_film_says "
         "test_mass_conserving.py::test_a_run_that_begins_again_forgets "
