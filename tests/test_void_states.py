@@ -78,6 +78,7 @@ def off(found, expected):
         ({"groove": IN_PAD}, 0.2, -SPEED),
         ({"groove": IN_PAD, "preload": 0.1}, 1.0, 10.0 * SPEED),
         ({"groove": TO_GROOVE, "preload": 0.5}, 10.0, SPEED),
+        ({"supply_pressure": 6e5}, 0.2, SPEED),  # an odd number of states
     ],
 )
 def test_states_have_the_force_of_the_film(options, load, speed):

@@ -107,7 +107,7 @@ def _balanced(
     ``C(iω − A)⁻¹(iζ − A)⁻¹B = −(G(iω) − G(iζ))/(iω − iζ)``, and with A between them likewise.
     """
     both = _real(len(nu) // 2)
-    weight = np.sqrt(0.5 * (1.0 + nu**2) / (2.0 * len(nu)))
+    weight = np.sqrt((1.0 + nu**2) / (2.0 * len(nu)))  # of ∫ dν/2π over θ
     left, right = (np.r_[1j * nu[side::2], -1j * nu[side::2]] for side in (0, 1))
     felt, driven = (
         np.concatenate([values, values.conj()])
@@ -128,7 +128,7 @@ def _balanced(
     B = (both @ felt.reshape(size, 2)).real
     C = (driven.transpose(1, 0, 2).reshape(2, size) @ both.conj().T).real
     U, sizes, Vt = la.svd(L)
-    kept = slice(0, min(count, int(np.sum(sizes > nothing)) // 2 * 2))
+    kept = slice(0, min(count, int(np.sum(sizes > nothing))))
     root = np.sqrt(sizes[kept])
     U, V = U[:, kept] / root, Vt[kept].T / root
     return U.T @ A @ V, U.T @ B, C @ V
@@ -143,9 +143,10 @@ def _real(count: int) -> np.ndarray:
 def _paired(
     A: np.ndarray, B: np.ndarray, C: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return A, B, C with 2 COUNT states, those side by side belonging together, and T.
+    """Return A, B, C with 2 COUNT states and T; those side by side belong together.
 
-    States that are not needed decay, and nothing drives them.
+    First come states that are not needed, which decay and which nothing drives, then those of real
+    poles, then pairs.
     """
     if len(A):
         A, turn, still = la.schur(A, sort=lambda real, imaginary: imaginary == 0.0)
@@ -155,14 +156,12 @@ def _paired(
     missing = 2 * COUNT - len(A)
     idle = np.diag(-_IDLE * (1.0 + np.arange(missing) / (2.0 * COUNT)))
     A, B, C = (
-        la.block_diag(A, idle),
-        np.pad(B, ((0, missing), (0, 0))),
-        np.pad(C, ((0, 0), (0, missing))),
+        la.block_diag(idle, A),
+        np.pad(B, ((missing, 0), (0, 0))),
+        np.pad(C, ((0, 0), (missing, 0))),
     )
     T = np.kron(np.eye(COUNT), [1.0, 0.0])
-    real = np.arange(2 * COUNT) < still
-    real |= np.arange(2 * COUNT) >= 2 * COUNT - missing
-    for row in np.flatnonzero(real[::2]):
+    for row in range((missing + still) // 2):
         # of two real poles the share of each that tells them apart best
         one, other = 2 * row, 2 * row + 1
         beside, apart = A[one, other], A[other, other] - A[one, one]

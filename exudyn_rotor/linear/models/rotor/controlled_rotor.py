@@ -1,4 +1,4 @@
-"""A rotor on supports that have coordinates of their own: magnetic bearings, pads that tilt.
+"""A rotor on supports with coordinates of their own: magnetic bearings, films, pads that tilt.
 
 All equations are in the rotor frame (:mod:`.own_coordinates`). On a foundation magnets act, and
 sensors measure, against its points.
