@@ -176,7 +176,7 @@ class TangentFilm:
     ----------
     bearing : JournalBearing
     state : FilmState or None
-        At the place of the last tangent.
+        At the place of the last tangent; None where that is outside the film.
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
@@ -189,6 +189,8 @@ class TangentFilm:
     def hold(self, held: bool) -> None:
         """Hold the force by the tangent from the next place on, or let it go."""
         self._held, self._gradient = held, None
+        if held:
+            self.state = None
 
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float

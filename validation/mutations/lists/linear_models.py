@@ -302,8 +302,8 @@ LINEAR_MODELS = [
         (
             "cages turn with the rotor",
             'with self._probing(checks.number(speed, "speed", "rad/s")) as probe:\n'
-            "            return",
-            "with probing(self, speed) as probe:\n            return",
+            "            system",
+            "with probing(self, speed) as probe:\n            system",
         ),
     ),
 ]

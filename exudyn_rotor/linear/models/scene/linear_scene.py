@@ -188,11 +188,11 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         return system
 
     @cached_property
-    def _film_states(self) -> dict[float, list[FilmState]]:
+    def _film_states(self) -> dict[float, list[FilmState | None]]:
         """Films that conserve mass, in the equilibria that are known."""
         return {}
 
-    def film_states(self, speed: float) -> list[FilmState]:
+    def film_states(self, speed: float) -> list[FilmState | None]:
         """Return the :attr:`remembering` films where :meth:`at` found them at a speed [rad/s]."""
         return self._film_states[float(speed)]
 

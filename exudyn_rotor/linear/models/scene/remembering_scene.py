@@ -26,7 +26,11 @@ from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
 from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.linear.periodic.periodic_system import (
+    PeriodicSystem,
+    Terms,
+    UnconvergedError,
+)
 from exudyn_rotor.theory.rotating_axes import turning_harmonics
 
 
@@ -126,7 +130,7 @@ class RememberingScene(InAllCoordinates):
         Raises
         ------
         UnconvergedError
-            As :meth:`LinearScene.at`.
+            As :meth:`LinearScene.at`, and for a journal outside its film.
         """
         system = self.plain.at(speed)
         own = self._films(self.scene.film_states(speed))
@@ -144,10 +148,15 @@ class RememberingScene(InAllCoordinates):
         H = None if system.H is None else np.pad(system.H, (0, self._more))
         return replace(system, M=M, D=D, K=K, H=H)
 
-    def _films(self, states: Sequence[FilmState]) -> OwnCoordinates:
+    def _films(self, states: Sequence[FilmState | None]) -> OwnCoordinates:
         """Return the films less what the scene has of them already."""
         supports = []
         for one, state in zip(self.scene.remembering, states, strict=True):
+            if state is None:
+                raise UnconvergedError(
+                    f"linear scene: the journal at {one.support.interface!r} rests outside its "
+                    "film, which its grid does not resolve there; give more nodes"
+                )
             if self.with_states:
                 D, K = state.void_states.matrices(self._mass)
             else:
