@@ -12,6 +12,7 @@ from exudyn_rotor import (
     harmonic_response,
     unbalance_response,
 )
+from validation.extremes.rotors import shaft_frequencies, shaft_rotor
 
 
 @pytest.mark.parametrize("count", [5, 50, 500])
@@ -54,3 +55,37 @@ def test_a_peak_is_told_to_be_coarse_or_outside():
     below = unbalance_response(rotor, np.linspace(1.0, 50.0, 12), unbalances, **given)
     with pytest.raises(ValueError, match="left: the motion has no peak between 1 and 50 rad/s"):
         below.peak("left")
+
+
+def test_advice_at_a_peak_is_not_what_was_done_already():
+    rotor, ends = rings(modes=6), ("left", "right")
+    supports = [Support(name, 1e5) for name in ends]  # no damping: the peak has no width
+    given = {"supports": supports, "own": False, "refine": True}
+    undamped = unbalance_response(
+        rotor, np.linspace(100.0, 600.0, 30), [Unbalance("left", 1e-4)], **given
+    )
+    with pytest.warns(UserWarning, match=r"refine=True adds no more: .* or add damping"):
+        undamped.peak("left")
+    below = unbalance_response(
+        rotor, np.linspace(1.0, 50.0, 12), [Unbalance("left", 1e-4)], **given
+    )
+    with pytest.raises(ValueError, match=r"and 50 rad/s; extend the range$"):
+        below.peak("left")
+
+
+@pytest.mark.parametrize("bearing", [1e10, 3e10, 1e11])
+def test_beside_a_resonance_on_rigid_bearings_without_damping(bearing):
+    """A shaft of 100 N/m between rigid bearings: ``e Ω² / (ω² − Ω²)`` of two masses and springs.
+
+    Stiffnesses round by ε of the bearings', which is seen beside ``100 N/m (1 − 0.998²)``.
+    """
+    bending, disc, end, share = 100.0, 10.0, 1.0, 0.998
+    rotor = shaft_rotor(disc, end, (bending, bending)).with_interface("disc", range(4)).reduce(8)
+    speed = share * shaft_frequencies(disc, end, bending, bearing)[0]
+    stiffness = np.array([[bending, -bending], [-bending, bending + 2.0 * bearing]])
+    exact = np.linalg.solve(stiffness - speed**2 * np.diag([disc, 2.0 * end]), [speed**2, 0.0])[0]
+    supports = [Support(name, bearing) for name in ("left", "right")]
+    given = {"own": False, "supports": supports, "at": "disc", "accuracy": None}
+    response = unbalance_response(rotor, [speed], [Unbalance("disc", 1.0)], **given)
+    rounding = np.finfo(float).eps * bearing / (bending * (1.0 - share**2))
+    assert response.semi_axes()[0][0] == pytest.approx(exact, rel=10.0 * rounding)

@@ -231,7 +231,7 @@ def separation_margins(
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
     for name, curve in zip(names, curves, strict=True):
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
-        entries += [(name, *_peak(speeds, curve, int(row), name)) for row in rows]
+        entries += [(name, *_peak(response, curve, int(row), name)) for row in rows]
     entries.sort(key=lambda entry: entry[1])
     peaks = np.array([entry[1] for entry in entries])
     factors = np.array([_amplification(entry[1], entry[3]) for entry in entries])
@@ -286,10 +286,11 @@ def _margins(
 
 
 def _peak(
-    speeds: np.ndarray, curve: np.ndarray, row: int, name: str
+    response: UnbalanceResponse, curve: np.ndarray, row: int, name: str
 ) -> tuple[float, float, tuple[float, float]]:
     """Return place, size and half-power speeds of the maximum at a row."""
-    place, size = resolved_peak(speeds, curve, row, name)
+    speeds = response.speeds
+    place, size = resolved_peak(speeds, curve, row, name, response.refined)
     lower = _half_power(speeds[: row + 2][::-1], curve[: row + 2][::-1], size)
     upper = _half_power(speeds[row - 1 :], curve[row - 1 :], size)
     return place, size, (lower, upper)

@@ -21,8 +21,10 @@ from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 Harmonics = Mapping[int, np.ndarray]
 
 HIGHEST_HARMONIC = 40
-# of matrices scaled to diagonals of order one: rounding leaves 1e-15 of a motion that is free
+# of matrices scaled to diagonals of order one: rounding leaves 1e-15 of a motion that is free. One
+# above that is held where a load acts on it: a soft direction beside stiff ones is no smaller
 _FREE = 1e-12
+_ROUNDING = 1e-14
 _SINGULAR = 1e-14
 # share of a load that may act on a free motion: the rounding of a mesh's own unbalance
 _LOAD_ON_FREE = 1e-6
@@ -126,17 +128,23 @@ class _Balance:
         return 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
 
     @cached_property
-    def free(self) -> np.ndarray:
-        """Orthonormal columns (k, r) of scaled motions that no stiffness resists, driven ones too.
+    def soft(self) -> tuple[np.ndarray, np.ndarray]:
+        """Scaled motions as orthonormal columns (k, r) that next to no stiffness resists.
 
-        Such a motion stays where it is under a load that does not act on it.
+        Driven ones, too. And whether what resists each is rounding, (r,).
         """
         scale = self.scale.copy()
         scale[self.driven] = 0.0
         scaled = [scale[:, None] * term * scale for term in self.system.K.values()]
         stack = np.vstack([part for term in scaled for part in (term.real, term.imag)])
-        _, values, vt = np.linalg.svd(stack, full_matrices=False)
-        return vt[values <= _FREE * max(1.0, values[0])].T
+        # coordinates that are free by themselves: rounding would mix them with soft motions
+        alone = np.linalg.norm(stack, axis=0) <= _ROUNDING
+        _, values, vt = np.linalg.svd(stack[:, ~alone], full_matrices=False)
+        relative = values / values.max(initial=1.0)
+        columns = relative <= _FREE
+        motions = np.eye(len(scale))[:, alone], np.eye(len(scale))[:, ~alone] @ vt[columns].T
+        unresisted = np.r_[np.ones(alone.sum(), dtype=bool), relative[columns] <= _ROUNDING]
+        return np.hstack(motions), unresisted
 
     def solved(self, reach: int) -> dict[int, np.ndarray]:
         """Solve for the harmonics −reach … reach that the loads excite."""
@@ -166,31 +174,35 @@ class _Balance:
             driven = index * size + np.array(self.driven, dtype=int)
             A[driven, :] = A[:, driven] = 0.0
             # a spring on what is free changes nothing else
-            spring = self.free / self.scale[:, None]
+            free = self._free(load[index])
+            spring = free / self.scale[:, None]
             A[rows, rows] += spring @ spring.T
-            load[index] = self._without_free(load[index])
+            scaled = self.scale * load[index]
+            load[index] = (scaled - free @ (free.T @ scaled)) / self.scale
         scale = np.tile(self.scale, len(orders))
         solution, condition = _scaled_solve(A, load.ravel(), scale)
         self.conditions.append(condition)
         return solution.reshape(load.shape)
 
-    def _without_free(self, load: np.ndarray) -> np.ndarray:
-        """Return a load (k,) without the rounding that acts on free motions.
+    def _free(self, load: np.ndarray) -> np.ndarray:
+        """Return the motions (k, r) of :attr:`soft` that stay where they are under a load (k,).
 
         Raises
         ------
         ValueError
-            If more than rounding acts on them.
+            If the load acts on a motion that nothing but rounding resists.
         """
         load[self.driven] = 0.0
         scaled = self.scale * load
-        on_free = self.free.T @ scaled
-        if np.linalg.norm(on_free) > _LOAD_ON_FREE * np.linalg.norm(scaled):
+        columns, unresisted = self.soft
+        loaded = np.abs(columns.T @ scaled) > _LOAD_ON_FREE * np.linalg.norm(scaled)
+        if np.any(loaded & unresisted):
             raise ValueError(
                 "a constant load acts on a motion that nothing holds: there is no steady state. "
-                "Either a support is missing there, or this is a resonance without any damping"
+                "Either a support is missing there, or this is a resonance without any damping; a "
+                "bearing that is rigid needs no more than a thousand times the rotor's stiffness"
             )
-        return (scaled - self.free @ on_free) / self.scale
+        return columns[:, ~loaded]
 
 
 def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, float]:

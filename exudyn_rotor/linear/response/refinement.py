@@ -80,16 +80,22 @@ def _turns(motions: list[Motion]) -> np.ndarray:
     return np.where(matters, turned, 0.0).max(axis=1, initial=0.0)
 
 
-def resolved_peak(at: np.ndarray, size: np.ndarray, index: int, name: str) -> tuple[float, float]:
+def resolved_peak(
+    at: np.ndarray, size: np.ndarray, index: int, name: str, was_refined: bool
+) -> tuple[float, float]:
     """Return place and size of the maximum at a point, by its neighbours.
 
-    A warning with the `name` tells where these are beyond half of the power of the maximum.
+    A warning with the `name` tells where these are beyond half of the power of the maximum, and
+    what to do where points were added already.
     """
     near = slice(index - 1, index + 2)
     if size[near].min() < HALF_POWER * size[index]:
+        advice = "compute the response with refine=True"
+        if was_refined:
+            advice = "refine=True adds no more: give more of them there, or add damping"
         warnings.warn(
             f"{name}: the points around the peak at {at[index]:g} rad/s are too far apart to give "
-            "its size and width; compute the response with refine=True",
+            f"its size and width; {advice}",
             UserWarning,
             stacklevel=user_level(),
         )

@@ -49,6 +49,8 @@ class Response(RunStart, ABC):
         and last point only, which the table names. None where they are not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    refined : bool
+        Whether points were added around resonances.
     """
 
     places: tuple[str, ...] = words("places")
@@ -57,6 +59,7 @@ class Response(RunStart, ABC):
     frame: str
     basis_errors: np.ndarray | None = numbers("abscissa", "places", finite=False, optional=True)
     stiffening: str | None = field(default=None, kw_only=True)
+    refined: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -137,12 +140,13 @@ class Response(RunStart, ABC):
         major, _ = self.semi_axes(place, order)
         inner = np.flatnonzero((major[1:-1] > major[:-2]) & (major[1:-1] >= major[2:])) + 1
         if inner.size == 0:
+            more = "" if self.refined else ", or compute with refine=True"
             raise ValueError(
                 f"{self._place(place)}: the motion has no peak between {self.abscissa[0]:g} and "
-                f"{self.abscissa[-1]:g} rad/s; extend the range, or compute with refine=True"
+                f"{self.abscissa[-1]:g} rad/s; extend the range{more}"
             )
         index = int(inner[major[inner].argmax()])
-        return resolved_peak(self.abscissa, major, index, self._place(place))
+        return resolved_peak(self.abscissa, major, index, self._place(place), self.refined)
 
     def orbit(
         self, value: float, place: str | None = None, order: int | None = None, points: int = 181

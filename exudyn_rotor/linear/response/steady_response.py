@@ -179,7 +179,7 @@ def unbalance_response(
     constant = space.at(fastest).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
-    extra = _kept(model, solved)
+    extra = _kept(model, solved) | {"refined": refine}
     return UnbalanceResponse(labels, *found, frame, values, basis_errors=errors, **extra)
 
 
@@ -269,7 +269,7 @@ def harmonic_response(
     constant = space.at(speed).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     warn_of_response(basis, errors, labels, values)
-    extra = _kept(model, solved)
+    extra = _kept(model, solved) | {"refined": refine}
     return HarmonicResponse(labels, *found, frame, values, speed, basis_errors=errors, **extra)
 
 
