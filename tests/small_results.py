@@ -75,7 +75,7 @@ def results() -> list:
             coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
         BaseResponse(("left", "node 2"), speeds, motion[:, :, 0].real, 90.0),
         EnergyBalance(speeds, *RNG.uniform(size=(6, 3))),
-        Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, *[table] * 2,
+        Stability(speeds, *[table + 1j] * 2, speeds, speeds > 15.0, speeds, 0.5 * table, table,
                   codes, codes, 1e-9, "tilt"),
         StabilityThresholds([20.0], [True], [9.0], [0], [1], 10.0, 30.0, False),
         StabilityMap(speeds, speeds[:2], table, table > 1.5, ("k [N/m]", "speed [rad/s]")),

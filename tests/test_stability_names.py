@@ -1,5 +1,6 @@
 """Kind, whirl and frequency of what grows, margins by kind, and all thresholds of a range."""
 
+import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +28,7 @@ from exudyn_rotor import (
     stability_threshold,
 )
 from exudyn_rotor.linear.modal.whirl import WHIRLS
+from validation.extremes.rotors import held, shaft_rotor
 
 TORSION, AXIAL = 3e3, 4e5
 POLAR = MASS * 0.1**2
@@ -71,6 +73,18 @@ def test_an_undamped_axial_mode_does_not_hide_the_lateral_growth(rings):
     for word, omega in (("axial", AXIAL / MASS), ("torsional", TORSION / POLAR)):
         found = result.frequencies_inertial[result.whirl == word]
         np.testing.assert_allclose(found, np.sqrt(omega), rtol=1e-6)
+
+
+def test_a_rotor_without_damping_has_no_least_stable_motion():
+    """Few modes would err in some motion that rounding makes the largest; none is named."""
+    rotor = shaft_rotor().reduce(2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = stability(rotor, [0.0, 30.0], supports=held(1e5, "left", "right"))
+    assert result.stable.all() and result.neutral.all()
+    assert np.isnan(result.basis_errors).all()
+    for line in result.table().splitlines()[1:3]:
+        assert line.split()[-4:] == ["-", "-", "-", "stable"]
 
 
 @pytest.mark.parametrize("speed", [0.0, 17.0, 150.0])

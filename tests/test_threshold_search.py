@@ -7,10 +7,11 @@ import pytest
 from asymmetric import asymmetric_shaft
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor import Support, linear_model
+from exudyn_rotor import Support, linear_model, stability_threshold
 from exudyn_rotor.linear.stability import thresholds
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt
 from exudyn_rotor.linear.stability.threshold_search import Search
+from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor
 
 
 class Given(thresholds._Made):
@@ -93,3 +94,32 @@ def test_rates_of_periodic_exponents_are_those_of_a_second_growth(speed):
     rates = growth.rates(here, speed, step)
     assert np.abs(rates).max() > 1.0
     np.testing.assert_allclose(rates, expected, atol=1e-4)
+
+
+def test_narrow_ranges_of_an_undamped_shaft_are_named():
+    """Between the critical speeds in both directions, and between their means, which combine.
+
+    Each range is narrower than the steps of the search, and ends before a step aside.
+    """
+    bending, bearing = np.array([4e5, 4e5 * (1.0 + 1e-5)]), 4e5
+    ends = np.array([shaft_frequencies(10.0, 1.0, k, bearing) for k in bending])
+    rotor, supports = shaft_rotor(10.0, 1.0, bending).reduce(8), held(bearing, "left", "right")
+    given = {"supports": supports, "samples": 4, "accuracy": None}
+    found = stability_threshold(rotor, 50.0, 1200.0, **given)
+    assert found.onset.tolist() == [True, False] * 3
+    for place, exact in ((slice(0, 2), ends[:, 0]), (slice(4, 6), ends[:, 1])):
+        np.testing.assert_allclose(found.values[place], exact, atol=0.02 * np.ptp(exact))
+    means = ends.mean(axis=0)
+    np.testing.assert_allclose(found.values[2:4].mean(), means.mean(), rtol=1e-6)
+    apart = np.abs(found.frequencies_inertial[:, None] / means - 1.0)
+    assert apart.min(axis=1).max() < 1e-5
+    assert apart.argmin(axis=1)[[0, 1, 4, 5]].tolist() == [0, 0, 1, 1]
+
+
+def test_unstable_values_of_two_ranges_are_not_of_one():
+    search = Search(Given(lambda value: 1e-6 - min(abs(value - 0.3), abs(value - 0.8))), 1.0)
+    for value in (0.0, 0.3, 0.8, 1.0):
+        search.at(value)
+    search._part(0.0, 1.0)
+    limits = [value for value, _ in search.changes(1e-9)]
+    assert limits == pytest.approx([0.3 - 1e-6, 0.3 + 1e-6, 0.8 - 1e-6, 0.8 + 1e-6], abs=2e-9)

@@ -152,10 +152,15 @@ class Stability(Result):
         return np.argmax(np.abs(self.exponents.real) > self.bounds, axis=1)
 
     @property
+    def neutral(self) -> np.ndarray:
+        """Whether all motions neither grow nor decay within :attr:`bounds`, shape (s,)."""
+        return np.all(np.abs(self.exponents.real) <= self.bounds, axis=1)
+
+    @property
     def basis_errors(self) -> np.ndarray | None:
         """Estimated relative error of the least stable motion by the basis, shape (s,).
 
-        As :attr:`Campbell.basis_errors`; None where it is not known.
+        As :attr:`Campbell.basis_errors`; NaN where all are neutral, None where it is not known.
         """
         if self.basis_shifts is None:
             return None
@@ -163,7 +168,7 @@ class Stability(Result):
         given = self.exponents[rows].real, self.frequencies_inertial[rows]
         columns = (each[:, None] for each in (self.basis_shifts, *given))
         errors = relative_errors(*columns, self.speeds)[:, 0]
-        return np.where(np.isnan(self.basis_shifts), np.nan, errors)
+        return np.where(np.isnan(self.basis_shifts) | self.neutral, np.nan, errors)
 
     def growth_of(self, family: str) -> np.ndarray:
         """Return the largest real part within a family [1/s], shape (s,).
@@ -211,7 +216,7 @@ class Stability(Result):
         """Return speed, growth of the families, the least stable motion and verdict as text.
 
         A family whose growth is below what its bound can feign has '±' and the bound, but for
-        rounding of the last digits, which is 0.
+        rounding of the last digits, which is 0. Where all are neutral no motion is named.
 
         `units` are those of :meth:`plot`.
         """
@@ -227,11 +232,14 @@ class Stability(Result):
         for row, column in enumerate(self.least_stable):
             parts = [family[row] for family in growth]
             n, at = self.nodal_diameters[row, column], shown.speeds(self.speeds[row])
-            heard = shown.frequencies(self.frequencies_inertial[row, column])
+            heard = f"{shown.frequencies(self.frequencies_inertial[row, column]):.5g}"
+            whirl = self.whirl[row, column]
+            if self.neutral[row]:
+                heard, n, whirl = "-", -1, "-"
             verdict = "stable" if self.stable[row] else "unstable"
             lines.append(
-                f"{at:13.4f}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:17.5g}  "
-                f"{n if n >= 0 else '-'}  {self.whirl[row, column]:9}  {verdict:8}"
+                f"{at:13.4f}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:>17}  "
+                f"{n if n >= 0 else '-'}  {whirl:9}  {verdict:8}"
             )
             if reduced:
                 lines[-1] += f"{in_table(errors[row]):>13}"

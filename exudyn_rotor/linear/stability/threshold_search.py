@@ -138,6 +138,14 @@ class Search:
                 self._meet(start, pair, low, high)
             for branch in piece.peaks():
                 self._search(low, high, piece.real_part(branch))
+            self._part(low, high)
+
+    def _part(self, low: float, high: float) -> None:
+        """Look between unstable values of a gap, which may be of ranges far narrower than it."""
+        inside = [value for value in sorted(self.known) if low < value < high]
+        for first, second in pairwise(inside):
+            if self.unstable(first) and self.unstable(second):
+                self.at(0.5 * (first + second))
 
     @property
     def _step(self) -> float:

@@ -25,8 +25,7 @@ from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
 from exudyn_rotor.sweep import ascending_from_zero
 
 _ROOT = 1e-8  # of the largest parameter
-# share of λ or Ω, and times the change by what the basis leaves out: motions so near one another
-# change with its root
+# share of λ or Ω, times the change by the basis: motions so near change with the root of it
 _NEAR, _TIMES = 5e-3, 10.0
 # of the range beside such a limit where it is searched again, in steps that grow, then at points
 _REACH, _STEPS, _POINTS = 0.05, 6, 9
@@ -126,7 +125,7 @@ def stability_threshold(
         search.at(float(point))
     search.refine()
     found = search.changes(_ROOT * max(abs(low), abs(high)))
-    limits = [_limit(search, value, on, 0.5 * (low + high)) for value, on in found]
+    limits = _limits(search, found, 0.5 * (low + high))
     names = list(zip(*(limit.name for limit in limits), strict=True)) if limits else [(), (), ()]
     values, shifts = np.array([value for value, _ in found]), _shifts(limits, made.accuracy)
     _warn_of_basis(limits, shifts, values, high - low, label)
@@ -173,7 +172,7 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     edges += [value for value, _ in found]
     edges += [values[-1]] if unstable[-1] else []
     if made.checked.left_out is not None:
-        limits = [_limit(search, value, on, 0.5 * (values[0] + values[-1])) for value, on in found]
+        limits = _limits(search, found, 0.5 * (values[0] + values[-1]))
         shifts, at = _shifts(limits, made.accuracy), np.array([value for value, _ in found])
         _warn_of_basis(limits, shifts, at, values[-1] - values[0], "speed [rad/s]")
     return np.array(edges).reshape(-1, 2)
@@ -191,10 +190,19 @@ class _Limit(NamedTuple):
     basis: BasisError
 
 
-def _limit(search: Search, value: float, onset: bool, middle: float) -> _Limit:
-    """Return what grows beside a limit; the slope of its growth is told towards the `middle`."""
-    away = search.span if onset else -search.span
-    beside = value + ASIDE * away
+def _limits(search: Search, found: Sequence[tuple[float, bool]], middle: float) -> list[_Limit]:
+    """Return what grows beside each limit, within its unstable range however narrow that is."""
+    ends, limits = [-np.inf, *(value for value, _ in found), np.inf], []
+    for place, (value, onset) in enumerate(found, start=1):
+        width = ends[place + 1 if onset else place - 1] - value
+        away = np.sign(width) * min(ASIDE * search.span, 0.5 * abs(width))
+        limits.append(_limit(search, value, away, middle))
+    return limits
+
+
+def _limit(search: Search, value: float, away: float, middle: float) -> _Limit:
+    """Return what grows `away` from a limit; the slope of its growth is told to the `middle`."""
+    onset, beside = away > 0.0, value + away
     growth = search.known[beside] = search.made.growth(beside, named=True)
     which = growth.least_stable
     name = tuple(entries[which] for entries in growth.names)
