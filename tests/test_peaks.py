@@ -73,6 +73,18 @@ def test_advice_at_a_peak_is_not_what_was_done_already():
         below.peak("left")
 
 
+def test_a_resonance_without_damping_is_left_out_where_points_are_added():
+    """Halving meets it: ω = 100 rad/s is midway between two of the speeds."""
+    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
+    point = point.with_interface("at", [0])
+    given = {"supports": [Support("at", 1e4)], "own": False, "refine": True}
+    response = unbalance_response(point, [50.0, 90.0, 110.0, 150.0], Unbalance("at", 1e-5), **given)
+    speeds = response.speeds
+    assert np.all(speeds != 100.0)
+    exact = 1e-5 * speeds**2 / np.abs(1e4 - speeds**2)
+    np.testing.assert_allclose(response.semi_axes()[0], exact, rtol=1e-11)
+
+
 @pytest.mark.parametrize("bearing", [1e10, 3e10, 1e11])
 def test_beside_a_resonance_on_rigid_bearings_without_damping(bearing):
     """A shaft of 100 N/m between rigid bearings: ``e Ω² / (ω² − Ω²)`` of two masses and springs.

@@ -81,7 +81,8 @@ def test_a_rotor_without_damping_has_no_least_stable_motion():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         result = stability(rotor, [0.0, 30.0], supports=held(1e5, "left", "right"))
-    assert result.stable.all() and result.neutral.all()
+    assert result.stable.all()
+    assert result.neutral.all()
     assert np.isnan(result.basis_errors).all()
     for line in result.table().splitlines()[1:3]:
         assert line.split()[-4:] == ["-", "-", "-", "stable"]

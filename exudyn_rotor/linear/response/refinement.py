@@ -39,6 +39,8 @@ def refined(
 ) -> tuple[np.ndarray, list[Seen]]:
     """Add points until the phase of every motion turns little between neighbours.
 
+    No point is added where there is no steady motion, as at a resonance without damping.
+
     Parameters
     ----------
     solve : callable
@@ -53,18 +55,37 @@ def refined(
     ndarray, list
         All speeds or frequencies, and their solutions.
     """
-    narrowest, start = _NARROWEST * np.ptp(values), len(values)
+    narrowest, start, without = _NARROWEST * np.ptp(values), len(values), []
     for _ in range(_MOST_ROUNDS):
         wide = np.diff(values) > narrowest
+        wide &= ~np.isin(_middles(values), without)
         between = np.flatnonzero(wide & (_turns([one.motion for one in solutions]) > _MOST_TURN))
         if between.size == 0 or len(values) - start > _MOST_ADDED:
             break
-        added = 0.5 * (values[between] + values[between + 1])
-        solved = solve(added)
+        added = _middles(values)[between]
+        solved = _solved(solve, added)
+        missing = np.array([one is None for one in solved])
+        without += added[missing].tolist()
+        between, added = between[~missing], added[~missing]
+        solved = [one for one in solved if one is not None]
         values = np.insert(values, between + 1, added)
         for count, (place, one) in enumerate(zip(between, solved, strict=True)):
             solutions.insert(place + 1 + count, one)
     return values, solutions
+
+
+def _middles(values: np.ndarray) -> np.ndarray:
+    return 0.5 * (values[:-1] + values[1:])
+
+
+def _solved(solve: Callable[[np.ndarray], list[Seen]], values: np.ndarray) -> list[Seen | None]:
+    """Return the solutions, None where there is none; one by one if not all can be solved."""
+    try:
+        return solve(values)
+    except ValueError:
+        if len(values) == 1:
+            return [None]
+        return [one for value in values for one in _solved(solve, np.array([value]))]
 
 
 def _turns(motions: list[Motion]) -> np.ndarray:
