@@ -184,3 +184,6 @@ def test_refused_input():
     ):
         with pytest.raises(ValueError, match=match):
             rolling_bearing_response(point(), [100.0], **({"gravity": GRAVITY} | given))
+    turned = "speeds: -10 is negative; .* turn the spin axis round"  # it has no allow_negative
+    with pytest.raises(ValueError, match=turned):
+        rolling_bearing_response(point(), [-10.0, 10.0], supports=balls, gravity=GRAVITY)

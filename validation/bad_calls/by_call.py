@@ -208,7 +208,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("RotorBody", "nodes"): v.MAPPING,
     ("RotorBody.add_interface_sensor", "interface"): v.KNOWN,
     ("RotorBody.marker", "interface"): v.KNOWN,
-    ("RotorTrain", "driven"): v.KNOWN,
+    ("RotorTrain", "driven"): Kind(v.EMPTY).but(list_of_names=["left"], other="Left "),
     ("RotorTrain", "largest_unevenness"): v.NOT_NEGATIVE.but(beyond=1.5),
     ("RotorTrain", "links"): v.OBJECTS,
     ("RotorTrain", "positions"): v.MAPPING,

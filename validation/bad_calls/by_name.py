@@ -237,6 +237,7 @@ BY_NAME: dict[str, Kind] = {
     "referencePosition": v.VECTOR,
     "referenceRotationMatrix": _SQUARE,
     "refine": v.FLAG,
+    "refined": v.FLAG,
     "required": v.ARRAY,
     "residual": _TOLERANCE,
     "response": v.OBJECT,

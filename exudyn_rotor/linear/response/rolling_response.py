@@ -41,7 +41,7 @@ from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.sweep import checked_speeds
+from exudyn_rotor.sweep import ascending_from_zero
 from exudyn_rotor.threads import one_thread
 
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
@@ -147,7 +147,7 @@ def rolling_bearing_response(
             f"target: needs a SolidRotor of up to {DENSE_SIZE} degrees of freedom, got "
             f"{3 * target.node_count}; give the reduced rotor, rotor.reduce(…)"
         )
-    values = checked_speeds(speeds, False)
+    values = ascending_from_zero(speeds, "speeds")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)
     gravity = checks.vector(gravity, "gravity", "m/s²")
