@@ -131,6 +131,13 @@ def test_integrator_that_takes_energy_shows(reduced):
     assert damped.error[-1] - kept.error[-1] < -0.5 * abs(kept.error[-1])
 
 
+def test_instants_too_far_apart_are_told(reduced):
+    """Ten for three turns: what they leave of the works is told, not taken for the integrator's."""
+    with pytest.warns(UserWarning, match=r"10 recorded instants are too far apart .*writePeriod"):
+        balance, _ = run(reduced, 10, spin=100.0, translation="none")
+    assert np.abs(balance.error).max() > 0.01 * np.abs(balance.loads).max()
+
+
 def test_balances_that_are_not_known_are_refused(reduced):
     with pytest.raises(ValueError, match=r"call body.start_recording\(\) before"):
         run(reduced, 4, recording=False)

@@ -29,7 +29,9 @@ from exudyn_rotor import (
     add_supports,
     campbell,
     check_run,
+    energy_balance,
     propose,
+    recommended_settings,
     rolling_bearing_response,
     select_modes,
     separation_margins,
@@ -103,6 +105,19 @@ def run_beyond_its_assumptions(beam):
     body = add_rotor(mbs, reduced, spin=10.0, modal_coordinates=[0.1, 0.0])
     mbs.Assemble()
     check_run(body)
+
+
+def energy_of_a_coarse_record(beam):
+    mbs = exu.SystemContainer().AddSystem()
+    ring = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10))).reduce(0)
+    body = add_rotor(mbs, ring, initial_velocity=[1.0, 0.0, 0.0])
+    body.start_recording()
+    add_supports(body, Support("all", 1e5, 50.0, tilt_stiffness=1e4))
+    mbs.Assemble()
+    settings = recommended_settings(end_time=0.1, step=0.01)  # three instants to a period
+    settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
+    mbs.SolveDynamic(settings)
+    energy_balance(body)
 
 
 def native_stress_of_a_prestressed_rotor(beam):
@@ -267,6 +282,9 @@ PLACES = {
     ),
     "prestress/carrying.py:_with_own_prestress": (
         rotor_of_a_changed_mesh, UserWarning, "mesh was changed",
+    ),
+    "advice/energy_balance.py:_warn_of_coarse_record": (
+        energy_of_a_coarse_record, UserWarning, "recorded instants are too far apart for works",
     ),
     "advice/proposal.py:propose": (
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",

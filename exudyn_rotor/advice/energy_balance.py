@@ -10,6 +10,7 @@ the weight's own work being its potential. What is left over is what the integra
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.locking import guiding_force
 from exudyn_rotor.multibody.rotor.record import Record
@@ -27,6 +29,9 @@ from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.units import Units
 
 _LEAST = 3  # instants: the first has no accelerations
+# error by the spacing of the instants that is told: of what goes from one share to another, and of
+# the energy, which rounds
+_COARSE, _ROUNDING = 0.01, 1e-9
 _NAMES = ("kinetic", "elastic", "weight", "loads", "drive", "damping", "error")
 
 
@@ -121,6 +126,12 @@ def energy_balance(body: RotorBody) -> EnergyBalance:
     TypeError, ValueError
         Without a record, or for a rotor whose translation is prescribed.
 
+    Warns
+    -----
+    UserWarning
+        If the instants are so far apart that the works err by more than 1 % of the largest change;
+        by the difference to the works over every other instant.
+
     Examples
     --------
     A ring of 2 kg and radius 0.1 m that falls, 0.2 s long, while it spins:
@@ -160,10 +171,30 @@ def energy_balance(body: RotorBody) -> EnergyBalance:
     time, energies, powers = record.time[1:], rows[:, :3], rows[:, 3:]
     steps = 0.5 * np.diff(time)[:, None] * (powers[1:] + powers[:-1])
     works = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
+    _warn_of_coarse_record(body.name, time, energies, powers)
     weight = energies[:, 2]
     # gravity is a load of Exudyn, or in the equations
     by_weight = weight - weight[0] if body.gravity_load is not None else 0.0
     return EnergyBalance(time, *energies.T, works[:, 0] + by_weight, *works[:, 1:].T)
+
+
+def _warn_of_coarse_record(
+    name: str, time: np.ndarray, energies: np.ndarray, powers: np.ndarray
+) -> None:
+    """Warn where the trapezoidal rule over every other instant gives other works."""
+    odd = slice(0, len(time) - (len(time) + 1) % 2)  # both end at one instant
+    fine = np.trapezoid(powers[odd], time[odd], axis=0)
+    coarse = np.trapezoid(powers[odd][::2], time[odd][::2], axis=0)
+    error = np.abs(fine - coarse).max() / 3.0  # of second order
+    moved = max(np.abs(fine).max(), np.ptp(energies, axis=0).max())
+    if len(time) < _LEAST or error > _COARSE * moved + _ROUNDING * np.abs(energies).max():
+        warnings.warn(
+            f"energy balance of rotor {name!r}: {len(time)} recorded instants are too far apart "
+            "for works; its error is not the integrator's. Record every step: lower "
+            "solution.sensors.writePeriod of the simulation settings",
+            UserWarning,
+            stacklevel=user_level(),
+        )
 
 
 def _instant(body: RotorBody, record: Record, index: int) -> tuple[float, ...]:
