@@ -7,13 +7,17 @@ import scipy.sparse as sp
 from exudyn.itemInterface import SensorMarker
 from exudyn.utilities import InertiaSphere
 from models import disc_rotor
+from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
     Formulation,
     PrescribedMotion,
     SolidRotor,
+    Support,
     add_rotor,
+    add_supports,
+    recommended_settings,
     select_modes,
 )
 from exudyn_rotor.theory.kernel import Kernel
@@ -304,3 +308,27 @@ def test_python_is_called_only_where_the_report_says_so(
     assert bool(calls) == python
     physics = mbs.GetObject(body.objects["physics"])
     assert all(bool(physics[f"{kind}UserFunction"]) == python for kind in ("force", "massMatrix"))
+
+
+def test_an_eccentric_rotor_starts_alike_with_and_without_translation():
+    """With the velocity Ω e × d of the centre of mass at d from the axis, to the order h²."""
+    speed, spread = 100.0, []
+    rotor = ring_rotor(0.1, 0.1, 2.0).add_point_mass([0.1, 0.0, 0.0], 0.1)
+    reduced = rotor.with_interface("all", range(10)).reduce(0)
+    turned = np.cross([0.0, 0.0, speed], rotor.center_of_mass)
+    for step in (2e-4, 1e-4):
+        found = []
+        for given in ({"initial_velocity": turned}, {"translation": "none"}):
+            mbs = exu.SystemContainer().AddSystem()
+            body = add_rotor(mbs, reduced, spin=speed, **given)
+            add_supports(body, Support("all", 1e5, 20.0, tilt_stiffness=1e3))
+            sensor = body.add_interface_sensor("all", exu.OutputVariableType.Displacement)
+            mbs.Assemble()
+            settings = recommended_settings(end_time=0.02, step=step)
+            settings.timeIntegration.verboseMode, settings.solution.file.write = 0, False
+            settings.solution.sensors.writePeriod = 2e-4
+            mbs.SolveDynamic(settings)
+            found.append(mbs.GetSensorStoredData(sensor)[:, 1:])
+        spread.append(np.abs(found[0] - found[1]).max() / np.abs(found[1]).max())
+    assert spread[0] < 0.02
+    assert spread[1] < 0.3 * spread[0]

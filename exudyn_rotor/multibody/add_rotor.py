@@ -111,7 +111,8 @@ def add_rotor(
         Mesh axes → inertial axes at θ = 0.
     initial_velocity : array_like, shape (3,)
         Of the centre of mass, wherever the node is, inertial axes [m/s]; in the plane of rotation
-        where the translation is in-plane.
+        where the translation is in-plane. Ω e × d starts a rotor whose centre of mass is off the
+        axis by d in a turn about the axis, as translation 'none' does.
     initial_angle, initial_speed : float, optional
         Of a free spin [rad], [rad/s].
     modal_coordinates, modal_velocities : array_like, optional
