@@ -347,3 +347,10 @@ def test_motions_with_harmonics_are_looked_at_at_all_peaks():
     peaks = [np.argmin(np.abs(speeds - at)) for at in (np.pi / 2, 1.5 * np.pi, 2.5 * np.pi, 6.0)]
     assert set(peaks) | {0, 20, 40} == set(chosen)
     np.testing.assert_array_equal(looked_at(motions, constant=True), np.arange(41))
+
+
+def test_a_free_motion_at_rest_has_no_relative_error():
+    """Its shift is rounding, and there is neither a frequency nor a speed to compare it with."""
+    shifts = np.array([[1e-9 + 0j, 0j, 2e-3j]])
+    errors = relative_errors(shifts, np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.zeros(1))
+    np.testing.assert_array_equal(errors, [[np.nan, 0.0, 2e-3]])

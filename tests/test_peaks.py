@@ -1,5 +1,7 @@
 """Peaks of responses that are sharper than the steps of the speed, or not there."""
 
+import warnings
+
 import numpy as np
 import pytest
 from test_response import rings
@@ -9,6 +11,7 @@ from exudyn_rotor import (
     SolidRotor,
     Support,
     Unbalance,
+    UnbalanceResponse,
     harmonic_response,
     unbalance_response,
 )
@@ -101,3 +104,21 @@ def test_beside_a_resonance_on_rigid_bearings_without_damping(bearing):
     response = unbalance_response(rotor, [speed], [Unbalance("disc", 1.0)], **given)
     rounding = np.finfo(float).eps * bearing / (bending * (1.0 - share**2))
     assert response.semi_axes()[0][0] == pytest.approx(exact, rel=10.0 * rounding)
+
+
+def test_a_larger_motion_along_the_axis_is_not_the_main_one():
+    """A thin disc cones by its own load: a constant motion along the axis, which no peak is of."""
+    motion = np.zeros((3, 1, 2, 6), dtype=complex)
+    motion[:, 0, 0, 2] = 1e-4  # order 0, along e
+    motion[:, 0, 1, 0] = [1e-6, 5e-6, 1e-6]
+    motion[:, 0, 1, 1] = -1j * motion[:, 0, 1, 0]
+    speeds = [90.0, 100.0, 110.0]
+    response = UnbalanceResponse(("left",), [0, 1], motion, "inertial", speeds, refined=True)
+    assert response.main_order == 1
+    with pytest.warns(UserWarning, match="too far apart"):
+        assert response.peak()[0] == pytest.approx(100.0)
+    along = UnbalanceResponse(("left",), [0], motion[:, :, :1], "inertial", speeds)
+    assert along.main_order == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        along.plot()  # n1 and n2 do not move: no logarithms

@@ -20,7 +20,8 @@ def draw_bode(
         style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
         size.plot(over, 1e6 * np.abs(values), label=name, **style)
         phase.plot(over, _phase(values), **style)
-    size.set_yscale("log" if log else "linear")
+    moves = any(np.any(values) for values in curves.values())  # nothing is nowhere on a log scale
+    size.set_yscale("log" if log and moves else "linear")
     size.set_ylabel("amplitude [µm]")
     phase.set_ylabel("phase [deg]")
     phase.yaxis.set_major_locator(MultipleLocator(90.0))

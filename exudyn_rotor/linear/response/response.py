@@ -78,8 +78,10 @@ class Response(RunStart, ABC):
 
     @property
     def main_order(self) -> int:
-        """The harmonic with the largest displacement anywhere."""
-        return int(self.orders[np.abs(self.motion[..., :3]).max(axis=(0, 1, 3)).argmax()])
+        """The harmonic with the largest displacement across the axis, or along it if none is."""
+        sizes = np.abs(self.motion).max(axis=(0, 1))
+        across = sizes[:, :2] if np.any(sizes[:, :2]) else sizes[:, :3]
+        return int(self.orders[across.max(axis=1).argmax()])
 
     def phasor(
         self, place: str | None = None, direction: str = "n1", order: int | None = None

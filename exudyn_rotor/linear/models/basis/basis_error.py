@@ -150,7 +150,8 @@ def relative_errors(
         ``λ_full − λ`` [1/s].
     growth, frequencies : ndarray, shape (s, k)
         The latter in the inertial frame. A frequency counts as at least a tenth of the spin speed,
-        a growth as at least a hundredth of the frequency.
+        a growth as at least a hundredth of the frequency. At rest, what neither oscillates nor
+        grows has no relative error, NaN.
     speeds : ndarray, shape (s,)
         [rad/s]
     """
@@ -158,7 +159,8 @@ def relative_errors(
     sizes = np.maximum(np.abs(growth), _DAMPED * least)
     with np.errstate(divide="ignore", invalid="ignore"):
         parts = np.abs(shifts.imag) / least, np.abs(shifts.real) / sizes
-    return np.where(shifts == 0.0, 0.0, np.maximum(*parts))
+    errors = np.where(shifts == 0.0, 0.0, np.maximum(*parts))
+    return np.where(np.isinf(errors), np.nan, errors)
 
 
 def judged(frequencies: np.ndarray, speeds: np.ndarray) -> np.ndarray:
