@@ -10,6 +10,7 @@ from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
 from validation.mutations.lists.multibody import MULTIBODY
+from validation.mutations.lists.multibody_rotor import MULTIBODY_ROTOR
 from validation.mutations.lists.pictures import PICTURES
 from validation.mutations.lists.prestress import PRESTRESS
 from validation.mutations.lists.reduction import REDUCTION
@@ -29,6 +30,7 @@ ALL = (
     *BEARINGS,
     *DRIVES,
     *FOUNDATIONS,
+    *MULTIBODY_ROTOR,
     *MULTIBODY,
     *ENERGY,
     *LINEAR_MODELS,
