@@ -228,6 +228,7 @@ LINEAR = [
     *mutations(
         "linear/stability/thresholds.py",
         "test_basis_error.py::test_errors_of_limits_where_modes_meet test_threshold_search.py",
+        ("a step over a narrow range", "0.5 * abs(width)", "abs(width) + 1.0"),
         (
             "limits of the other sense are taken",
             "if on == onset]",
@@ -345,8 +346,8 @@ LINEAR = [
         "test_stability.py test_stability_names.py",
         (
             "mode of a threshold from its stable side",
-            "away = search.span if onset else -search.span",
-            "away = -search.span if onset else search.span",
+            "place + 1 if onset else place - 1] - value",
+            "place - 1 if onset else place + 1] - value",
         ),
         (
             "ranges in the wrong order of their ends",
