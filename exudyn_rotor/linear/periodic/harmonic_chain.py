@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from exudyn_rotor.linear.periodic.harmonics import spacing
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, dynamic_matrices
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
 
 def solved(
@@ -44,12 +44,14 @@ def solved(
         own = _blocks(system, values, at[i], at[i])
         if outer is not None:
             own = own - ports[i] @ outer[0] @ ports[i].T
-        forced = np.broadcast_to(ports[i], (*parts[i].shape[:3], *ports[i].shape))
-        answers.append(_all_on_both_sides(own, np.concatenate([forced, parts[i]], axis=-1)))
+        loads = parts[i]
+        if i > 0:  # further in, the answers to forces at the ports are needed too
+            forced = np.broadcast_to(ports[i], (*loads.shape[:3], *ports[i].shape))
+            loads = np.concatenate([forced, loads], axis=-1)
+        answers.append(_all_on_both_sides(own, loads))
         if i > 0:
-            links = system.projected(system.ports)
-            inward = _blocks(links, values, at[i - 1], at[i])
-            outward = _blocks(links, values, at[i], at[i - 1])
+            inward = _blocks(system.between_ports, values, at[i - 1], at[i])
+            outward = _blocks(system.between_ports, values, at[i], at[i - 1])
             outwards.append(_with_adjoint(outward, inward))
             carried = _with_adjoint(inward, outward) @ (ports[i].T @ answers[-1])
             outer, load = carried[..., :-1] @ outwards[-1], ports[i - 1] @ carried[..., -1:]
@@ -80,12 +82,14 @@ def on_both_sides(matrices: np.ndarray, loads: np.ndarray) -> np.ndarray:
     NaN where S is singular. Complex matrices in C order are overwritten.
     """
     result = np.full(loads.shape, np.nan, dtype=complex)
-    for matrix, (load, force), answers in zip(matrices, loads, result, strict=True):
+    given = zip(matrices, loads[:, 0], loads[:, 1].conj(), result, strict=True)
+    for matrix, load, force, answers in given:
         # LAPACK itself: one factor, of Sᵀ in its order, for both, and scipy's checks take longer
         lu, pivots, singular = zgetrf(matrix.T, overwrite_a=True)
         if not singular:
             answers[0] = zgetrs(lu, pivots, load, trans=1)[0]
-            answers[1] = zgetrs(lu, pivots, force.conj())[0].conj()
+            answers[1] = zgetrs(lu, pivots, force)[0]
+    np.conjugate(result[:, 1], out=result[:, 1])
     return result
 
 
@@ -107,17 +111,20 @@ def _blocks(
     system: PeriodicSystem, values: np.ndarray, rows: np.ndarray, columns: np.ndarray
 ) -> np.ndarray:
     """Return H(λ) between harmonics, rows (s, a) and columns (t, b), shape (…, j, a k, b k)."""
-    sides, counts = max(len(rows), len(columns)), (rows.shape[1], columns.shape[1])
-    shape = sides, len(values), counts[0], system.size, counts[1], system.size
+    counts, size, speeds = (rows.shape[1], columns.shape[1]), system.size, 1j * system.speed
+    sides = max(len(rows), len(columns))
+    rows, columns = (X if len(X) > 1 else X.repeat(sides, 0) for X in (rows, columns))
+    if counts == (1, 1) and np.array_equal(rows, columns):
+        rates = (values + speeds * columns).ravel()
+        return system.dynamic(0, rates).reshape(sides, len(values), size, size)
+    shape = sides, len(values), counts[0], size, counts[1], size
     result = np.zeros(shape, dtype=complex)
     for side, row, column in np.ndindex(sides, *counts):
-        m = columns[side % len(columns), column]
-        n = int(rows[side % len(rows), row] - m)
-        given = [terms.get(n) for terms in (system.M, system.D, system.K)]
-        if any(X is not None for X in given):
-            rates = values + 1j * m * system.speed
-            result[side, :, row, :, column] = dynamic_matrices(given, rates)
-    return result.reshape(sides, len(values), *(count * system.size for count in counts))
+        m = columns[side, column]
+        block = system.dynamic(int(rows[side, row] - m), values + speeds * m)
+        if block is not None:
+            result[side, :, row, :, column] = block
+    return result.reshape(sides, len(values), *(count * size for count in counts))
 
 
 def _repeated(ports: np.ndarray, count: int) -> np.ndarray:

@@ -10,12 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.periodic.periodic_system import (
-    PeriodicSystem,
-    Terms,
-    dynamic_matrices,
-    times,
-)
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, times
 
 
 def hill_matrices(
@@ -69,8 +64,7 @@ def feedback(
             excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
         if np.ndim(excited) == 0:
             continue
-        given = system.M[0], system.D[0], system.K[0]
-        dynamic = dynamic_matrices(given, values + 1j * n * system.speed)
+        dynamic = system.dynamic(0, values + 1j * n * system.speed)
         answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
         answers[n] = answer
         for m in range(len(orders)):

@@ -18,7 +18,6 @@ from exudyn_rotor.threads import shared
 OFF_ROOT = 1e-9
 _MOST_STEPS = 5
 _MOST_ENTRIES = 1_000_000  # of the matrices of motions that are iterated at once
-_PARTS = 4  # that threads share
 
 
 def nearest_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
@@ -100,20 +99,18 @@ def moved_together(
     forces, loads = inertia_and_slopes(shapes)
     both = np.stack([loads, forces]).transpose(1, 3, 0, 2)[..., None]
     answers = np.zeros_like(both)
-    given = _dynamic(systems, shifted, wanted), both[wanted]
-    parts = zip(*(np.array_split(X, _PARTS) for X in given), strict=True)
-    found = shared(lambda part: harmonic_chain.on_both_sides(*part), list(parts))
-    answers[wanted] = np.concatenate(found)
+    masses = np.broadcast_to(systems.M, systems.D.shape)
+
+    def solve(place: int) -> None:
+        terms, kept = (masses[place], systems.D[place], systems.K[place]), wanted[place]
+        matrices = dynamic_matrices(terms, shifted[place, kept])
+        answers[place, kept] = harmonic_chain.on_both_sides(matrices, both[place, kept])
+
+    # one system after the other: its matrices stay in the cache
+    shared(solve, np.flatnonzero(np.any(wanted, axis=1)))
     z, w = answers[..., 0].transpose(2, 0, 3, 1)
-    a, b, c = (np.sum(w.conj() * X, axis=1) for X in (*inertia_and_slopes(z), loads))
+    a, b, c = (np.einsum("skj,skj->sj", w.conj(), X) for X in (*inertia_and_slopes(z), loads))
     return np.where(wanted, shifted + nearest_root(a, b, c), values)
-
-
-def _dynamic(systems: ConstantSystems, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return ``λ²M + λD + K`` of systems at those λ (s, j) that are wanted."""
-    terms = zip(np.broadcast_to(systems.M, systems.D.shape), systems.D, systems.K, strict=True)
-    each = zip(terms, values, wanted, strict=True)
-    return np.concatenate([dynamic_matrices(given, few[kept]) for given, few, kept in each])
 
 
 def settled(

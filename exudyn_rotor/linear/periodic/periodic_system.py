@@ -97,12 +97,41 @@ class PeriodicSystem:
         """Orthonormal motions that coefficients which are not constant act on and by, (k, p)."""
         terms = [X for terms in (self.M, self.D, self.K) for n, X in terms.items() if n > 0]
         sides = [part for X in terms for Y in (X, X.T) for part in (Y.real, Y.imag)]
-        scaled = [X / np.abs(X).max() for X in sides if np.any(X)]
-        if not scaled:
-            return np.zeros((self.size, 0))
-        Q, R, _ = la.qr(np.hstack(scaled), mode="economic", pivoting=True)
-        sizes = np.abs(np.diagonal(R))
-        return Q[:, sizes > self.size * EPSILON * sizes[0]]
+        found, noise = np.zeros((self.size, 0)), self.size * EPSILON
+        for X in sides:
+            size = np.abs(X).max(initial=0.0)
+            if size == 0.0:
+                continue
+            left = X / size - found @ (found.T @ (X / size))  # most act at places that are known
+            if np.abs(left).max() > noise:
+                found = _range(np.hstack([found, X / size]), noise)
+        return found
+
+    @cached_property
+    def between_ports(self) -> PeriodicSystem:
+        """The equations of these motions, by which harmonics are coupled."""
+        return self.projected(self.ports)
+
+    @cached_property
+    def _together(self) -> dict[int, tuple[list[int], np.ndarray]]:
+        """Of each Fourier term the matrices that there are as rows, and which of M, D, K these."""
+        given = {n for terms in (self.M, self.D, self.K) for n in terms}
+        result = {}
+        for n in given:
+            entries = [terms.get(n) for terms in (self.M, self.D, self.K)]
+            kept = [i for i, X in enumerate(entries) if X is not None]
+            result[n] = kept, np.stack([entries[i].ravel() for i in kept])
+        return result
+
+    def dynamic(self, n: int, rates: np.ndarray) -> np.ndarray | None:
+        """Return ``λ²M + λD + K`` of Fourier term n at λ of `rates` (j,), shape (j, k, k).
+
+        None where there is no such term.
+        """
+        if n not in self._together:
+            return None
+        kept, given = self._together[n]
+        return _combined(_powers(rates)[:, kept], given, (self.size, self.size))
 
     def matrices(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return M, D, K at a spin angle [rad]."""
@@ -167,17 +196,33 @@ def times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return (matrices @ parts).view(complex)
 
 
-def dynamic_matrices(terms: Sequence[np.ndarray | None], rates: np.ndarray) -> np.ndarray:
-    """Return ``λ²M + λD + K`` at all λ of `rates` (j,), shape (j, k, k); None counts as zero."""
-    kept = [i for i, X in enumerate(terms) if X is not None]
-    powers = np.vander(rates, 3)[:, kept]
-    given = np.stack([terms[i].ravel() for i in kept])
+def dynamic_matrices(terms: Sequence[np.ndarray], rates: np.ndarray) -> np.ndarray:
+    """Return ``λ²M + λD + K`` of constant matrices at all λ of `rates` (j,), shape (j, k, k)."""
+    return _combined(_powers(rates), np.stack([X.ravel() for X in terms]), terms[0].shape)
+
+
+def _powers(rates: np.ndarray) -> np.ndarray:
+    """Return λ², λ and 1 of each rate, (j, 3)."""
+    powers = np.ones((len(rates), 3), dtype=complex)
+    powers[:, 0], powers[:, 1] = rates * rates, rates
+    return powers
+
+
+def _combined(powers: np.ndarray, given: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return the sums of matrices, the rows of `given`, by the weights `powers` (j, m)."""
     if np.iscomplexobj(given):
         result = powers @ given
     else:
-        result = np.empty((len(rates), given.shape[1]), dtype=complex)
+        result = np.empty((len(powers), given.shape[1]), dtype=complex)
         result.real, result.imag = powers.real @ given, powers.imag @ given
-    return result.reshape(len(rates), *terms[kept[0]].shape)
+    return result.reshape(-1, *shape)
+
+
+def _range(X: np.ndarray, noise: float) -> np.ndarray:
+    """Return orthonormal columns that span those of X but for noise, relative to the largest."""
+    Q, R, _ = la.qr(X, mode="economic", pivoting=True)
+    sizes = np.abs(np.diagonal(R))
+    return Q[:, sizes > noise * sizes[0]]
 
 
 def fold(exponents: np.ndarray, base: float) -> np.ndarray:

@@ -179,8 +179,8 @@ LINEAR_PERIODIC = [
         ),
         (
             "left vector of the transpose",
-            "force.conj())[0].conj()",
-            "force)[0]",
+            "loads[:, 1].conj(), result",
+            "loads[:, 1], result",
         ),
         ("middle with one side", "(X.sum(axis=1, keepdims=True) for X", "(X[:, :1] for X"),
         (
