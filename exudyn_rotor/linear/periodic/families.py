@@ -8,7 +8,6 @@ from exudyn_rotor.linear.periodic.harmonics import shifted
 
 # distance of the exponents of two members of a family, as a share of their step
 _SAME_FAMILY = 1e-3
-Mode = tuple[complex, np.ndarray]
 
 
 def one_of_each_pair(
@@ -37,54 +36,59 @@ def one_of_each_pair(
     own : ndarray of bool, shape (j,), optional
         Motions known to be of families that are their own conjugates.
     """
-    size, step = shapes.shape[1], abs(base)
+    size, count, distance = shapes.shape[1], len(values), _SAME_FAMILY * abs(base)
+    # places of motions, and behind them those of their conjugates
+    raised = _steps(values[:, None], np.concatenate([values, values.conj()]), base, distance)
+    turned = _steps(values.conj(), values, base, min(resolution, distance))
+
+    def copy(place: int, steps: int) -> np.ndarray:
+        shape = shapes[:, :, place % count]
+        return shifted(shape if place < count else _conjugate(shape), steps).ravel()
+
+    def is_own(place: int) -> bool:
+        if values[place].imag == 0.0 or (own is not None and own[place]):
+            return True
+        steps = turned[place]
+        return bool(steps) and _in_span(copy(count + place, 0), [copy(place, steps)])
+
+    # those accepted, and their conjugates where these are other families
+    known = np.zeros(2 * count, dtype=bool)
     accepted: list[int] = []
     alone: list[bool] = []  # where a family is its own conjugate
-    # those accepted, and their conjugates where these are other families
-    known_values = np.zeros(2 * size + 1, dtype=complex)
-    known_shapes = np.zeros((2 * size + 1, *shapes.shape[:2]), dtype=complex)
-    weight = 0
     for index in order:
-        if weight >= 2 * size:
+        if np.count_nonzero(known) >= 2 * size:
             break
-        mode = values[index], shapes[:, :, index]
-        if _is_known(mode, known_values[:weight], known_shapes[:weight], base, _SAME_FAMILY * step):
+        near = np.flatnonzero(known & (raised[index] != 0))
+        copies = [copy(place, raised[index, place]) for place in near]
+        if copies and _in_span(shapes[:, :, index].ravel(), copies):
             continue
-        other = _conjugate(mode)
-        own_pair = (
-            mode[0].imag == 0.0
-            or (own is not None and own[index])
-            or _is_known(other, mode[0], mode[1][None], base, min(resolution, _SAME_FAMILY * step))
-        )
-        for value, shape in [mode] if own_pair else [mode, other]:
-            known_values[weight], known_shapes[weight] = value, shape
-            weight += 1
         accepted.append(int(index))
-        alone.append(own_pair)
-    return np.array(accepted) if weight == 2 * size else None, np.array(alone, dtype=bool)
+        alone.append(is_own(index))
+        known[index], known[count + index] = True, not alone[-1]
+    found = np.array(accepted) if np.count_nonzero(known) == 2 * size else None
+    return found, np.array(alone, dtype=bool)
 
 
-def _conjugate(mode: Mode) -> Mode:
-    """Return the conjugate motion: λ̄ with the harmonics conj(X_−m)."""
-    return np.conj(mode[0]), mode[1][::-1].conj()
+def _conjugate(shape: np.ndarray) -> np.ndarray:
+    """Return the harmonics conj(X_−m) of the conjugate motion, of λ̄."""
+    return shape[::-1].conj()
 
 
-def _is_known(
-    mode: Mode, values: np.ndarray, shapes: np.ndarray, base: float, distance: float
-) -> bool:
-    """Return whether a motion is in the span of known ones with shifted harmonics.
+def _steps(values: np.ndarray, others: np.ndarray, base: float, distance: float) -> np.ndarray:
+    """Return by how many pΩ exponents are above others, where that is so but for a `distance`.
 
-    Their exponents may be `distance` apart. At the same eigenvalue, without a shift, it is another
-    motion: a repeated eigenvalue.
+    0 elsewhere: at the same eigenvalue, without a shift, it is another motion, a repeated one.
     """
-    value, vector = mode
-    apart = np.atleast_1d(value - values)
+    apart = values - others
     steps = np.rint(apart.imag / base)
-    near = (steps != 0.0) & (np.abs(apart - 1j * steps * base) <= distance)
-    copies = [shifted(shapes[i], int(steps[i])).ravel() for i in np.flatnonzero(near)]
+    return np.where(np.abs(apart - 1j * steps * base) <= distance, steps, 0.0).astype(int)
+
+
+def _in_span(vector: np.ndarray, copies: list[np.ndarray]) -> bool:
+    """Return whether a motion is in the span of copies of known ones, of which much is left."""
     basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
     if not basis:
         return False
     span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)
     span = span[:, lengths > 0.1]
-    return np.linalg.norm(span.conj().T @ vector.ravel()) ** 2 > 0.5
+    return np.linalg.norm(span.conj().T @ vector) ** 2 > 0.5

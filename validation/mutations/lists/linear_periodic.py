@@ -90,8 +90,8 @@ LINEAR_PERIODIC = [
         "test_hill.py::test_a_mass_that_one_direction_alone_holds",
         (
             "two free copies taken for a motion and its conjugate",
-            "[mode] if own_pair else [mode, other]",
-            "[mode, other]",
+            "known[count + index] = True, not alone[-1]",
+            "known[count + index] = True, True",
         ),
     ),
     *mutations(
