@@ -48,7 +48,7 @@ class _Dynamic(NamedTuple):
 
     def among(self, held: np.ndarray) -> _Dynamic:
         """Return the matrices of some coordinates."""
-        return _Dynamic(*(X[np.ix_(held, held)] for X in self))
+        return _Dynamic(*np.stack(self)[:, held[:, None], held])
 
 
 def critical_shifts(

@@ -6,14 +6,13 @@ turning frame (:mod:`exudyn_rotor.reduction`), as far as its own columns do not 
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from exudyn_rotor.linear.models.protocol import Mesh
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor, without_supports
 from exudyn_rotor.reduction.other_basis import in_basis
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.threads import one_thread
@@ -43,9 +42,10 @@ class FinerRotor(LinearRotor):
         finer = finer_rotor(model.rotor)
         if finer is None:
             return None
-        with warnings.catch_warnings():  # said where the model was made
-            warnings.filterwarnings("ignore", message="the centre of mass is")
-            finer = replace(cls.of(finer, model.supports, model.stiffening), given=model)
+        invariants, terms, level = without_supports(finer, model.stiffening)
+        spin = None if model.spin is None else model.spin.wider(finer.size - model.size)
+        parts = model.supports, invariants, terms, spin, model.free_motions, level
+        finer = cls(finer, *parts, given=model)
         if np.any(model.invariants.D):
             return finer
         # of its own or left out, as for critical speeds

@@ -89,7 +89,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         """
         check_interfaces(supports, rotor.interfaces)
         with one_thread():
-            invariants, terms, level = _without_supports(rotor, stiffening)
+            invariants, terms, level = without_supports(rotor, stiffening)
             linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
             if ModeKind.SPIN in rotor.kinds:
                 spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
@@ -277,7 +277,7 @@ _known: WeakKeyDictionary[ReducedRotor, dict[str, tuple[Invariants, SpinTerms, s
 _known = WeakKeyDictionary()
 
 
-def _without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants, SpinTerms, str]:
+def without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants, SpinTerms, str]:
     """Return what supports do not change: invariants, terms and level; made once for each level."""
     known = _known.setdefault(rotor, {})
     if stiffening not in known:

@@ -20,7 +20,7 @@ that look alike from the rotor.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -116,6 +116,11 @@ class Spin:
         shifts = tuple(unmoved if coupled else np.r_[-u[:3], 0.0, 0.0, 0.0] for u in turned)
         bends = tuple(u[5] * np.array([-u[1], u[0], 0.0]) for u in turned)
         return cls(motion, momentum, shifts, bends, coupled, not (coupled or twisted))
+
+    def wider(self, more: int) -> Spin:
+        """Return the spin beside further coordinates that do not move it."""
+        parts = {name: np.pad(getattr(self, name), (0, more)) for name in ("motion", "momentum")}
+        return replace(self, **parts)
 
     def amount(self, X: np.ndarray) -> np.ndarray:
         """Return the spin a of the columns of X, shape (k,)."""
