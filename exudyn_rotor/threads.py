@@ -86,21 +86,16 @@ if hasattr(os, "register_at_fork"):  # a forked process has none of the threads
     os.register_at_fork(after_in_child=_helpers.cache_clear)
 
 
-def shared(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Return ``[function(item) for item in items]``, on as many threads as BLAS may use.
-
-    Each call has one thread of BLAS. It is quicker only where the function spends its time outside
-    of Python. This thread does what is to be done :func:`meanwhile` before it takes items.
-    """
-    return _spread(function, items, getattr(_HERE, "first", None))
-
-
-def _spread(
+def shared(
     function: Callable[[Item], Result],
     items: Sequence[Item],
     first: Callable[[], object] | None = None,
 ) -> list[Result]:
-    """Return what :func:`shared` does; this thread calls `first` before it takes items."""
+    """Return ``[function(item) for item in items]``, on as many threads as BLAS may use.
+
+    Each call has one thread of BLAS. It is quicker only where the function spends its time outside
+    of Python. This thread calls `first` before it takes items.
+    """
     results, left = [None] * len(items), iter(range(len(items)))
 
     def work() -> None:
@@ -137,14 +132,14 @@ def in_turns(function: Callable[[Item], Result], items: Sequence[Item]) -> list[
             finally:
                 del _HERE.turn
 
-    return _spread(work, items)
+    return shared(work, items)
 
 
 @contextmanager
 def meanwhile(
     function: Callable[..., Result], *arguments: object
 ) -> Iterator[Callable[[], Result]]:
-    """Let a function run in Python while others help this thread by :func:`shared` or :func:`eig`.
+    """Let a function run in Python while other threads solve eigenproblems by :func:`eig`.
 
     What the context gives returns the result, which is computed then where no others did. In
     contexts within one another the outer function runs before.
@@ -152,7 +147,6 @@ def meanwhile(
     result, before = cache(partial(function, *arguments)), getattr(_HERE, "first", None)
 
     def first() -> None:
-        _HERE.first = None  # once
         if before is not None:
             before()
         with suppress(Exception):  # which comes up where the result is asked for
@@ -181,6 +175,6 @@ def eig(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if matrices.ndim < 3 or matrices.size < _WORTH or count == 1:
             return np.linalg.eig(matrices)
         parts = np.array_split(matrices, _PARTS * count)
-        found = shared(np.linalg.eig, parts)
+        found = shared(np.linalg.eig, parts, getattr(_HERE, "first", None))
     values, vectors = zip(*found, strict=True)
     return np.concatenate(values), np.concatenate(vectors)

@@ -168,9 +168,9 @@ def campbell(
     solved, tracks = _lowest(solved, tracks, count, seen)
     inertial = np.array([entry.inertial for entry in solved])
     chosen = judged(inertial, values) if modes is None else np.full(inertial.shape, True)
-    with meanwhile(_splits, solved, values, content, space) as splits_made:
-        shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
-    result = _collected(values, solved, tracks, model, (shifts, splits_made(), frame))
+    shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
+    splits = _splits(solved, values, content, space)
+    result = _collected(values, solved, tracks, model, (shifts, splits, frame))
     _warn_of_basis(basis, result)
     return result
 
