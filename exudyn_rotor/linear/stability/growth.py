@@ -21,7 +21,7 @@ from exudyn_rotor.linear.periodic.exponents import METHODS, descending
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.inverse_iteration import moved
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
-from exudyn_rotor.threads import one_thread
+from exudyn_rotor.threads import in_turns, one_thread
 
 _MODES = 10  # of a large SolidRotor
 _DRIFT = 3.0  # times its estimate that a motion may drift by what the equations neglect
@@ -83,6 +83,12 @@ class GrowthAt:
             return growth
         order = descending(fold(modes.values, growth.base))
         return growth._replace(motions=modes.columns(order))
+
+    def at_all(self, speeds: Sequence[float]) -> list[Growth]:
+        """Return the growth at speeds; eigenproblems in threads where any may make equations."""
+        if isinstance(self.space, WholeSpace) and self.space.can_be_sent:
+            return in_turns(self, speeds)
+        return [self(speed) for speed in speeds]
 
     @one_thread()
     def rates(self, growth: Growth, speed: float, step: float) -> np.ndarray | None:

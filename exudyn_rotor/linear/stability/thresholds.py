@@ -23,7 +23,6 @@ from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
 from exudyn_rotor.sweep import ascending_from_zero
-from exudyn_rotor.threads import in_turns
 
 _ROOT = 1e-8  # of the largest parameter
 # share of λ or Ω, times the change by the basis: motions so near change with the root of it
@@ -168,8 +167,7 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     made = _OverSpeed.of(target, values[-1], given)
     search = Search(made, values[-1])
     points = [float(value) for value in values]
-    if not made.task.space.is_shared:
-        search.known |= zip(points, in_turns(made.growth, points), strict=True)
+    search.known |= zip(points, made.task.at_all(points), strict=True)
     unstable = [search.unstable(point) for point in points]
     edges = [values[0]] if unstable[0] else []
     found = search.changes(_ROOT * values[-1])
