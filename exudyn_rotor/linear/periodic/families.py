@@ -38,7 +38,8 @@ def one_of_each_pair(
     """
     size, count, distance = shapes.shape[1], len(values), _SAME_FAMILY * abs(base)
     # places of motions, and behind them those of their conjugates
-    raised = _steps(values[:, None], np.concatenate([values, values.conj()]), base, distance)
+    every = np.concatenate([values, values.conj()])
+    raised = _steps(values[order][:, None], every, base, distance)
     turned = _steps(values.conj(), values, base, min(resolution, distance))
 
     def copy(place: int, steps: int) -> np.ndarray:
@@ -55,11 +56,10 @@ def one_of_each_pair(
     known = np.zeros(2 * count, dtype=bool)
     accepted: list[int] = []
     alone: list[bool] = []  # where a family is its own conjugate
-    for index in order:
+    for index, steps in zip(order, raised, strict=True):
         if np.count_nonzero(known) >= 2 * size:
             break
-        near = np.flatnonzero(known & (raised[index] != 0))
-        copies = [copy(place, raised[index, place]) for place in near]
+        copies = [copy(place, steps[place]) for place in np.flatnonzero(known & (steps != 0))]
         if copies and _in_span(shapes[:, :, index].ravel(), copies):
             continue
         accepted.append(int(index))

@@ -100,7 +100,7 @@ class PeriodicSystem:
         found, noise = np.zeros((self.size, 0)), self.size * EPSILON
         for X in sides:
             size = np.abs(X).max(initial=0.0)
-            if size == 0.0:
+            if size == 0.0 or found.shape[1] == self.size:
                 continue
             left = X / size - found @ (found.T @ (X / size))  # most act at places that are known
             if np.abs(left).max() > noise:

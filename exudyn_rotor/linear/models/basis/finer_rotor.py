@@ -42,7 +42,8 @@ class FinerRotor(LinearRotor):
         finer = finer_rotor(model.rotor)
         if finer is None:
             return None
-        invariants, terms, level = without_supports(finer, model.stiffening)
+        with one_thread():
+            invariants, terms, level = without_supports(finer, model.stiffening)
         spin = None if model.spin is None else model.spin.wider(finer.size - model.size)
         parts = model.supports, invariants, terms, spin, model.free_motions, level
         finer = cls(finer, *parts, given=model)
