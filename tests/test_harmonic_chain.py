@@ -66,6 +66,15 @@ def test_only_motions_at_periodic_coefficients_are_coupled():
     assert system_of((1, 2)).ports.shape == (SIZE, PORTS)
 
 
+def test_ports_are_where_any_coefficient_acts_or_is_acted_on():
+    unit = np.eye(SIZE)
+    terms = {2: 1e-9 * np.outer(unit[0], unit[0])}, {2: 1e9j * np.outer(unit[2], unit[1])}
+    D, K = ({0: unit, **part, -2: part[2].conj()} for part in terms)
+    ports = PeriodicSystem(3.0, {0: unit}, D, K).ports
+    apart = ports @ ports.T - np.diag([1.0, 1.0, 1.0, 0.0, 0.0])
+    assert np.abs(apart).max() <= 10.0 * EPSILON
+
+
 def test_systems_that_stand_still_are_iterated_together():
     system, unit, none = system_of(()), np.eye(SIZE), np.zeros((SIZE, SIZE))
     M, D, K = (terms[0] for terms in (system.M, system.D, system.K))

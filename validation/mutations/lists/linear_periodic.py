@@ -195,6 +195,16 @@ LINEAR_PERIODIC = [
         ),
     ),
     *mutations(
+        "linear/periodic/periodic_system.py",
+        "test_harmonic_chain.py",
+        (
+            "ports of the first coefficient alone",
+            "if np.abs(left).max() > noise",
+            "if not found.size",
+        ),
+        ("ports that only act", "for Y in (X, X.T)", "for Y in (X,)"),
+    ),
+    *mutations(
         "linear/periodic/harmonics.py",
         "test_hill.py",
         (
