@@ -15,7 +15,7 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
-from exudyn_rotor.linear.periodic.fundamental import floquet_motions, sum_of_exponents
+from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import solve_hill
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
@@ -25,6 +25,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     UnconvergedError,
     fold,
 )
+from exudyn_rotor.linear.periodic.remainder import check_motions
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # distance of exponents, over the base, and cosine of shapes, from which families are conjugate
@@ -130,28 +131,8 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
         return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
 
     found = solve_hill(system, choose, tolerance).with_conjugates()
-    _check_sum(system, found, tolerance)
+    check_motions(system, found, gone(found.values, system.speed), tolerance)
     return found
-
-
-def _check_sum(system: PeriodicSystem, found: HillMotions, tolerance: float) -> None:
-    """Refuse exponents whose sum is not that of Liouville's formula: some err by more than is told.
-
-    Where motions or coefficients change by many powers of ten within a period, copies hardly
-    differ, and rounding moves them by more than to first order. Of motions that are gone within a
-    turn, which are not waited for, the error is not known, nor what it would make of the sum.
-    """
-    if not np.all(np.isfinite(found.sizes)):
-        return
-    expected, error = sum_of_exponents(system)
-    apart = abs(fold(np.sum(found.values) - expected, abs(system.base)))
-    allowed = np.sum(found.bounds + tolerance * found.sizes) + found.resolution + error
-    if apart > allowed:
-        raise UnconvergedError(
-            f"Hill's method at {system.speed:g} rad/s: the sum of the exponents errs by "
-            f"{apart:.1e} 1/s, where {allowed:.1e} 1/s is expected: motions change by too many "
-            "powers of ten within a turn; use method='auto', or a larger speed (or 0)"
-        )
 
 
 def _without_conjugates(

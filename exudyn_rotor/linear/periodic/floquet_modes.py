@@ -24,10 +24,13 @@ from exudyn_rotor.linear.periodic.families import one_of_each_pair
 from exudyn_rotor.linear.periodic.hill import solve_hill
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+from exudyn_rotor.linear.periodic.remainder import check_motions
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # decay over Ω above which a motion is gone before the coefficients change
 _GONE = 100.0
+# times the rounding of exponents within which that of their vectors may mix them
+_MIXED = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +86,10 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
-    found = solve_hill(system, partial(_one_of_each_pair, system=system), tolerance)
+    found = solve_hill(system, partial(_one_of_each_family, speed=system.speed), tolerance)
+    every = found.with_conjugates()
+    check_motions(system, every, gone(every.values, system.speed), tolerance)
+    found = found.columns(_for_all(system, found))
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
 
@@ -114,22 +120,26 @@ def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | Non
     return np.concatenate([columns, columns[~alone] + 1])  # conjugates follow each other
 
 
-def _one_of_each_pair(solution: HillSolution, system: PeriodicSystem) -> Chosen | None:
-    """Choose one motion for each pair of Floquet families; None where some are not found."""
-    speed = system.speed
+def _one_of_each_family(solution: HillSolution, speed: float) -> Chosen | None:
+    """Choose one motion for each Floquet family and its conjugate; None where some are not found.
+    """
     values, shapes, columns, alone = _apart(solution, speed)
     if columns is None:
         return None
-    real = columns[alone]
+    values = values[columns]
+    sizes = np.maximum(np.abs(values), solution.step * abs(speed))
+    # what is zero to rounding has no error of truncation that could be told
+    sizes[(values == 0.0) | gone(values, speed)] = np.inf
+    return Chosen(columns, values, shapes[:, :, columns], sizes, ~alone)
+
+
+def _for_all(system: PeriodicSystem, found: HillMotions) -> np.ndarray:
+    """Return which motions stand for all: of those without a conjugate the less damped half."""
+    values, real = found.values, np.flatnonzero(~found.paired)
     ranks = less_damped(values[real][None], system.M[0].real, [_stiffnesses(system)])[0]
     real = real[np.argsort(-ranks, kind="stable")][: len(real) // 2]
-    columns = np.concatenate([columns[~alone], real])
-    order = np.lexsort((values[columns].real, values[columns].imag))
-    columns, paired = columns[order], order < np.count_nonzero(~alone)
-    sizes = np.maximum(np.abs(values[columns]), solution.step * abs(speed))
-    # what is zero to rounding has no error of truncation that could be told
-    sizes[(values[columns] == 0.0) | gone(values[columns], speed)] = np.inf
-    return Chosen(columns, values[columns], shapes[:, :, columns], sizes, paired)
+    kept = np.concatenate([np.flatnonzero(found.paired), real])
+    return kept[np.lexsort((values[kept].real, values[kept].imag))]
 
 
 def _apart(
@@ -141,7 +151,9 @@ def _apart(
     lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
     shapes = solution.shapes / lengths
     for group in repeated(values, resolution):
-        shapes[:, :, group] = _unmixed(shapes[:, :, group], orders)
+        mixed = min(resolution, _MIXED * solution.bounds[group].max())
+        for few in (group[part] for part in repeated(values[group], mixed)):
+            shapes[:, :, few] = _unmixed(shapes[:, :, few], orders)
     if solution.pairs is not None:
         return values, shapes, *solution.pairs
     center = np.flatnonzero(orders == 0)[0]

@@ -22,7 +22,6 @@ MOST_STEPS = 2**14
 _CHUNK = 128
 # share of the largest entry that stands for a multiplier of which rounding leaves nothing
 _LEAST = EPSILON**2
-_SAMPLES = 16  # a period and harmonic, of the mean of what is not a polynomial of the coefficients
 
 
 def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
@@ -62,26 +61,9 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
     )
 
 
-def sum_of_exponents(system: PeriodicSystem) -> tuple[float, float]:
-    """Return the sum of the real parts of all 2k exponents, and its error [1/s].
-
-    It is ``−tr M⁻¹D``, the mean over a period: by Liouville's formula the determinant of the
-    fundamental matrix grows with the trace of the state matrix. Where M is periodic, the means of
-    half and of all samples tell the error. Source: Chicone, Ordinary Differential Equations with
-    Applications (2006), Ch. 2.
-    """
-    if len(system.M) == 1:
-        return -np.trace(np.linalg.solve(system.M[0].real, system.D[0].real)), 0.0
-    count = _SAMPLES * (1 + system.order // system.step)
-    angles = 2.0 * np.pi / (system.step * count) * np.arange(count)
-    M, D, _ = _sampled(system, angles)
-    traces = np.trace(np.linalg.solve(M, D), axis1=-2, axis2=-1)
-    return -traces.mean(), abs(traces.mean() - traces[::2].mean())
-
-
 def _scale(system: PeriodicSystem) -> np.ndarray:
     """Return max|λ| at θ = 0 for x, 1 for ẋ, shape (2k,)."""
-    fastest = np.abs(np.linalg.eigvals(_state_matrix(*system.matrices(0.0)))).max()
+    fastest = np.abs(np.linalg.eigvals(state_matrix(*system.matrices(0.0)))).max()
     return np.repeat([fastest or 1.0, 1.0], system.size)
 
 
@@ -93,7 +75,7 @@ def _magnus(system: PeriodicSystem, period: float, steps: int) -> np.ndarray:
     for first in range(0, steps, _CHUNK):
         starts = np.arange(first, min(first + _CHUNK, steps))
         angles = system.speed * h * (starts[None, :] + nodes[:, None])
-        A1, A2, A3 = h * _state_matrix(*_sampled(system, angles))
+        A1, A2, A3 = h * state_matrix(*sampled(system, angles))
         a1, a2, a3 = A2, np.sqrt(15.0) / 3.0 * (A3 - A1), 10.0 / 3.0 * (A3 - 2.0 * A2 + A1)
         c1 = _commutator(a1, a2)
         c2 = -_commutator(a1, 2.0 * a3 + c1) / 60.0
@@ -103,7 +85,7 @@ def _magnus(system: PeriodicSystem, period: float, steps: int) -> np.ndarray:
     return fundamental
 
 
-def _sampled(system: PeriodicSystem, angles: np.ndarray) -> list[np.ndarray]:
+def sampled(system: PeriodicSystem, angles: np.ndarray) -> list[np.ndarray]:
     """Return M, D, K at many angles, each (*angles.shape, k, k)."""
     return [
         sum(np.exp(1j * n * angles)[..., None, None] * X for n, X in terms.items()).real
@@ -139,7 +121,7 @@ def floquet_motions(
     return fold(values, base), states.astype(complex) / scale[:, None], bounds
 
 
-def _state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
+def state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
     """Return A of ``ż = A z`` with ``z = (x, ẋ)``; any leading dimensions."""
     size = M.shape[-1]
     A = np.zeros((*np.broadcast_shapes(M.shape, D.shape, K.shape)[:-2], 2 * size, 2 * size))

@@ -78,6 +78,12 @@ class HillMotions:
         """The largest of them."""
         return float(np.max(self.errors, initial=0.0))
 
+    def columns(self, chosen: np.ndarray) -> HillMotions:
+        """Return some of the motions."""
+        names = ("values", "shapes", "sizes", "rounding", "shifts", "paired")
+        each = {name: getattr(self, name)[..., chosen] for name in names}
+        return replace(self, outer={n: X[:, chosen] for n, X in self.outer.items()}, **each)
+
     def with_conjugates(self) -> HillMotions:
         """Return the motions, and then the conjugates for which they stand."""
 

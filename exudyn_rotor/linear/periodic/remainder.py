@@ -1,0 +1,321 @@
+"""Check of exponents: motions as coordinates, in which the equations are constant but for a rest.
+
+With the states ``(x, ẋ)`` of all 2k motions as columns of P(θ), ``z = P y`` turns ``ż = A z`` into
+
+    ẏ = (Λ + F) y,    Λ = diag λ,    F = −P⁻¹ (Ṗ + PΛ − AP)
+
+where F vanishes for exact motions. A periodic ``exp(λt) y(t)`` has ``(λ − λ_i + d/dt) y_i = Σ_j F_ij
+y_j``, and d/dt shifts by multiples of ipΩ alone: modulo these, every exact exponent is in a disc
+about a λ_i with the radius ``Σ_j f_ij w_j/w_i``, ``f_ij = max |F_ij|`` over a period, for any
+positive w. Discs that overlap hold as many as they are, as F may grow from zero. Radii r that are
+allowed suffice for some w where no eigenvalue of ``f_ij/r_i`` exceeds 1 (Perron). It does not
+matter how motions were found, nor why they err: harmonics left out, rounding, one missing or given
+twice, which leaves P singular. Sources: Horn, Johnson, Matrix Analysis (2013), Sects. 6.1 and 8.3.
+
+F is of first order in what is wrong with motions, their exponents of second. Coordinates
+``y = (I + G) u`` with ``Ġ + GΛ − ΛG`` equal to F without its mean diagonal leave a rest of second
+order. Source: Bogoliubov, Mitropolsky, Samoilenko, Methods of Accelerated Convergence in Nonlinear
+Mechanics (1976), Ch. 4.
+
+Motions that are gone within a turn may have any harmonics: Hill's ones have to prove that they
+decay. Else, the directions that decay so fast with coefficients frozen at θ take their place, with
+Λ(θ) not diagonal: all such motions decay with α where ``Λ + Λᴴ + 2α`` has no positive eigenvalue at
+any angle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.periodic.fundamental import sampled, state_matrix
+from exudyn_rotor.linear.periodic.harmonics import shifted
+from exudyn_rotor.linear.periodic.hill_motions import HillMotions
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+
+_FINER = 2  # angles for each that the harmonics need
+_STEPS = 8
+# share of the radii allowed that is enough
+_ENOUGH = 0.5
+# share of a divisor from which on a harmonic of F is left to the rest
+_NEAR = 0.3
+# length of motions, over the largest, below which they are none of their own
+_DEPENDENT = 1e-6
+# of a column that stands for one: how it changes is not asked, but what comes of the others is
+_SMALL = 1e-4
+# share of the largest entry that keeps weights from zero
+_LEAST = 1e-16
+# relative distance of exponents that may share their motion
+_SAME = 1e-6
+
+
+def check_motions(
+    system: PeriodicSystem, found: HillMotions, gone: np.ndarray, tolerance: float
+) -> None:
+    """Refuse exponents that may be off by more than is told.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    found : HillMotions
+        All 2k motions, with the conjugates.
+    gone : ndarray of bool, shape (2k,)
+        Which are gone within a turn: these have to decay, with any rate.
+    tolerance : float
+        Error of λ that is allowed beside the bounds, relative to the sizes.
+
+    Raises
+    ------
+    UnconvergedError
+    """
+    allowed = tolerance * np.where(np.isfinite(found.sizes), found.sizes, abs(system.base))
+    allowed = np.where(gone, -0.5 * found.values.real, allowed + found.bounds)
+    motions = _States.of(system, found)
+    rest = motions.remainder(allowed).smallest()
+    if np.any(gone) and rest.share > 1.0:
+        rest = min(rest, motions.with_frozen(gone, allowed).smallest(), key=lambda X: X.share)
+    if not rest.share <= 1.0:
+        raise UnconvergedError(
+            f"Hill's method at {system.speed:g} rad/s: exponents may be off by {rest.share:.1e} "
+            "times what is allowed: motions change by too many powers of ten within a turn; use "
+            "method='auto', or a larger speed (or 0)"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Remainder:
+    """What is not constant in the equations ``ẏ = (Λ + F) y``.
+
+    Attributes
+    ----------
+    F : ndarray, shape (n, 2k, 2k)
+        At angles of one period; that of the last columns with Λ(θ) of the frozen directions.
+    values : ndarray, shape (2k,)
+        λ, of frozen directions a mean one.
+    allowed : ndarray, shape (s,)
+        Radii of the motions that are not frozen, which stand first.
+    base : float
+    shifts : ndarray, shape (s,)
+        Change of λ by the mean diagonal so far.
+    """
+
+    F: np.ndarray
+    values: np.ndarray
+    allowed: np.ndarray
+    base: float
+    shifts: np.ndarray
+
+    @cached_property
+    def _needed(self) -> tuple[float, np.ndarray]:
+        """The share of the radii that is needed, and weights w (2k,) for which it is enough."""
+        count = len(self.allowed)
+        fast, decay = self.F[:, count:, count:], np.inf
+        f = np.abs(self.F).max(axis=0)[:count, :count]
+        limits = self.allowed
+        if fast.size:
+            changing = fast + np.diag(self.values[count:])
+            decay = -np.linalg.eigvalsh(0.5 * (changing + _adjoint(changing))).max()
+            into = np.linalg.norm(self.F[:, :count, count:], axis=2).max(axis=0)
+            out_of = np.linalg.norm(self.F[:, count:, :count], axis=1).max(axis=0)
+            f = np.block([[f, into[:, None]], [out_of, np.zeros(1)]])
+            limits = np.append(limits, 0.5 * decay)
+        if not (decay > 0.0 and np.all(np.isfinite(f))):
+            return np.inf, np.ones(len(self.values))
+        relative = f / limits[:, None]
+        roots, vectors = np.linalg.eig(relative + _LEAST * relative.max(initial=_LEAST))
+        weights = np.abs(vectors[:, np.argmax(roots.real)])
+        repeated = np.repeat(weights, [1] * count + [len(self.values) - count] * bool(fast.size))
+        return float(roots.real.max()), repeated
+
+    @property
+    def share(self) -> float:
+        """Of the radii allowed that is needed, or that λ changes by."""
+        return max(self._needed[0], np.max(np.abs(self.shifts) / self.allowed, initial=0.0))
+
+    def smallest(self) -> _Remainder:
+        """Return the rest after as many changes of coordinates as it takes, or as help."""
+        best, now = self, self
+        for _ in range(_STEPS):
+            if best.share <= _ENOUGH:
+                break
+            try:
+                now = now._smaller()
+            except np.linalg.LinAlgError:
+                break
+            best = min(best, now, key=lambda X: X.share)
+        return best
+
+    def _smaller(self) -> _Remainder:
+        """Return the rest in coordinates (I + G) u."""
+        count, fixed, n = len(self.allowed), len(self.values), len(self.F)
+        weights = self._needed[1]
+        F = self.F * weights / weights[:, None]
+        harmonics = np.fft.fft(F, axis=0) / n
+        rates = 1j * self.base * np.fft.fftfreq(n, 1.0 / n)[:, None, None]
+        divisors = rates + self.values - self.values[:, None]
+        kept = np.abs(harmonics) >= _NEAR * np.abs(divisors)
+        kept[:, count:, count:] = True
+        kept[0, range(fixed), range(fixed)] = True
+        change = np.where(kept, 0.0, harmonics / np.where(kept, 1.0, divisors))
+        G, left = (n * np.fft.ifft(X, axis=0) for X in (change, np.where(kept, harmonics, 0.0)))
+        mean = np.where(np.arange(fixed) < count, np.diagonal(harmonics[0]), 0.0)
+        rest = F @ G - G * mean + left - np.diag(mean)
+        return replace(
+            self,
+            F=np.linalg.solve(np.eye(fixed) + G, rest),
+            values=self.values + mean,
+            shifts=self.shifts + mean[:count],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _States:
+    """States of motions at angles of one period.
+
+    Attributes
+    ----------
+    system : PeriodicSystem
+    angles : ndarray, shape (n,)
+    values : ndarray, shape (2k,)
+        λ.
+    P, E : ndarray, shape (n, 2k, 2k)
+        States ``(x, ẋ/s)`` and ``Ṗ + PΛ − AP``.
+    scale : float
+        s [1/s].
+    """
+
+    system: PeriodicSystem
+    angles: np.ndarray
+    values: np.ndarray
+    P: np.ndarray
+    E: np.ndarray
+    scale: float
+
+    @classmethod
+    def of(cls, system: PeriodicSystem, found: HillMotions) -> _States:
+        """Return the states of motions; of some that share their displacement, see below."""
+        values, shapes, at_rest = _independent(system, found)
+        reach = (int(found.orders[-1]) + system.order) // system.step
+        count = _FINER * (2 * reach + 1) + 1
+        angles = 2.0 * np.pi / (system.step * count) * np.arange(count)
+        waves = np.exp(1j * angles[:, None] * found.orders)
+
+        def at_angles(X: np.ndarray) -> np.ndarray:
+            flat = waves @ X.reshape(len(X), -1)
+            return flat.reshape(count, *X.shape[1:])
+
+        rates = values + 1j * system.speed * found.orders[:, None, None]
+        scale = max(np.abs(values).max(), abs(system.speed))
+        # of ``t exp(λt) p`` only the velocity p is kept, which is no solution by itself
+        moved = np.where(at_rest, 0.0, shapes)
+        x, v = at_angles(moved), at_angles(np.where(at_rest, shapes, rates * shapes))
+        a = at_angles(rates * np.where(at_rest, shapes, rates * shapes))
+        M, D, K = sampled(system, angles)
+        forced = a + np.linalg.solve(M, D @ v + K @ x)
+        P = np.concatenate([x, v / scale], axis=1)
+        E = np.concatenate([np.where(at_rest, -v, 0.0), forced / scale], axis=1)
+        lengths = np.sqrt(np.mean(np.linalg.norm(P, axis=1) ** 2, axis=0))
+        lengths = np.where(at_rest, 1.0 / _SMALL, 1.0) * np.where(lengths > 0.0, lengths, 1.0)
+        return cls(system, angles, values, P / lengths, E / lengths, scale)
+
+    def remainder(self, allowed: np.ndarray) -> _Remainder:
+        """Return what is left with these motions as coordinates."""
+        F = _solved(self.P, -self.E)
+        return _Remainder(F, self.values, allowed, self.system.base, np.zeros(len(allowed)))
+
+    def with_frozen(self, gone: np.ndarray, allowed: np.ndarray) -> _Remainder:
+        """Return what is left with frozen directions in the place of motions."""
+        base, size = self.system.base, self.system.size
+        scales = np.repeat([1.0, self.scale], size)
+        A = state_matrix(*sampled(self.system, self.angles)) / scales[:, None] * scales
+        Q = _fastest(A, int(gone.sum()))
+        count = len(self.angles)
+        rates = 1j * base * np.fft.fftfreq(count, 1.0 / count)[:, None, None]
+        E = np.fft.ifft(rates * np.fft.fft(Q, axis=0), axis=0) - A @ Q
+        P = np.concatenate([self.P[:, :, ~gone], Q], axis=2)
+        F = _solved(P, -np.concatenate([self.E[:, :, ~gone], E], axis=2))
+        kept, fast = np.count_nonzero(~gone), slice(np.count_nonzero(~gone), None)
+        if not np.all(np.isfinite(F)):
+            return _Remainder(F, self.values, allowed[~gone], base, np.zeros(kept))
+        means, turn = np.linalg.eig(F[:, fast, fast].mean(axis=0))
+        F[:, :, fast] = F[:, :, fast] @ turn
+        F[:, fast] = _solved(np.broadcast_to(turn, (count, *turn.shape)), F[:, fast])
+        F[:, fast, fast] -= np.diag(means)
+        values = np.append(self.values[~gone], means)
+        return _Remainder(F, values, allowed[~gone], base, np.zeros(kept))
+
+
+def _independent(
+    system: PeriodicSystem, found: HillMotions
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return λ and harmonics of motions, and which are at rest at the beginning.
+
+    Two exponents that are one with one motion ``exp(λt) p``, as those of a free motion, have
+    ``t exp(λt) p`` beside it, but for what follows it: it begins with a velocity alone. Of several
+    these are the ones that are damped least.
+    """
+    values, shapes = found.values.astype(complex), found.shapes.astype(complex)
+    shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
+    near = max(found.resolution, _SAME * abs(system.speed))
+    at_rest, left = np.zeros(len(values), dtype=bool), np.arange(len(values))
+    damping = (system.D[0] + system.D[0].T).real
+    while left.size:
+        apart = values[left] - values[left[0]]
+        steps = np.rint(apart.imag / system.base).astype(int)
+        alike = np.abs(apart - 1j * steps * system.base) <= near
+        group, left = left[alike], left[~alike]
+        if group.size < 2:
+            continue
+        copies = [shifted(shapes[:, :, i], n) for i, n in zip(group, steps[alike], strict=True)]
+        flat = np.array(copies).reshape(len(group), -1).T
+        span, sizes, _ = np.linalg.svd(flat, full_matrices=False)
+        rank = np.count_nonzero(sizes > _DEPENDENT * sizes[0])
+        if rank == group.size:
+            continue
+        span = span[:, :rank].reshape(*shapes.shape[:2], rank)
+        by_damping = np.einsum("hki,kl,hlj->ij", span.conj(), damping, span)
+        turned = span @ np.linalg.eigh(by_damping)[1]
+        values[group] = values[group[0]]
+        shapes[:, :, group] = np.concatenate([span, turned], axis=2)[:, :, : group.size]
+        at_rest[group[rank:]] = True
+    return values, shapes, at_rest
+
+
+def _fastest(A: np.ndarray, count: int) -> np.ndarray:
+    """Return directions (n, 2k, f) of the fastest decay of matrices A (n, 2k, 2k), periodic.
+
+    They turn as little as can be from angle to angle, and evenly what is missing after a period.
+    """
+    if count == A.shape[-1]:
+        return np.broadcast_to(np.eye(count), A.shape)
+    found = []
+    for X in A:
+        real = np.sort(np.linalg.eigvals(X).real)
+        limit = 0.5 * (real[count - 1] + real[count])
+        Q = la.schur(X, sort=lambda re, _=0.0, limit=limit: np.real(re) < limit)[1][:, :count]
+        found.append(Q @ _nearest_turn(Q.T @ found[-1]) if found else Q)
+    angles, axes = np.linalg.eig(_nearest_turn(found[0].T @ found[-1]).astype(complex))
+    shares = np.arange(len(A)) / len(A)
+    back = (axes * angles ** -shares[:, None, None]) @ np.linalg.inv(axes)
+    return np.array(found) @ back
+
+
+def _nearest_turn(X: np.ndarray) -> np.ndarray:
+    """Return the orthogonal matrix next to another."""
+    u, _, v = np.linalg.svd(X)
+    return u @ v
+
+
+def _solved(P: np.ndarray, E: np.ndarray) -> np.ndarray:
+    """Return ``P⁻¹E``; infinite where P is singular."""
+    try:
+        return np.linalg.solve(P, E)
+    except np.linalg.LinAlgError:
+        return np.full(np.broadcast_shapes(P.shape[:-2], E.shape[:-2]) + E.shape[-2:], np.inf)
+
+
+def _adjoint(X: np.ndarray) -> np.ndarray:
+    return X.conj().swapaxes(-1, -2)
