@@ -21,9 +21,14 @@ from exudyn_rotor.linear.periodic.eigenvalues import (
     repeated,
 )
 from exudyn_rotor.linear.periodic.families import one_of_each_pair
+from exudyn_rotor.linear.periodic.fundamental import propagated
 from exudyn_rotor.linear.periodic.hill import solve_hill
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
-from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import (
+    ConstantSystems,
+    PeriodicSystem,
+    UnconvergedError,
+)
 from exudyn_rotor.linear.periodic.remainder import check_motions
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
@@ -86,12 +91,26 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
-    found = solve_hill(system, partial(_one_of_each_family, speed=system.speed), tolerance)
-    every = found.with_conjugates()
-    check_motions(system, every, gone(every.values, system.speed), tolerance)
+    try:
+        choose = partial(_one_of_each_family, speed=system.speed)
+        found = _checked(system, solve_hill(system, choose, tolerance), tolerance)
+    except UnconvergedError as unconverged:
+        try:
+            found = _checked(system, propagated(system, tolerance), tolerance)
+        except UnconvergedError:
+            raise unconverged from None  # it says what to do
     found = found.columns(_for_all(system, found))
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
+
+
+def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:
+    """Return motions, one for each pair of exponents, that pass the check of all."""
+    every = found.with_conjugates()
+    if len(every.values) != 2 * system.size:
+        raise UnconvergedError(f"at {system.speed:g} rad/s: exponents are no pairs")
+    check_motions(system, every, gone(every.values, system.speed), tolerance)
+    return found
 
 
 def gone(values: np.ndarray, speed: float) -> np.ndarray:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.linear.periodic.harmonics import shifted
+from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import (
     EPSILON,
     PeriodicSystem,
@@ -20,6 +22,13 @@ from exudyn_rotor.linear.periodic.periodic_system import (
 
 MOST_STEPS = 2**14
 _CHUNK = 128
+_OF_A_WAVE = 2  # steps at least, of the highest harmonic
+_SAMPLES = 8  # angles of a period, doubled at least once
+# of the tolerance: share of a motion that its outermost harmonics may be
+_TAIL = 0.1
+# share of the base: exponents that are known no better, about zero, are not told from growth
+_TOLD = 1e-3
+_WHOLE = 1e-12
 # share of the largest entry that stands for a multiplier of which rounding leaves nothing
 _LEAST = EPSILON**2
 
@@ -37,12 +46,18 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
         If 2¹⁴ steps do not reach `tolerance`, relative to the largest entry in the state
         ``(x · max|λ|, ẋ)``.
     """
+    return _converged(system, tolerance)[0]
+
+
+def _converged(system: PeriodicSystem, tolerance: float) -> tuple[np.ndarray, int]:
+    """Return the fundamental matrix over one period, and the steps it takes."""
     if system.speed == 0.0:
         raise ValueError("floquet: at 0 rad/s the coefficients have no period")
     period = 2.0 * np.pi / abs(system.base or system.speed)
     scale = _scale(system)
     fastest = scale[0]
-    steps = max(8, 2 ** int(np.ceil(np.log2(0.5 * fastest * period + 1.0))))
+    most = max(0.5 * fastest * period, _OF_A_WAVE * system.order / max(system.step, 1))
+    steps = max(8, 2 ** int(np.ceil(np.log2(most + 1.0))))
     error, last = np.inf, None
     while steps <= MOST_STEPS:
         with np.errstate(over="ignore", invalid="ignore"):
@@ -53,7 +68,7 @@ def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
             scaled = scale[:, None] * np.array([fundamental, fundamental - last]) / scale
             error = np.abs(scaled[1]).max() / np.abs(scaled[0]).max() / 63.0
             if error <= tolerance:
-                return fundamental
+                return fundamental, steps
         steps, last = 2 * steps, fundamental
     raise UnconvergedError(
         f"floquet at {system.speed:g} rad/s: error {error:.1e} with {MOST_STEPS} steps a period, "
@@ -67,14 +82,16 @@ def _scale(system: PeriodicSystem) -> np.ndarray:
     return np.repeat([fastest or 1.0, 1.0], system.size)
 
 
-def _magnus(system: PeriodicSystem, period: float, steps: int) -> np.ndarray:
-    """Return the fundamental matrix by `steps` sixth-order Magnus steps."""
+def _magnus(
+    system: PeriodicSystem, period: float, steps: int, start: float = 0.0
+) -> np.ndarray:
+    """Return the fundamental matrix from the angle `start` by sixth-order Magnus steps."""
     h = period / steps
     fundamental = np.eye(2 * system.size)
     nodes = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])  # Gauss points
     for first in range(0, steps, _CHUNK):
         starts = np.arange(first, min(first + _CHUNK, steps))
-        angles = system.speed * h * (starts[None, :] + nodes[:, None])
+        angles = start + system.speed * h * (starts[None, :] + nodes[:, None])
         A1, A2, A3 = h * state_matrix(*sampled(system, angles))
         a1, a2, a3 = A2, np.sqrt(15.0) / 3.0 * (A3 - A1), 10.0 / 3.0 * (A3 - 2.0 * A2 + A1)
         c1 = _commutator(a1, a2)
@@ -106,8 +123,19 @@ def floquet_motions(
     `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of a
     multiplier that is smaller than its error δ the exponent is known from above alone:
     ``Re λ ≤ log(|μ| + δ)/T``.
+
+    Raises
+    ------
+    UnconvergedError
+        If none grows for sure, and it is not told whether another one does.
     """
-    fundamental = monodromy(system, tolerance)
+    return _motions_of(system, monodromy(system, tolerance), tolerance)
+
+
+def _motions_of(
+    system: PeriodicSystem, fundamental: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what :func:`floquet_motions` does."""
     scale = _scale(system)
     scaled = scale[:, None] * fundamental / scale
     multipliers, states = np.linalg.eig(scaled)
@@ -118,7 +146,64 @@ def floquet_motions(
     error = (len(scale) * system.rounding + tolerance) * np.linalg.norm(scaled)
     relative, decays = condition * error / np.abs(multipliers), np.abs(multipliers) < 1.0
     bounds = np.where(decays, np.log1p(relative), relative) * base / (2.0 * np.pi)
+    unknown = (np.abs(values.real) <= bounds) & (bounds > _TOLD * base)
+    if np.any(unknown) and not np.any(values.real > bounds):
+        raise UnconvergedError(
+            f"floquet at {system.speed:g} rad/s: it is not told whether a motion grows: its "
+            f"exponent may be off by {bounds[unknown].max():.1e} 1/s, as others change by many "
+            "powers of ten within a turn; use a larger speed (or 0)"
+        )
     return fold(values, base), states.astype(complex) / scale[:, None], bounds
+
+
+def propagated(system: PeriodicSystem, tolerance: float) -> HillMotions:
+    """Return the motions of Floquet's method as harmonics, one for each pair of exponents.
+
+    ``x(t) exp(−λt)`` at angles of one period, twice as many until the harmonics die away. Of each
+    motion the copy with the largest harmonic 0 is taken. Those that decay fast follow the
+    fundamental matrix with its error; :func:`.remainder.check_motions` tells if that is too much.
+    """
+    fundamental, steps = _converged(system, tolerance)
+    values, states, bounds = _motions_of(system, fundamental, tolerance)
+    base = abs(system.base)
+    count, tail = _SAMPLES, np.inf
+    while tail > tolerance * _TAIL and 2 * count <= max(steps, 2 * _SAMPLES):
+        count *= 2
+        shapes = _harmonics(system, values, states, count, max(1, steps // count))
+        sizes = np.linalg.norm(shapes, axis=1)
+        tail = np.max((sizes[0] + sizes[-1]) / sizes.max(axis=0))
+    middle = len(shapes) // 2
+    orders = system.step * np.arange(-middle, middle + 1)
+    central = np.argmax(np.linalg.norm(shapes, axis=1), axis=0) - middle
+    values = values + 1j * system.base * central
+    shapes = np.stack([shifted(shapes[..., j], n) for j, n in enumerate(central)], axis=-1)
+    shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
+    halves = values.imag / (0.5 * base)  # of negative and positive multipliers whole ones
+    alone = np.abs(halves - np.rint(halves)) <= _WHOLE
+    below = values.imag < 0.0
+    kept = alone | ~below
+    values = np.where(below, values.conj(), values)
+    shapes = np.where(below, shapes[::-1].conj(), shapes)
+    sizes = np.maximum(np.abs(values), base)
+    none = np.zeros(len(values))
+    found = HillMotions(values, shapes, orders, sizes, 0.0, bounds, none, {}, ~alone)
+    return found.columns(np.flatnonzero(kept))
+
+
+def _harmonics(
+    system: PeriodicSystem, values: np.ndarray, states: np.ndarray, count: int, steps: int
+) -> np.ndarray:
+    """Return the harmonics (h, k, 2k) of motions with the states (2k, 2k) at θ = 0.
+
+    From `count` angles of a period, `steps` apart.
+    """
+    times = 2.0 * np.pi / abs(system.base) / count * np.arange(count)
+    now, at = states.astype(complex), []
+    for time in times:
+        at.append(now[: system.size] * np.exp(-values * time))
+        now = _magnus(system, times[1], steps, system.speed * time) @ now
+    found = np.fft.fftshift(np.fft.fft(np.array(at), axis=0), axes=0)[1:] / count
+    return found if system.base > 0.0 else found[::-1]
 
 
 def state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:

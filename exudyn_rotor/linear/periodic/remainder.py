@@ -81,7 +81,7 @@ def check_motions(
         raise UnconvergedError(
             f"Hill's method at {system.speed:g} rad/s: exponents may be off by {rest.share:.1e} "
             "times what is allowed: motions change by too many powers of ten within a turn; use "
-            "method='auto', or a larger speed (or 0)"
+            "method='floquet', or a larger speed (or 0)"
         )
 
 
