@@ -27,7 +27,7 @@ _SAMPLES = 8  # angles of a period, doubled at least once
 # of the tolerance: share of a motion that its outermost harmonics may be
 _TAIL = 0.1
 # share of the base: exponents that are known no better, about zero, are not told from growth
-_TOLD = 1e-3
+_TOLD = 1e-2
 _WHOLE = 1e-12
 # share of the largest entry that stands for a multiplier of which rounding leaves nothing
 _LEAST = EPSILON**2
@@ -120,8 +120,9 @@ def floquet_motions(
     """Return the 2k exponents, the states (x, ẋ) at θ = 0 as columns, and bounds of the error.
 
     The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε``, and by
-    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of a
-    multiplier that is smaller than its error δ the exponent is known from above alone:
+    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of two
+    that nearly share their vector, g apart, a change δ has ``δ (δ + g)`` in the place of ``δ g``,
+    which leaves the root. Of a multiplier that is smaller than its error δ the exponent is known from above alone:
     ``Re λ ≤ log(|μ| + δ)/T``.
 
     Raises
@@ -144,7 +145,10 @@ def _motions_of(
     values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
     condition = np.linalg.norm(np.linalg.pinv(states), axis=1)
     error = (len(scale) * system.rounding + tolerance) * np.linalg.norm(scaled)
-    relative, decays = condition * error / np.abs(multipliers), np.abs(multipliers) < 1.0
+    moved = condition * error
+    apart = np.abs(multipliers[:, None] - multipliers) + np.diag(np.full(len(scale), np.inf))
+    moved = np.minimum(moved, np.sqrt(moved * apart.min(axis=1)))
+    relative, decays = moved / np.abs(multipliers), np.abs(multipliers) < 1.0
     bounds = np.where(decays, np.log1p(relative), relative) * base / (2.0 * np.pi)
     unknown = (np.abs(values.real) <= bounds) & (bounds > _TOLD * base)
     if np.any(unknown) and not np.any(values.real > bounds):
