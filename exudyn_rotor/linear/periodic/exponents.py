@@ -25,7 +25,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     UnconvergedError,
     fold,
 )
-from exudyn_rotor.linear.periodic.remainder import check_motions
+from exudyn_rotor.linear.periodic.remainder import checked
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # distance of exponents, over the base, and cosine of shapes, from which families are conjugate
@@ -131,8 +131,7 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
         return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
 
     found = solve_hill(system, choose, tolerance).with_conjugates()
-    check_motions(system, found, gone(found.values, system.speed), tolerance)
-    return found
+    return checked(system, found, gone(found.values, system.speed), tolerance)
 
 
 def _without_conjugates(

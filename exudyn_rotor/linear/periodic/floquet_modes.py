@@ -8,7 +8,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -29,7 +29,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
     UnconvergedError,
 )
-from exudyn_rotor.linear.periodic.remainder import check_motions
+from exudyn_rotor.linear.periodic.remainder import checked
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # decay over Ω above which a motion is gone before the coefficients change
@@ -109,8 +109,8 @@ def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> Hi
     every = found.with_conjugates()
     if len(every.values) != 2 * system.size:
         raise UnconvergedError(f"at {system.speed:g} rad/s: exponents are no pairs")
-    check_motions(system, every, gone(every.values, system.speed), tolerance)
-    return found
+    every = checked(system, every, gone(every.values, system.speed), tolerance)
+    return replace(found, rounding=every.rounding[: len(found.values)])
 
 
 def gone(values: np.ndarray, speed: float) -> np.ndarray:

@@ -165,7 +165,7 @@ def propagated(system: PeriodicSystem, tolerance: float) -> HillMotions:
 
     ``x(t) exp(−λt)`` at angles of one period, twice as many until the harmonics die away. Of each
     motion the copy with the largest harmonic 0 is taken. Those that decay fast follow the
-    fundamental matrix with its error; :func:`.remainder.check_motions` tells if that is too much.
+    fundamental matrix with its error; :func:`.remainder.checked` tells if that is too much.
     """
     fundamental, steps = _converged(system, tolerance)
     values, states, bounds = _motions_of(system, fundamental, tolerance)

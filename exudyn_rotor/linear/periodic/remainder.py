@@ -39,11 +39,13 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 _FINER = 2  # angles for each that the harmonics need
 _STEPS = 8
 # share of the radii allowed that is enough
-_ENOUGH = 0.5
+_ENOUGH = 0.05
+_MORE = 10.0  # times what is told that an error may be
 # share of a divisor from which on a harmonic of F is left to the rest
 _NEAR = 0.3
 # length of motions, over the largest, below which they are none of their own
 _DEPENDENT = 1e-6
+_HALF = 0.5  # of a motion: what a copy has to have of it to be compared
 # of a column that stands for one: how it changes is not asked, but what comes of the others is
 _SMALL = 1e-4
 # share of the largest entry that keeps weights from zero
@@ -52,10 +54,10 @@ _LEAST = 1e-16
 _SAME = 1e-6
 
 
-def check_motions(
+def checked(
     system: PeriodicSystem, found: HillMotions, gone: np.ndarray, tolerance: float
-) -> None:
-    """Refuse exponents that may be off by more than is told.
+) -> HillMotions:
+    """Return motions with larger bounds where they err by more than is told.
 
     Parameters
     ----------
@@ -70,19 +72,27 @@ def check_motions(
     Raises
     ------
     UnconvergedError
+        If some may err by more than ten times what is told.
     """
-    allowed = tolerance * np.where(np.isfinite(found.sizes), found.sizes, abs(system.base))
-    allowed = np.where(gone, -0.5 * found.values.real, allowed + found.bounds)
+    told = tolerance * np.where(np.isfinite(found.sizes), found.sizes, abs(system.base))
+    told = told + found.bounds
+    allowed = np.where(gone, -0.5 * found.values.real, _MORE * told)
     motions = _States.of(system, found)
-    rest = motions.remainder(allowed).smallest()
+    rest, kept = motions.remainder(allowed).smallest(), np.ones(len(gone), dtype=bool)
     if np.any(gone) and rest.share > 1.0:
-        rest = min(rest, motions.with_frozen(gone, allowed).smallest(), key=lambda X: X.share)
+        frozen = motions.with_frozen(gone, allowed).smallest()
+        if frozen.share < rest.share:
+            rest, kept = frozen, ~gone
     if not rest.share <= 1.0:
         raise UnconvergedError(
-            f"Hill's method at {system.speed:g} rad/s: exponents may be off by {rest.share:.1e} "
-            "times what is allowed: motions change by too many powers of ten within a turn; use "
-            "method='floquet', or a larger speed (or 0)"
+            f"Hill's method at {system.speed:g} rad/s: exponents may be off by "
+            f"{_MORE * rest.share:.1e} times what is told: motions change by too many powers of "
+            "ten within a turn; use method='floquet', or a larger speed (or 0)"
         )
+    errors = np.zeros(len(gone))
+    errors[kept] = rest.errors
+    rounding = np.where(~gone & (errors > told), found.rounding + errors, found.rounding)
+    return replace(found, rounding=rounding)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +142,13 @@ class _Remainder:
 
     @property
     def share(self) -> float:
-        """Of the radii allowed that is needed, or that λ changes by."""
-        return max(self._needed[0], np.max(np.abs(self.shifts) / self.allowed, initial=0.0))
+        """Of the radii allowed that exponents need."""
+        return float(np.max(self.errors / self.allowed, initial=self._needed[0]))
+
+    @property
+    def errors(self) -> np.ndarray:
+        """By how much the exponents can err, shape (s,) [1/s]."""
+        return np.abs(self.shifts) + self._needed[0] * self.allowed
 
     def smallest(self) -> _Remainder:
         """Return the rest after as many changes of coordinates as it takes, or as help."""
@@ -266,14 +281,16 @@ def _independent(
         apart = values[left] - values[left[0]]
         steps = np.rint(apart.imag / system.base).astype(int)
         alike = np.abs(apart - 1j * steps * system.base) <= near
-        group, left = left[alike], left[~alike]
+        group, left, steps = left[alike], left[~alike], steps[alike]
         if group.size < 2:
             continue
-        copies = [shifted(shapes[:, :, i], n) for i, n in zip(group, steps[alike], strict=True)]
+        copies = [shifted(shapes[:, :, i], n) for i, n in zip(group, steps, strict=True)]
         flat = np.array(copies).reshape(len(group), -1).T
+        kept = np.linalg.norm(flat, axis=0) > _HALF
+        group, flat = group[kept], flat[:, kept]
         span, sizes, _ = np.linalg.svd(flat, full_matrices=False)
         rank = np.count_nonzero(sizes > _DEPENDENT * sizes[0])
-        if rank == group.size:
+        if rank == group.size or group.size > 2 * rank:
             continue
         span = span[:, :rank].reshape(*shapes.shape[:2], rank)
         by_damping = np.einsum("hki,kl,hlj->ij", span.conj(), damping, span)
