@@ -38,6 +38,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 
 _FINER = 2  # angles for each that the harmonics need
 _STEPS = 8
+_HELPS = 0.9  # of the share: more is left by a step that does not help
 # share of the radii allowed that is enough
 _ENOUGH = 0.05
 _MORE = 10.0  # times what is told that an error may be
@@ -152,15 +153,17 @@ class _Remainder:
 
     def smallest(self) -> _Remainder:
         """Return the rest after as many changes of coordinates as it takes, or as help."""
-        best, now = self, self
+        best = self
         for _ in range(_STEPS):
-            if best.share <= _ENOUGH:
+            if best.share <= _ENOUGH or not np.isfinite(best.share):
                 break
             try:
-                now = now._smaller()
+                now = best._smaller()
             except np.linalg.LinAlgError:
                 break
-            best = min(best, now, key=lambda X: X.share)
+            if not now.share <= _HELPS * best.share:
+                break
+            best = now
         return best
 
     def _smaller(self) -> _Remainder:

@@ -8,6 +8,7 @@ from itertools import combinations, pairwise
 from typing import Protocol
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
 from exudyn_rotor.linear.periodic.periodic_system import fold
@@ -19,6 +20,11 @@ _DAMPED = 0.05
 # times which a damped motion may rise between two samples as its tangents tell
 _STEEPER = 10.0
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
+# share of its distance from zero that a real part may differ from the cubic between its tangents
+_SURPRISE = 0.1
+_PLACES = 65  # where the cubic is looked at
+# share of the decay of two motions that the gap of their frequencies may be where they have met
+_MET = 0.1
 # share of the last change of a root that the next one is where secants meet
 _MEETS = 0.2
 # of the range: by which rates of change are told; changes below a share of |λ| are not
@@ -137,7 +143,7 @@ class Search:
             for start, pair in piece.crossings():
                 self._meet(start, pair, low, high)
             for branch in piece.peaks():
-                self._search(low, high, piece.real_part(branch))
+                self._climb(piece, branch)
             self._part(low, high)
 
     def _part(self, low: float, high: float) -> None:
@@ -154,7 +160,8 @@ class Search:
     def _meet(self, value: float, pair: np.ndarray, low: float, high: float) -> None:
         """Follow two motions to where their frequencies meet, until something is unstable.
 
-        By Newton's method on the difference, which does not ask which of the two is which.
+        By Newton's method on the difference, which does not ask which of the two is which. Of two
+        that decay with a and b and couple with c, ``c² > ab (1 + (gap/(a + b))²)`` lets one grow.
         """
         for _ in range(_CROSSING_STEPS):
             growth = self.at(float(value))
@@ -162,11 +169,23 @@ class Search:
                 return
             columns = _nearest_columns(growth.values, pair, growth.base)
             rates, pair = self.rate(float(value), self._step)[columns], growth.values[columns]
-            change = (rates[0] - rates[1]).imag
-            move = -_apart(pair, growth.base) / change if change else np.inf
+            gap, change = _apart(pair, growth.base), (rates[0] - rates[1]).imag
+            if abs(gap) < _MET * abs(pair.real.sum()):
+                return
+            move = -gap / change if change else np.inf
             if abs(move) < ASIDE * self.span or not low < value + move < high:
                 return
             pair, value = pair + move * rates, value + move
+
+    def _climb(self, piece: _Piece, branch: int) -> None:
+        """Look for the peak of a motion's real part, with a search where no cubic tells it."""
+        peak, expected = piece.peak(branch)
+        falling = piece.real_part(branch)
+        if self.unstable(peak):
+            return
+        found = -falling(self.at(peak), peak)
+        if abs(found - expected) > _SURPRISE * abs(found):
+            self._search(piece.low, piece.high, falling)
 
     def _search(self, low: float, high: float, falling: Callable[[Growth, float], float]) -> None:
         minimize_scalar(
@@ -243,6 +262,17 @@ class _Piece:
         reaches = self.ends.real.max(axis=0) + _STEEPER * np.maximum(rise, -fall) > 0.0
         wanted = (rise > noise) & (fall < -noise) & (self._light | reaches)
         return np.flatnonzero(wanted & (self.ends[0].imag >= 0.0))
+
+    def peak(self, branch: int) -> tuple[float, float]:
+        """Return where a real part is largest by values and tangents at both ends, and that."""
+        width = self.high - self.low
+        cubic = CubicHermiteSpline(
+            [0.0, 1.0], self.ends[:, branch].real, width * self.rates[:, branch].real
+        )
+        shares = np.linspace(0.0, 1.0, _PLACES)[1:-1]
+        values = cubic(shares)
+        best = int(np.argmax(values))
+        return float(self.low + shares[best] * width), float(values[best])
 
     def real_part(self, branch: int) -> Callable[[Growth, float], float]:
         """Return minus the real part of a motion between as a function, for a search."""

@@ -18,7 +18,7 @@ from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.periodic.periodic_system import fold
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError, fold
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
@@ -218,7 +218,10 @@ def _limit(search: Search, value: float, away: float, middle: float) -> _Limit:
     near = max(_NEAR * max(speed, abs(growth.values[which])), _TIMES * abs(shifts[0]))
     meets = apart.min(initial=np.inf) < near
     if np.isnan(shifts[0]) or meets or slope * away <= 0.0:
-        return _Limit(name, _searched_again(search, value, onset), basis)
+        try:
+            return _Limit(name, _searched_again(search, value, onset), basis)
+        except UnconvergedError:  # the shapes that the basis lacks have high frequencies
+            return _Limit(name, np.nan, basis)
     return _Limit(name, float(-shifts[0].real / slope), basis)
 
 
