@@ -149,7 +149,7 @@ def _in_larger(
 ) -> HillMotions | None:
     """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
     shapes, lengths = _widened(motions, orders), np.sqrt(_squares(motions.shapes))[lacking]
-    values, shifts = motions.values.copy(), motions.shifts
+    values, shifts = motions.values.astype(complex), motions.shifts
     start, guess = shapes[..., lacking], values[lacking] + shifts[lacking]
     limits = _SETTLED * np.minimum(motions.sizes[lacking], abs(system.base))
     found = settled(system, orders, guess, start, limits)

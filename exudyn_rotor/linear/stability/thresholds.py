@@ -370,7 +370,9 @@ class _Finer(_Made):
         """Return the growth at a value of the parameter."""
         basis, speed = self.made.basis(value)
         space = basis.left_out.equations.space(0, speed, held=True)
-        return GrowthAt(space, *self.made.solver)(speed)
+        method, tolerance = self.made.solver
+        # high frequencies of what the basis lacks take many times as long by Floquet's method
+        return GrowthAt(space, "hill" if method == "auto" else method, tolerance)(speed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,240 @@
+"""Exponents are held to the equations: closed forms, and known exponents of any stiffness."""
+
+from dataclasses import replace
+from unittest import mock
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from models import disc_rotor
+from scipy.special import mathieu_a, mathieu_b
+from test_stability import anisotropic, mathieu
+from transformed import transformed
+
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic import floquet_modes as modes_module
+from exudyn_rotor.linear.periodic import fundamental, hill
+from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes, gone
+from exudyn_rotor.linear.periodic.fundamental import floquet_motions
+from exudyn_rotor.linear.periodic.hill_motions import HillMotions
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.linear.periodic.remainder import checked
+from exudyn_rotor.linear.stability.growth import growth_of
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+
+
+def swelling(a: float, stiffness: float) -> PeriodicSystem:
+    """Return the equation of ``x = y exp(a sin 2t)`` with ``ÿ + 0.3ẏ + stiffness y = 0``."""
+    one = np.eye(1)
+    return transformed(2.0, 0.3 * one, stiffness * one, {0: one}, swell=a)[0]
+
+
+@pytest.mark.parametrize("stiffness", [40.0, -2.0])
+@pytest.mark.parametrize("a", [5.0, 10.0, 20.0, 30.0])
+def test_exponents_of_motions_that_swell_within_a_turn(a, stiffness):
+    """By up to e⁶⁰, at which Hill's method alone takes stable ones for unstable."""
+    system, exact = swelling(a, stiffness), np.roots([1.0, 0.3, stiffness]).astype(complex)
+    found = motions(system)
+    apart = np.abs(fold(found.values[:, None] - exact, system.base))
+    assert np.all(apart.min(axis=1) <= 2.0 * found.bounds + 1e-8)
+    if a >= 20.0:
+        with pytest.raises(UnconvergedError, match="may be off by"):
+            motions(system, "hill")
+    else:
+        assert np.array_equal(motions(system, "hill").values, found.values)
+
+
+def test_modes_that_are_not_determined_are_refused():
+    with pytest.raises(UnconvergedError, match="may be off by"):
+        floquet_modes(swelling(20.0, 40.0))
+
+
+def far_from_resonance(speed: float) -> PeriodicSystem:
+    """Return ``ẍ + 0.1 ẋ + (4e3 cos 2θ − 1.35e5) x = 0``, at low speed without any oscillation.
+
+    With λ² + 0.1λ = 1.35e5 ± 4e3 motions grow with 361.8 to 372.8 1/s at any angle.
+    """
+    one = np.eye(1)
+    return PeriodicSystem(
+        speed, {0: one}, {0: 0.1 * one}, {0: -1.35e5 * one, 2: 2e3 * one, -2: 2e3 * one}
+    )
+
+
+@pytest.mark.parametrize("speed", [0.05, 0.1, 0.2])
+def test_growth_is_not_lost_at_low_speed(speed):
+    """Hill's method alone finds two motions that decay with 364 1/s, at 0.05 rad/s."""
+    system = far_from_resonance(speed)
+    try:
+        found = motions(system)
+    except UnconvergedError as error:
+        assert "use" in str(error)
+    else:
+        assert 361.0 < growth_of(found, system).excess < 373.0
+
+
+def test_growth_at_low_speed_is_that_of_a_frozen_angle():
+    """Mean of √(1.35e5 − 4e3 cos 2θ) − 0.05 over a period, to second order in Ω over λ."""
+    angles = np.pi * np.arange(64) / 64
+    expected = np.mean(np.sqrt(1.35e5 + 0.0025 - 4e3 * np.cos(2.0 * angles))) - 0.05
+    found = motions(far_from_resonance(0.5)).values.real.max()
+    assert found == pytest.approx(expected, rel=1e-7)
+
+
+@st.composite
+def transformed_systems(draw) -> tuple[PeriodicSystem, np.ndarray, float]:
+    """Return equations with known exponents, which swell and stretch, and the speed."""
+    rng = np.random.default_rng(draw(st.integers(0, 10**6)))
+    size, speed = draw(st.integers(1, 3)), 10.0 ** draw(st.floats(-1.0, 3.0))
+    rates = speed * 10.0 ** rng.uniform(-1.0, draw(st.sampled_from([0.5, 1.0, 1.7])), size)
+    loss = draw(st.sampled_from([0.0, 1e-4, 1e-2, 1.0, 30.0]))
+    skew = speed * rng.normal(size=(size, size)) * draw(st.sampled_from([0.0, 1.0]))
+    damping = np.diag(2.0 * loss * rates) + skew - skew.T
+    damping -= draw(st.sampled_from([0.0, 0.02])) * speed * np.diag(rng.uniform(size=size))
+    signs = np.where(rng.uniform(size=size) < 0.1, -1.0, 1.0)
+    mixed = np.eye(size) + 0.3 * rng.normal(size=(size, size))
+    damping, stiffness = (
+        np.linalg.solve(mixed, X @ mixed) for X in (damping, np.diag(signs * rates**2))
+    )
+    shears = {
+        n: 10.0 ** rng.uniform(-3.0, 0.0) * rng.normal(size=(size, size)) * (1.0 - 0.5j)
+        for n in rng.choice([1, 2, 3, 4], 2, replace=False)
+    }
+    swell = draw(st.sampled_from([0.0, 0.0, 0.5, 3.0, 8.0, 15.0, 25.0]))
+    system, exact = transformed(
+        speed, damping, stiffness, shears, swell, draw(st.integers(0, 2))
+    )
+    return system, exact, speed
+
+
+@settings(max_examples=20, deadline=None, derandomize=True)
+@given(transformed_systems())
+def test_verdicts_are_right_or_refused(given):
+    """Those of ``y`` with constant coefficients, by Hill's and by Floquet's method.
+
+    The equations are rounded to 1e-14 of their largest entry, and exponents with them.
+    """
+    system, exact, speed = given
+    if system.step == 0:
+        return
+    with mock.patch.object(hill, "MOST_UNKNOWNS", 150):  # what needs more is refused in less time
+        _compare(system, exact, speed)
+
+
+def _compare(system: PeriodicSystem, exact: np.ndarray, speed: float) -> None:
+    largest = max(np.abs(X).max() for X in (*system.K.values(), *system.D.values()))
+    rounding = 1e-11 * max(largest / speed, speed)
+    for method in ("hill", "floquet"):
+        try:
+            found = motions(system, method)
+        except UnconvergedError:
+            continue
+        growth = exact.real.max()
+        if abs(growth) > 1e-6 * speed + rounding + np.median(found.bounds):
+            assert (growth_of(found, system).excess > 0.0) == (growth > 0.0)
+        if method == "hill":
+            slow = ~gone(found.values, speed)
+            apart = np.abs(fold(found.values[slow, None] - exact, speed)).min(axis=1)
+            told = 1e-8 * np.maximum(-found.values.real, speed) + 10.0 * found.bounds + rounding
+            assert np.all(apart <= told[slow])
+
+
+def all_motions(system: PeriodicSystem) -> HillMotions:
+    found = motions(system, "hill", 1e-12)
+    one, none = np.ones(len(found.values)), np.zeros(len(found.values))
+    each = np.maximum(found.bounds, 1e-12)
+    return HillMotions(
+        found.values, found.vectors, found.orders, one, 0.0, each, none, {}, none > 0.0
+    )
+
+
+@pytest.mark.parametrize("wrong", ["value", "twice"])
+def test_a_motion_that_is_wrong_is_seen(wrong):
+    """λ off by 1e-5 where it is told to 1e-8; one motion twice, and another one not at all."""
+    system, _ = transformed(
+        3.0, np.diag([0.2, 0.4]), np.diag([20.0, 70.0]), {2: np.full((2, 2), 0.3)}, 0.3
+    )
+    right = all_motions(system)
+    values, shapes = right.values.copy(), right.shapes.copy()
+    decays = np.zeros(4, dtype=bool)
+    checked(system, right, decays, 1e-8)
+    if wrong == "value":
+        values[1] += 1e-5
+    else:
+        values[1], shapes[..., 1] = values[0], shapes[..., 0]
+    found = replace(right, values=values, shapes=shapes)
+    with pytest.raises(UnconvergedError, match="may be off by"):
+        checked(system, found, decays, 1e-8)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_mathieu_at_the_edges_of_instability(order):
+    """Beside a_n(q) and b_n(q), by 1e-6, one verdict each (McLachlan 1947)."""
+    low, high = sorted((mathieu_a(order, 1.0), mathieu_b(order, 1.0)))
+    for value, unstable in ((low - 1e-6, 0), (low + 1e-6, 1), (high - 1e-6, 1), (high + 1e-6, 0)):
+        system = mathieu(value, 1.0)
+        assert (growth_of(motions(system, "hill"), system).excess > 0.0) == unstable
+
+
+def test_meissner_square_wave_by_its_fourier_terms():
+    """``x″ + (a ± b) x``, Σ of 31 terms: growth of the piecewise solution (Meissner 1918).
+
+    Terms left out change λ by their squares over n², less than 1e-3 of it here.
+    """
+    a, b, one = 1.0, 0.5, np.eye(1)
+    halves = []
+    for square in (a + b, a - b):
+        w, t = np.sqrt(square), 0.5 * np.pi
+        halves.append([[np.cos(w * t), np.sin(w * t) / w], [-w * np.sin(w * t), np.cos(w * t)]])
+    exact = np.log(np.abs(np.linalg.eigvals(np.array(halves[1]) @ halves[0]))).max() / np.pi
+    stiffness = {0: a * one}
+    for n in range(1, 32, 2):
+        stiffness |= {2 * n: -2j * b / (np.pi * n) * one, -2 * n: 2j * b / (np.pi * n) * one}
+    system = PeriodicSystem(1.0, {0: one}, {0: 0.0 * one}, stiffness)
+    for method in ("hill", "floquet"):
+        assert motions(system, method).values.real.max() == pytest.approx(exact, rel=1e-3)
+
+
+def test_two_motions_that_turn_half_a_period_are_both_found():
+    """On stiff dampers, seen from outside: overdamped tilts at −92.27 and −92.18 1/s."""
+    rotor = disc_rotor()
+    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
+    uneven = 1e8 * np.array([[1.0, 0.3], [-0.2, 2.0]]), 1e6 * np.diag([1.0, 3.0])
+    system = LinearRotor.of(reduced, [Support(name, *uneven) for name in ("left", "right")]).at(
+        100.0
+    )
+    values = motions(system, "hill").values
+    slow = np.sort(values.real[np.abs(np.abs(values.imag) - 100.0) < 1.0])
+    assert len(slow) == 4
+    assert np.diff(slow).min() > 1e-2
+
+
+@pytest.mark.parametrize("speed", [30.0, 50.0])
+def test_modes_by_floquets_method_where_hills_fails(speed, monkeypatch):
+    system = LinearRotor.of(asymmetric_shaft(), anisotropic()).at(speed)
+    expected = floquet_modes(system)
+
+    def refused(*_):
+        raise UnconvergedError("refused")
+
+    monkeypatch.setattr(modes_module, "solve_hill", refused)
+    found = floquet_modes(system)
+    assert np.abs(found.values - expected.values).max() < 1e-6 * speed
+    for j in range(len(found.values)):
+        one, other = (X.central[:, j] / np.linalg.norm(X.central[:, j]) for X in (found, expected))
+        apart = np.abs(np.delete(expected.values, j) - expected.values[j]).min()
+        if apart > 1e-3 * speed:
+            assert abs(np.vdot(one, other)) > 1.0 - 1e-6
+
+
+def test_growth_that_rounding_hides_is_refused(monkeypatch):
+    """A multiplier of 0.9 beside a fundamental matrix of 1e12: 1.1 could be in its place."""
+    matrix = np.array([[0.9, 1e12], [0.0, 0.8]])
+    monkeypatch.setattr(fundamental, "monodromy", lambda *_: matrix)
+    with pytest.raises(UnconvergedError, match="not told whether"):
+        floquet_motions(mathieu(2.0, 1.0))
+    monkeypatch.setattr(fundamental, "monodromy", lambda *_: np.diag([0.9, 0.8]))
+    assert np.all(floquet_motions(mathieu(2.0, 1.0))[0].real < 0.0)
