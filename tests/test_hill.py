@@ -12,7 +12,7 @@ from test_stability import anisotropic, mathieu, random_system
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import fundamental, hill, truncation
-from exudyn_rotor.linear.periodic.exponents import exponents, motions
+from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold

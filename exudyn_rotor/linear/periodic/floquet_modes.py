@@ -140,8 +140,7 @@ def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | Non
 
 
 def _one_of_each_family(solution: HillSolution, speed: float) -> Chosen | None:
-    """Choose one motion for each Floquet family and its conjugate; None where some are not found.
-    """
+    """Choose one motion for each family and its conjugate; None where some are not found."""
     values, shapes, columns, alone = _apart(solution, speed)
     if columns is None:
         return None

@@ -82,9 +82,7 @@ def _scale(system: PeriodicSystem) -> np.ndarray:
     return np.repeat([fastest or 1.0, 1.0], system.size)
 
 
-def _magnus(
-    system: PeriodicSystem, period: float, steps: int, start: float = 0.0
-) -> np.ndarray:
+def _magnus(system: PeriodicSystem, period: float, steps: int, start: float = 0.0) -> np.ndarray:
     """Return the fundamental matrix from the angle `start` by sixth-order Magnus steps."""
     h = period / steps
     fundamental = np.eye(2 * system.size)
@@ -122,8 +120,8 @@ def floquet_motions(
     The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε``, and by
     `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of two
     that nearly share their vector, g apart, a change δ has ``δ (δ + g)`` in the place of ``δ g``,
-    which leaves the root. Of a multiplier that is smaller than its error δ the exponent is known from above alone:
-    ``Re λ ≤ log(|μ| + δ)/T``.
+    which leaves the root. Of a multiplier that is smaller than its error δ the exponent is known
+    from above alone: ``Re λ ≤ log(|μ| + δ)/T``.
 
     Raises
     ------

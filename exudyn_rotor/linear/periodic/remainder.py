@@ -4,8 +4,8 @@ With the states ``(x, ẋ)`` of all 2k motions as columns of P(θ), ``z = P y`` 
 
     ẏ = (Λ + F) y,    Λ = diag λ,    F = −P⁻¹ (Ṗ + PΛ − AP)
 
-where F vanishes for exact motions. A periodic ``exp(λt) y(t)`` has ``(λ − λ_i + d/dt) y_i = Σ_j F_ij
-y_j``, and d/dt shifts by multiples of ipΩ alone: modulo these, every exact exponent is in a disc
+where F vanishes for exact motions. ``exp(λt) y(t)`` with y periodic has ``(λ − λ_i + d/dt) y_i =
+Σ_j F_ij y_j``, and d/dt shifts by multiples of ipΩ alone: modulo these, every exact λ is in a disc
 about a λ_i with the radius ``Σ_j f_ij w_j/w_i``, ``f_ij = max |F_ij|`` over a period, for any
 positive w. Discs that overlap hold as many as they are, as F may grow from zero. Radii r that are
 allowed suffice for some w where no eigenvalue of ``f_ij/r_i`` exceeds 1 (Perron). It does not
