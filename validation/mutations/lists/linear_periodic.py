@@ -57,8 +57,8 @@ LINEAR_PERIODIC = [
         "test_hill.py::test_a_rotor_that_spins_the_other_way_has_the_same_exponents",
         (
             "copies of motions at a negative speed as at a positive one",
-            "    speed = system.speed\n",
-            "    speed = abs(system.speed)\n",
+            "_one_of_each_family, speed=system.speed",
+            "_one_of_each_family, speed=abs(system.speed)",
         ),
     ),
     *mutations(
@@ -140,7 +140,7 @@ LINEAR_PERIODIC = [
     *mutations(
         "linear/periodic/floquet_modes.py",
         "test_hill.py::test_modes_gone_within_a_turn_are_not_waited_for",
-        ("modes that are gone within a turn waited for", " | gone(values[columns], speed)", ""),
+        ("modes that are gone within a turn waited for", " | gone(values, speed)", ""),
     ),
     *mutations(
         "linear/periodic/hill.py",
