@@ -24,6 +24,7 @@ import numpy as np
 from exudyn_rotor.reduction.attachment import rigid_interfaces, static_responses
 from exudyn_rotor.reduction.component import ModeBasis
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.theory.nodal import turned
 
 # speed of the rim beyond which no solid holds [m/s]
 _RIM = 1000.0
@@ -60,8 +61,9 @@ def inertial_modes(
     ValueError
         If the rotor has loose parts.
     """
-    loads = _loads(rotor, basis, stiffness)
-    loads = loads - rotor.mass @ (basis @ (basis.T @ loads))
+    momenta = rotor.mass @ basis
+    loads = _loads(rotor, basis, momenta, stiffness)
+    loads -= momenta @ (basis.T @ loads)
     loads = _strongest(rotor, loads, stiffness)
     responses = static_responses(rotor, rigid_interfaces(rotor, others), loads)
     energy = loads.T @ responses
@@ -72,20 +74,19 @@ def inertial_modes(
     return ModeBasis(columns, labels, rotor.nodes)
 
 
-def _loads(rotor: FiniteElementRotor, basis: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+def _loads(
+    rotor: FiniteElementRotor, basis: np.ndarray, momenta: np.ndarray, stiffness: np.ndarray
+) -> np.ndarray:
     """Return loads (3n, j), so large that their energy is a relative change of stiffness."""
-    e, mass = rotor.axis.direction, rotor.mass
-    nodal = basis.reshape(-1, 3, basis.shape[1])
-    turned = np.cross(e, nodal, axisb=1, axisc=1).reshape(basis.shape)
-    axial = np.einsum("a,nak->nk", e, nodal)
-    along = (e[None, :, None] * axial[:, None, :]).reshape(basis.shape)
-    speed = _fastest(rotor, stiffness)
-    loads = [speed * (mass @ turned), speed * (mass @ along)]
+    e, speed = rotor.axis.direction, _fastest(rotor, stiffness)
+    gyroscopic = turned(e, momenta)  # Mẽ = ẽM, as (24) says
+    along = momenta + turned(e, gyroscopic)
+    loads = [speed * gyroscopic, speed * along]
     elastic = stiffness > 0.0
     frequencies = np.sqrt(stiffness[elastic])
     columns = basis[:, elastic]
-    residual = rotor.stiffness @ columns - mass @ (columns * stiffness[elastic])
-    loads.append(residual / frequencies)
+    forces = rotor.stiffness @ columns - momenta[:, elastic] * stiffness[elastic]
+    loads.append(forces / frequencies)
     carried = rotor.carried_prestress
     if carried is not None:
         loads.append(speed * (carried.per_square @ basis))
@@ -104,8 +105,8 @@ def _strongest(rotor: FiniteElementRotor, loads: np.ndarray, stiffness: np.ndarr
     """
     elastic = stiffness[stiffness > 0.0]
     square = np.median(elastic) if elastic.size else 0.0
-    accelerations = loads / rotor.mass.diagonal()[:, None]
-    values, turn = np.linalg.eigh(loads.T @ accelerations)
+    scaled = loads / np.sqrt(rotor.mass.diagonal())[:, None]
+    values, turn = np.linalg.eigh(scaled.T @ scaled)
     return loads @ turn[:, values > _SMALL * square]
 
 

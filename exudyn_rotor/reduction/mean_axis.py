@@ -93,9 +93,10 @@ def use_mean_axis_modes(fem: FEMinterface, *, rank_tolerance: float = 1e-7) -> t
     modes = checks.array(fem.modeBasis["matrix"], "fem: its modes", shape=(nodes.size, None))
     rigid, shares = _rigid_share(nodes, mass, modes)
     flexible = modes - rigid @ shares
+    none = np.zeros((nodes.size, 0))
     elastic = [
         index
-        for index in gram_schmidt(np.zeros((nodes.size, 0)), flexible, mass, rank_tolerance)[1]
+        for index in gram_schmidt((none, none), flexible, mass, rank_tolerance).used
         if _norm(flexible[:, index], mass) > rank_tolerance * _norm(modes[:, index], mass)
     ]
     if not elastic:

@@ -16,7 +16,7 @@ from exudyn_rotor.prestress.estimate import estimated_stiffness
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.reduction.attached import Attached
 from exudyn_rotor.reduction.attachment import attachment_modes
-from exudyn_rotor.reduction.basis import OrthonormalBasis, orthonormal_basis, rigid_columns
+from exudyn_rotor.reduction.basis import OrthonormalBasis, rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.fem_interface_modes import fem_interface_modes
 from exudyn_rotor.reduction.fields import Centrifugal, ModeShapes, ReducedInterface
@@ -52,35 +52,38 @@ def reduce_rotor(
     unknown = prestress is None and rotor.carried_prestress is None
     network = estimated_stiffness(rotor) if unknown else None
     component = _with_turned_displacement(rotor, _component_modes(rotor, modes))
-    return _reduced(rotor, component, stress, keep_shapes, rank_tolerance, network=network)
+    basis = OrthonormalBasis.of_rigid(
+        *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
+    ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
+    if basis.matrix.shape[1] == 0:
+        raise ValueError("the reduced basis is empty: ask for at least one component mode")
+    attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+    return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
 
 
 def _reduced(
     rotor: FiniteElementRotor,
     component: ModeBasis,
+    basis: OrthonormalBasis,
     stress: bool,
     keep_shapes: bool,
-    rank_tolerance: float,
-    attach: bool = True,
+    attached: Attached | None = None,
     network: sp.csr_array | None = None,
 ) -> ReducedRotor:
     center = rotor.center_of_mass
-    rigid, kinds = _rigid_motions(rotor, center)
-    basis = orthonormal_basis(rigid, kinds, component, rotor.mass, rotor.stiffness, rank_tolerance)
-    if basis.matrix.shape[1] == 0:
-        raise ValueError("the reduced basis is empty: ask for at least one component mode")
     invariants = Invariants.of(
         rotor.nodes - center,
         rotor.mass,
-        rotor.stiffness,
+        None,  # the basis knows
         rotor.damping,
         basis.matrix,
         rotor.axis.direction,
+        basis.momenta,
     )
     rigid_count = len(basis.rigid_kinds)
-    _check_stable(invariants, rigid_count)
-    own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
+    _check_stable(basis.stiffness[rigid_count:])
     if rotor.mass_damping is not None:
+        own_share = component.matrix @ basis.from_modes  # first, or nearly equal modes cost digits
         damping = invariants.D + own_share.T @ (rotor.mass_damping @ own_share)
         invariants = replace(invariants, D=damping)
     if rotor.structural_damping is not None:
@@ -92,17 +95,15 @@ def _reduced(
     return ReducedRotor(
         axis=rotor.axis,
         center_of_mass=center,
-        invariants=_stiffened(rotor, _cleaned(invariants, rigid_count), basis.matrix),
+        invariants=_stiffened(rotor, _cleaned(invariants, basis), basis.matrix),
         rigid_kinds=basis.rigid_kinds,
         interfaces=_interfaces(rotor, basis.matrix),
-        mode_mass=own_share.T @ (rotor.mass @ own_share),
+        mode_mass=_mode_mass(component, basis),
         dropped=basis.dropped,
         grounded=rotor.grounded,
         shapes=_shapes(rotor, component, basis, stress) if keep_shapes else None,
         centrifugal=_centrifugal(rotor) if keep_shapes else None,
-        attached=Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
-        if attach
-        else None,
+        attached=attached,
     )
 
 
@@ -116,21 +117,22 @@ def _with_attachments(
 
     None if its static response is unknown.
     """
-    stiffness = np.einsum("ik,ik->k", basis.matrix, rotor.stiffness @ basis.matrix)
-    stiffness[: len(basis.rigid_kinds)] = 0.0
+    stiffness = np.maximum(basis.stiffness, 0.0)
     try:
-        added = [
-            component,
+        added = _joined(
             attachment_modes(rotor, component.matrix),
-            inertial_modes(rotor, component.matrix, basis.matrix, np.maximum(stiffness, 0.0)),
-        ]
+            inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
+        )
     except ValueError:  # loose parts; the given modes may do without them
         return None, None
-    labels = sum((modes.labels for modes in added), ())
-    every = ModeBasis(np.hstack([modes.matrix for modes in added]), labels, rotor.nodes)
-    finer = _reduced(rotor, every, False, True, rank_tolerance, attach=False)
-    in_attached = finer.shapes.matrix.T @ (rotor.mass @ basis.matrix)
-    return finer.without_shapes(), in_attached
+    finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
+    reduced = _reduced(rotor, _joined(component, added), finer, False, False)
+    return reduced, finer.matrix.T @ basis.momenta
+
+
+def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:
+    columns = np.hstack([first.matrix, second.matrix])
+    return ModeBasis(columns, first.labels + second.labels, first.nodes)
 
 
 def _component_modes(rotor: FiniteElementRotor, modes: ModeSource) -> ModeBasis:
@@ -198,10 +200,21 @@ def _with_turned_displacement(rotor: FiniteElementRotor, component: ModeBasis) -
     return ModeBasis(matrix, component.labels + labels, rotor.nodes, stress=stress)
 
 
-def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
+def _mode_mass(component: ModeBasis, basis: OrthonormalBasis) -> np.ndarray:
+    """Return the mass matrix (k, k) of the columns' shares in the component modes.
+
+    A flexible column is that share U less what it has of the rigid motions R, ``U − R(RᵀMU)``.
+    """
+    rigid = len(basis.rigid_kinds)
+    share = (basis.momenta[:, :rigid].T @ component.matrix) @ basis.from_modes
+    own = np.eye(basis.matrix.shape[1])
+    own[:rigid] = 0.0
+    return own + share.T @ share
+
+
+def _cleaned(invariants: Invariants, basis: OrthonormalBasis) -> Invariants:
     """Put in exactly what holds by construction, so that round-off excites nothing."""
-    stiffness = np.maximum(np.diag(invariants.K), 0.0)
-    stiffness[:rigid_count] = 0.0
+    rigid_count = len(basis.rigid_kinds)
     structural = None if invariants.H is None else invariants.H.copy()
     if structural is not None:
         structural[:rigid_count] = structural[:, :rigid_count] = 0.0
@@ -209,14 +222,13 @@ def _cleaned(invariants: Invariants, rigid_count: int) -> Invariants:
         invariants,
         H=structural,
         M=np.eye(invariants.size),
-        K=np.diag(stiffness),
+        K=np.diag(np.maximum(basis.stiffness, 0.0)),
         center=np.zeros(3),
     )
 
 
-def _check_stable(invariants: Invariants, rigid_count: int) -> None:
-    """Refuse a rotor that its stress at rest makes buckle."""
-    stiffness = np.diag(invariants.K)[rigid_count:]
+def _check_stable(stiffness: np.ndarray) -> None:
+    """Refuse a rotor that its stress at rest makes buckle, by the stiffness of flexible modes."""
     if stiffness.size and stiffness.min() < -1e-9 * abs(stiffness).max():
         raise ValueError(
             f"a mode has the stiffness {stiffness.min():.4g} 1/s²: the rotor buckles under its "

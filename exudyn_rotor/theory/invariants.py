@@ -16,7 +16,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.theory.nodal import block_diagonal, skew
+from exudyn_rotor.theory.nodal import skew, turned
 
 Matrix = np.ndarray | sp.csr_array
 
@@ -134,15 +134,17 @@ class Invariants:
         cls,
         nodes: np.ndarray,
         mass: sp.csr_array,
-        stiffness: sp.csr_array,
+        stiffness: sp.csr_array | None,
         damping: sp.csr_array | None,
         basis: Matrix,
         direction: np.ndarray,
+        momenta: np.ndarray | None = None,
     ) -> Invariants:
         """Compute the invariants from nodes (n, 3), FE matrices and a basis (3n, k).
 
         The basis is a dense array of component modes or a sparse matrix; the identity gives the
-        full formulations. The origin is that of `nodes`.
+        full formulations. The origin is that of `nodes`. A stiffness or damping of None is zero.
+        `momenta` are ``MΨ``, if they are known.
 
         Raises
         ------
@@ -152,29 +154,32 @@ class Invariants:
         """
         nodes = checks.array(nodes, "nodes", "m", shape=(None, 3))
         mass = checks.symmetric(mass, "mass", "kg", size=nodes.size)
-        stiffness = checks.symmetric(stiffness, "stiffness", "N/m", size=nodes.size)
         basis = checks.matrix(basis, "basis", shape=(nodes.size, None))
         direction = checks.vector(direction, "direction")
-        none = sp.csr_array(mass.shape)
+        if stiffness is not None:
+            stiffness = checks.symmetric(stiffness, "stiffness", "N/m", size=nodes.size)
         if damping is not None:
-            none = checks.matrix(damping, "damping", "N s/m", shape=mass.shape)
+            damping = checks.matrix(damping, "damping", "N s/m", shape=mass.shape)
         scalar_mass = mass[::3, ::3]
         mass_x = scalar_mass @ nodes
-        turned = block_diagonal(skew(direction), len(nodes)) @ basis
-        mass_basis = mass @ basis
+        if momenta is None:
+            momenta = mass @ basis
+        else:
+            momenta = checks.array(momenta, "momenta", shape=basis.shape)
+        tilted = turned(direction, basis)
         total = float(scalar_mass.sum())
         return cls(
             direction=direction,
             mass=total,
             center=mass_x.sum(axis=0) / total,
             J=nodes.T @ mass_x,
-            S=np.vstack([_row_sum(mass_basis[a::3]) for a in range(3)]),
+            S=np.vstack([_row_sum(momenta[a::3]) for a in range(3)]),
             P=np.stack([_dense(mass_x.T @ basis[b::3]) for b in range(3)], axis=1),
-            M=_mean(basis.T @ mass_basis),
-            K=_mean(basis.T @ (stiffness @ basis)),
-            D=basis.T @ (none @ basis),
-            G=_mean(mass_basis.T @ turned, -1),
-            C=_mean(turned.T @ (mass @ turned)),
+            M=_mean(basis.T @ momenta),
+            K=_mean(_projected(stiffness, basis)),
+            D=_projected(damping, basis),
+            G=_mean(momenta.T @ tilted, -1),
+            C=_mean(tilted.T @ turned(direction, momenta)),  # Mẽ = ẽM, as (24) says
         )
 
     @property
@@ -251,6 +256,14 @@ def moments_about(invariants: Invariants, shift: np.ndarray) -> tuple[np.ndarray
     cross = mass * np.outer(invariants.center, shift)
     J = invariants.J - cross - cross.T + mass * np.outer(shift, shift)
     return J, invariants.P - shift[:, None, None] * S[None, :, :]
+
+
+def _projected(matrix: sp.csr_array | None, basis: Matrix) -> Matrix:
+    """Return ``ΨᵀAΨ``, zero for None."""
+    if matrix is not None:
+        return basis.T @ (matrix @ basis)
+    none = (basis.shape[1], basis.shape[1])
+    return sp.csr_array(none) if sp.issparse(basis) else np.zeros(none)
 
 
 def _mean(matrix: Matrix, sign: int = 1) -> Matrix:

@@ -24,6 +24,18 @@ def block_diagonal(block: Array, node_count: int) -> sp.csr_array:
     return sp.csr_array(sp.kron(sp.eye_array(node_count), sp.csr_array(block)))
 
 
+def turned(axis: Array, columns: Array | sp.csr_array) -> Array | sp.csr_array:
+    """Return ``ẽ_bd Ψ``, ``e ×`` every nodal vector of (3n × k); sparse where Ψ is."""
+    block = skew(axis)
+    if sp.issparse(columns):
+        return block_diagonal(block, columns.shape[0] // 3) @ columns
+    nodal = columns.reshape(-1, 3, columns.shape[1])
+    result = np.zeros_like(nodal)
+    for i, j in np.argwhere(block):
+        result[:, i] += block[i, j] * nodal[:, j]
+    return result.reshape(columns.shape)
+
+
 def translations(node_count: int) -> Array:
     """Return ``Φ`` (3n × 3), the unit rigid translations along x, y, z (2)."""
     return np.tile(np.eye(3), (node_count, 1))
