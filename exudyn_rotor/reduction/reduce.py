@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 
@@ -29,7 +30,9 @@ from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
+from exudyn_rotor.threads import one_thread
 
+_THREADED_SIZE = 50_000  # coordinates
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -48,17 +51,25 @@ def reduce_rotor(
     checks.flag(stress, "stress")
     checks.flag(keep_shapes, "keep_shapes")
     checks.tolerance(rank_tolerance, "rank_tolerance")
-    rotor = with_chosen_prestress(rotor, prestress)
-    unknown = prestress is None and rotor.carried_prestress is None
-    network = estimated_stiffness(rotor) if unknown else None
-    component = _with_turned_displacement(rotor, _component_modes(rotor, modes))
-    basis = OrthonormalBasis.of_rigid(
-        *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
-    ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
-    if basis.matrix.shape[1] == 0:
-        raise ValueError("the reduced basis is empty: ask for at least one component mode")
-    attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
-    return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
+    with _few_threads(rotor):
+        rotor = with_chosen_prestress(rotor, prestress)
+        unknown = prestress is None and rotor.carried_prestress is None
+        network = estimated_stiffness(rotor) if unknown else None
+    component = _component_modes(rotor, modes)
+    with _few_threads(rotor):
+        component = _with_turned_displacement(rotor, component)
+        basis = OrthonormalBasis.of_rigid(
+            *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
+        ).extended(component, rotor.mass, rotor.stiffness, rank_tolerance)
+        if basis.matrix.shape[1] == 0:
+            raise ValueError("the reduced basis is empty: ask for at least one component mode")
+        attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
+        return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
+
+
+def _few_threads(rotor: FiniteElementRotor) -> AbstractContextManager:
+    """Return a context with one thread of BLAS where waking others costs more than they gain."""
+    return one_thread() if rotor.nodes.size < _THREADED_SIZE else nullcontext()
 
 
 def _reduced(
@@ -118,16 +129,17 @@ def _with_attachments(
     None if its static response is unknown.
     """
     stiffness = np.maximum(basis.stiffness, 0.0)
-    try:
-        added = _joined(
-            attachment_modes(rotor, component.matrix),
-            inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
-        )
-    except ValueError:  # loose parts; the given modes may do without them
-        return None, None
-    finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
-    reduced = _reduced(rotor, _joined(component, added), finer, False, False)
-    return reduced, finer.matrix.T @ basis.momenta
+    with _few_threads(rotor):
+        try:
+            added = _joined(
+                attachment_modes(rotor, component.matrix),
+                inertial_modes(rotor, component.matrix, basis.matrix, stiffness),
+            )
+        except ValueError:  # loose parts; the given modes may do without them
+            return None, None
+        finer = basis.extended(added, rotor.mass, rotor.stiffness, rank_tolerance)
+        reduced = _reduced(rotor, _joined(component, added), finer, False, False)
+        return reduced, finer.matrix.T @ basis.momenta
 
 
 def _joined(first: ModeBasis, second: ModeBasis) -> ModeBasis:

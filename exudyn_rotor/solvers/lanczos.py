@@ -146,7 +146,7 @@ class _Krylov:
         self._mass, self._inverse = mass, inverse
         self._basis, self._momenta = (np.empty((len(start), room), order="F") for _ in range(2))
         self._projected = np.zeros((room, room))
-        self._count = 0
+        self._count = self._before = 0
         # each look needs vectors of its own: the basis has the motions of earlier ones by then
         self._others = np.random.default_rng(_SEED + 1)
         self._next(inverse(mass @ start))
@@ -195,12 +195,17 @@ class _Krylov:
         self._momentum = np.hstack([momentum, self._momentum])
         self._rest = np.vstack([rest, none])
 
-    def _without_basis(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what the basis has no part of, and the shares of the basis."""
+    def _without_basis(self, columns: np.ndarray, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Return what the basis has no part of, and the shares of the basis.
+
+        Those of the columns before number `first` are no more than rounding.
+        """
         shares = np.zeros((self._count, columns.shape[1]))
-        for _ in range(2):  # one Gram–Schmidt pass loses orthogonality
-            share = self._momenta[:, : self._count].T @ columns
-            columns, shares = columns - self.basis @ share, shares + share
+        for start in (first, 0):  # one Gram–Schmidt pass loses orthogonality
+            some = slice(start, self._count)
+            share = self._momenta[:, some].T @ columns
+            columns = columns - self._basis[:, some] @ share
+            shares[some] += share
         return columns, shares
 
     def _left(self, turn: np.ndarray) -> np.ndarray:
@@ -214,7 +219,7 @@ class _Krylov:
             for array in (self._basis, self._momenta):
                 array[:, :kept] = array[:, : self._count] @ turn[:, :kept]
             self._projected[:kept, :kept] = np.diag(values[:kept])
-            self._count = kept
+            self._count, self._before = kept, 0
         width = self._block.shape[1]
         if not self._add():
             return False
@@ -233,14 +238,16 @@ class _Krylov:
             return False
         self._basis[:, added], self._momenta[:, added] = self._block, self._momentum
         self._count = added.stop
-        shares = self._next(self._inverse(self._momentum))
+        # K⁻¹M is symmetric: it takes a block to itself, those beside it and nothing else
+        shares = self._next(self._inverse(self._momentum), self._before)
+        self._before = added.start
         self._projected[: added.stop, added] = shares
         self._projected[added, : added.stop] = shares.T
         return True
 
-    def _next(self, columns: np.ndarray) -> np.ndarray:
+    def _next(self, columns: np.ndarray, first: int = 0) -> np.ndarray:
         """Take what is new in some columns as the next block; return their shares of the basis."""
-        columns, shares = self._without_basis(columns)
+        columns, shares = self._without_basis(columns, first)
         weighted = _product(self._mass, columns)
         self._rest = np.eye(columns.shape[1])
         for _ in range(2):  # columns that are nearly alike are not orthogonal after the first
