@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 
@@ -32,7 +31,6 @@ from exudyn_rotor.theory.nodal import rotations, translations
 from exudyn_rotor.theory.stiffening import with_prestress
 from exudyn_rotor.threads import one_thread
 
-_THREADED_SIZE = 50_000  # coordinates
 _NO_TURN = 1e-9  # of the largest: what rounding leaves of the rotation of a translation
 
 ModeSource = int | ModeBasis | FEMinterface | np.ndarray
@@ -51,12 +49,12 @@ def reduce_rotor(
     checks.flag(stress, "stress")
     checks.flag(keep_shapes, "keep_shapes")
     checks.tolerance(rank_tolerance, "rank_tolerance")
-    with _few_threads(rotor):
+    with one_thread():  # waking others for products of thin matrices costs more than it gains
         rotor = with_chosen_prestress(rotor, prestress)
         unknown = prestress is None and rotor.carried_prestress is None
         network = estimated_stiffness(rotor) if unknown else None
     component = _component_modes(rotor, modes)
-    with _few_threads(rotor):
+    with one_thread():
         component = _with_turned_displacement(rotor, component)
         basis = OrthonormalBasis.of_rigid(
             *_rigid_motions(rotor, rotor.center_of_mass), rotor.mass, rank_tolerance
@@ -65,11 +63,6 @@ def reduce_rotor(
             raise ValueError("the reduced basis is empty: ask for at least one component mode")
         attached = Attached(partial(_with_attachments, rotor, component, basis, rank_tolerance))
         return _reduced(rotor, component, basis, stress, keep_shapes, attached, network)
-
-
-def _few_threads(rotor: FiniteElementRotor) -> AbstractContextManager:
-    """Return a context with one thread of BLAS where waking others costs more than they gain."""
-    return one_thread() if rotor.nodes.size < _THREADED_SIZE else nullcontext()
 
 
 def _reduced(
@@ -129,7 +122,7 @@ def _with_attachments(
     None if its static response is unknown.
     """
     stiffness = np.maximum(basis.stiffness, 0.0)
-    with _few_threads(rotor):
+    with one_thread():
         try:
             added = _joined(
                 attachment_modes(rotor, component.matrix),

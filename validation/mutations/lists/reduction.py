@@ -12,10 +12,20 @@ REDUCTION = [
             "[0.0 * gyroscopic, speed",
         ),
         (
+            "inertia forces along the axis forgotten",
+            "speed * along]",
+            "0.0 * along]",
+        ),
+        (
             "loads of static modes forgotten",
             "loads.append(forces / frequencies)",
             "loads.append(0.0 * forces)",
         ),
+    ),
+    *mutations(
+        "reduction/reduce.py",
+        "test_reduction.py::test_mode_mass_is_the_mass_of_the_modes_alone",
+        ("mass of what the rigid motions took", "own + share.T @ share", "own - share.T @ share"),
     ),
     *mutations(
         "reduction/attached.py",

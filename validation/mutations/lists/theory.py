@@ -219,6 +219,16 @@ THEORY = [
             'np.einsum("ba,abk->k"',
             'np.einsum("ab,abk->k"',
         ),
+        ("inertia turned once (81)", "tilted.T @ turned(direction, momenta)", "tilted.T @ momenta"),
+    ),
+    *mutations(
+        "theory/nodal.py",
+        "test_invariants.py",
+        (
+            "columns turned the other way",
+            "result[:, i] += block[i, j]",
+            "result[:, j] += block[i, j]",
+        ),
     ),
     *mutations(
         "theory/stiffening.py",
