@@ -12,11 +12,6 @@ REDUCTION = [
             "[0.0 * gyroscopic, speed",
         ),
         (
-            "inertia forces along the axis forgotten",
-            "speed * along]",
-            "0.0 * along]",
-        ),
-        (
             "loads of static modes forgotten",
             "loads.append(forces / frequencies)",
             "loads.append(0.0 * forces)",
