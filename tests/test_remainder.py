@@ -14,6 +14,7 @@ from test_stability import anisotropic, mathieu
 from transformed import transformed
 
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.modal.campbell import campbell
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import floquet_modes as modes_module
 from exudyn_rotor.linear.periodic import fundamental, hill
@@ -25,6 +26,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 from exudyn_rotor.linear.periodic.remainder import _fastest, _Remainder, checked
 from exudyn_rotor.linear.stability.growth import growth_of
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+from exudyn_rotor.solid_rotor import SolidRotor
 
 
 def swelling(a: float, stiffness: float) -> PeriodicSystem:
@@ -225,6 +227,20 @@ def test_modes_by_floquets_method_where_hills_fails(speed, monkeypatch):
         apart = np.abs(np.delete(expected.values, j) - expected.values[j]).min()
         if apart > 1e-3 * speed:
             assert abs(np.vdot(one, other)) > 1.0 - 1e-6
+
+
+def test_a_free_motion_beside_a_frequency_that_is_a_multiple_of_the_base():
+    """Two masses on a rod: free and 1e4 rad/s along the axis, which is 100 times twice the speed."""
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    supports = [Support(n, np.diag([2e4, 3e4]), 10.0) for n in ("left", "right")]
+    told = campbell(rotor, [50.0], supports=supports)
+    across = told.growth[0] < -1.0
+    exact = np.sqrt(np.array([2e4, 3e4]) / 2.0 - 2.5**2)
+    assert np.allclose(told.growth[0, across], -2.5, rtol=1e-9)
+    frequencies = np.abs(told.frequencies_inertial[0, across])
+    assert np.allclose(np.unique(frequencies.round(6)), exact, rtol=1e-8)
 
 
 def test_growth_that_rounding_hides_is_refused(monkeypatch):

@@ -283,14 +283,14 @@ def _independent(
     while left.size:
         apart = values[left] - values[left[0]]
         steps = np.rint(apart.imag / system.base).astype(int)
-        alike = np.abs(apart - 1j * steps * system.base) <= near
-        group, left, steps = left[alike], left[~alike], steps[alike]
+        alike = np.flatnonzero(np.abs(apart - 1j * steps * system.base) <= near)
+        copies = [shifted(shapes[:, :, left[i]], steps[i]) for i in alike]
+        flat = np.array(copies).reshape(len(alike), -1).T
+        # an exponent may be a copy by chance, many harmonics away: that is another motion
+        kept = np.linalg.norm(flat, axis=0) > _HALF
+        group, left, flat = left[alike[kept]], np.delete(left, alike[kept]), flat[:, kept]
         if group.size < 2:
             continue
-        copies = [shifted(shapes[:, :, i], n) for i, n in zip(group, steps, strict=True)]
-        flat = np.array(copies).reshape(len(group), -1).T
-        kept = np.linalg.norm(flat, axis=0) > _HALF
-        group, flat = group[kept], flat[:, kept]
         span, sizes, _ = np.linalg.svd(flat, full_matrices=False)
         rank = np.count_nonzero(sizes > _DEPENDENT * sizes[0])
         if rank == group.size or group.size > 2 * rank:
