@@ -230,7 +230,7 @@ def test_modes_by_floquets_method_where_hills_fails(speed, monkeypatch):
 
 
 def test_a_free_motion_beside_a_frequency_that_is_a_multiple_of_the_base():
-    """Two masses on a rod: free and 1e4 rad/s along the axis, which is 100 times twice the speed."""
+    """Two masses on a rod: free and 1e4 rad/s along the axis, which is 100 times 2Ω."""
     rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
     rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
     rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
