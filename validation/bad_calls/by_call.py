@@ -127,6 +127,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("InductionMotor", "breakdown_torque"): v.POSITIVE,
     ("InductionMotor", "synchronous_speed"): Kind(v.SIGNED.good - {"zero"}),
     ("Invariants.of", "basis"): v.ARRAY,
+    ("Invariants.of", "momenta"): v.ARRAY,
     ("LimitedPower", "stall_torque"): Kind(v.SIGNED.good - {"zero"}),
     ("LinearActuator", "force_current"): v.POSITIVE,
     ("LinearActuator", "negative_stiffness"): v.NOT_NEGATIVE,

@@ -65,8 +65,8 @@ SOLVERS = [
         ),
         (
             "shares of the first pass forgotten",
-            "basis @ share, shares + share",
-            "basis @ share, share",
+            "shares[some] += share",
+            "shares[some] = share",
         ),
         (
             "motions that the basis has no part of not looked for",
