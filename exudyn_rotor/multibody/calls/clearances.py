@@ -155,7 +155,7 @@ def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> str | None:
         return None
     return (
         f"rotor {watched.rotor!r} left its bearing at {watched.bearing.interface!r} at t = {t:g} s:"
-        f" its journal is {distance:.3g} m from the centre, {distance / gap:.3g} times the "
+        f" its journal is {distance:.3g} m from the centre, {distance - gap:.2g} m beyond the "
         "clearance that way; take smaller steps, begin from steady_state(body), reduce the load, "
         "or add a ClearanceStop at that interface for a rub"
     )

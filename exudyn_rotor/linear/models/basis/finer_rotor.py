@@ -101,7 +101,7 @@ class Basis:
         elastic = self.rotor.size - len(self.rotor.rigid_kinds)
         highest = self.rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
         name = f"rotor {self.name!r}" if self.name else "the reduced rotor"
-        return f"the {elastic} flexible modes of {name} (up to {highest:.4g} Hz)"
+        return f"the flexible modes of {name} ({elastic}, up to {highest:.4g} Hz)"
 
     @property
     def lacks_flexibility(self) -> bool:
