@@ -34,6 +34,8 @@ FAMILIES = ("lateral", "torsional", "axial", "disc", "other", "foundation")
 
 # a mode is mixed when the weaker sense has more than this share of the energy of the stronger
 MIXED_SHARE = 0.25
+# share of energy that two frequencies seen from outside may differ by and count as equally strong
+_EVEN = 0.05
 # a mode has n nodal diameters when ±n hold this share of its energy
 DIAMETER_SHARE = 0.7
 
@@ -43,7 +45,7 @@ _STATIC = 1e-7
 _NO_OSCILLATION = 1e-6
 # share of the mean wave number that turns one way in one motion of a pair
 _CIRCULAR = 0.8
-_SAMPLES = 800
+_SAMPLES = 8000  # nodes; of fewer, energies of waves depend on how the mesh numbers them
 _MANY = 100_000  # entries of vectors
 
 
@@ -82,8 +84,8 @@ class WhirlContent:
     def of(cls, model: LinearModel) -> WhirlContent:
         """Build the content of a linear model from mode shapes, or from its interfaces.
 
-        Equal weights for up to 800 mesh nodes, spread over the node numbers. Without mode shapes,
-        rings of points that move with the interfaces take their place.
+        Equal weights for up to 8000 mesh nodes, 400 of a SolidRotor, spread over the node numbers.
+        Without mode shapes, rings of points that move with the interfaces take their place.
         """
         return cls.from_points(model.point_motions(_SAMPLES))
 
@@ -233,9 +235,12 @@ class WhirlContent:
 
         Notes
         -----
-        The frequency is that of the strongest wave. The mode is mixed where the weaker sense has
-        more than a quarter of the energy of the stronger (half its amplitude), static where the
-        strongest wave stands still, unknown where nothing of it is seen; then n is taken as 0.
+        The frequency is the one with the most energy seen from outside, of all waves that turn
+        together. A motion that stands in the rotor frame, as that of a single blade, has as much at
+        ``ν + nΩ`` as at ``ν − nΩ``; where less than 5 % tells them apart the first counts. The mode
+        is mixed where the weaker sense has more than a quarter of the energy of the stronger (half
+        its amplitude), static where its strongest wave stands still, unknown where nothing of it is
+        seen; then n is taken as 0.
         """
         energy = self.energies(vectors)  # (h, o, k)
         beside, total = self.beside(vectors), self.whole_energy(vectors)
@@ -250,7 +255,7 @@ class WhirlContent:
         turns = np.sign(n * seen) * np.where(np.less(speed, 0.0), -1.0, 1.0)
         turns = np.where(np.abs(seen) <= _STATIC * np.abs(speed), 0.0, turns)
         flat = energy.reshape(-1, energy.shape[2])
-        best = np.argmax(flat, axis=0)
+        best = self._strongest(flat, np.add.outer(orders, self.orders).ravel(), speed)
         columns = np.arange(flat.shape[1])
         frequency = np.abs(seen.reshape(flat.shape)[best, columns])
         forward = np.sum(energy * (turns > 0), axis=(0, 1))
@@ -268,6 +273,24 @@ class WhirlContent:
         strongest = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
         frequency = np.where(unseen, np.abs(nu + strongest * speed), frequency)
         return frequency, code, self._diameters(energy, np.abs(total - np.sum(beside, axis=0)))
+
+    @staticmethod
+    def _strongest(
+        energy: np.ndarray, multiples: np.ndarray, speed: float | np.ndarray
+    ) -> np.ndarray:
+        """Return the strongest wave, of energies (w, k), of the strongest frequency, shape (k,).
+
+        Waves of one of the `multiples` (w,) of Ω have one frequency seen from outside.
+        """
+        known, place = np.unique(multiples, return_inverse=True)
+        together = np.zeros((known.size, energy.shape[1]))
+        np.add.at(together, place, energy)
+        # the known ones are even about zero, and ascend
+        first = np.argmax(together, axis=0)
+        upper = known.size // 2 + np.abs(first - known.size // 2) * np.where(speed < 0.0, -1, 1)
+        even = np.take_along_axis(together, upper[None], 0)[0] >= (1.0 - _EVEN) * together.max(0)
+        first = np.where(even, upper, first)
+        return np.argmax(np.where(place[:, None] == first, energy, -1.0), axis=0)
 
     def beside(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of what stands still, which counts as waves n = 0, shape (h, k)."""

@@ -17,6 +17,8 @@ from exudyn_rotor.linear.models.points import spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.theory.rotating_axes import axes_of
 
+_MOST_NODES = 400  # by which motions are told: their displacements are coordinates here
+
 
 @dataclass(frozen=True, eq=False)
 class FullRotor(FullEquations):
@@ -46,9 +48,9 @@ class FullRotor(FullEquations):
         return turn @ self.rotor.interfaces[name].mean_motion(self.rotor.node_count).toarray()
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return up to `most` nodes spread over the mesh; `rows` are their displacements."""
+        """Return up to `most` nodes, at most 400, spread over the mesh; `rows` are their motions."""
         axes = axes_of(self.axis)
-        nodes = spread(len(self.nodes), most // 2)
+        nodes = spread(len(self.nodes), min(most, _MOST_NODES))
         rows = (3 * nodes[:, None] + np.arange(3)).ravel()
         points = (self.nodes[nodes] - self.axis.point) @ axes
         return PointMotions(points, np.kron(np.eye(len(nodes)), axes.T), rows, True)
