@@ -8,6 +8,7 @@ from test_campbell_frames import SHAFT, point_mass, rings
 
 from exudyn_rotor import SolidRotor, Support, campbell, critical_speed_map, critical_speeds
 from exudyn_rotor.linear.modal.whirl import FORWARD
+from exudyn_rotor.linear.models.basis.basis_error import judged
 from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
@@ -32,9 +33,40 @@ def test_overdamped_motions_stand_behind_the_others():
     # across a rotor that turns, both real roots are seen with ±iΩ
     np.testing.assert_allclose(np.sort(result.growth[1, 3:]), [fast, slow, slow], rtol=1e-6)
     assert result.oscillates.tolist() == [[True] * 3 + [False] * 3] * 2
+    assert [sorted(row) for row in result.whirl[:, 3:]] == [["axial"] + 2 * ["overdamped"]] * 2
     assert np.all(result.continued)
     few = campbell(rotor, [0.0, 50.0], supports=supports, modes=3)
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [0.0, 10.0])
+def test_slow_and_fast_decays_on_strong_dampers(speed):
+    """λ = −k/c and −c/m; dampers that turn, uneven by more than 2 Ω m, tie the fast one to them."""
+    rotor = SolidRotor.from_matrices(
+        np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
+        interfaces={"left": [0], "right": [1]}, allow_parts=True,
+    )  # fmt: skip
+    supports = [Support(n, 1e5 * np.eye(3), 1e6 * np.eye(3)) for n in rotor.interfaces]
+    supports += [
+        Support(n, 0.0, np.diag([100.0, 0.0, 0.0]), frame="rotor") for n in rotor.interfaces
+    ]
+    result = campbell(rotor, [speed], supports=supports)
+    assert not np.any(result.oscillates)
+    slow = result.growth[0] > -1.0
+    np.testing.assert_allclose(result.growth[0, slow], -0.1, rtol=2e-4)
+    np.testing.assert_allclose(result.growth[0, ~slow], -1e6, rtol=2e-4)
+    assert slow.sum() == (6 if speed == 0.0 else 4)
+    assert set(result.whirl[0].tolist()) == {"overdamped", "axial"}
+    np.testing.assert_array_equal(result.damping_ratio, 1.0)
+
+
+def test_overdamped_motions_are_judged_by_their_decay():
+    """The fast one is that of a damper on the mass beside it, of which a finer basis has less."""
+    frequencies, growth = np.array([[0.0, 0.0, 300.0, 9e3]]), np.array([[-0.1, -4e6, -1.0, -1.0]])
+    for every, expected in ((False, [True, False, True, False]), (True, [True, False, True, True])):
+        modes = np.hstack([frequencies, np.arange(5.0)[None] + 1.0])
+        chosen = judged(modes, np.hstack([growth, np.zeros((1, 5))]), np.array([200.0]), every)
+        assert chosen[0, :4].tolist() == expected
 
 
 @pytest.mark.parametrize("stiffness", [1e6, np.diag([1e6, 2e6, 0.0])], ids=["even", "uneven"])

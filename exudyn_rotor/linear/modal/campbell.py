@@ -14,9 +14,10 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
+from exudyn_rotor.linear.modal.damping import damping_of, decays_alone, oscillates
 from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
 from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import WhirlContent, damping_of, oscillates
+from exudyn_rotor.linear.modal.whirl import WhirlContent, named_overdamped
 from exudyn_rotor.linear.models.basis.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -167,7 +168,8 @@ def campbell(
     tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count, seen)
     inertial = np.array([entry.inertial for entry in solved])
-    chosen = judged(inertial, values) if modes is None else np.full(inertial.shape, True)
+    growth = np.array([entry.modes.values.real for entry in solved])
+    chosen = judged(inertial, growth, values, modes is not None)
     shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
     splits = _splits(solved, values, content, space)
     result = _collected(values, solved, tracks, model, (shifts, splits, frame))
@@ -226,16 +228,19 @@ def _classified(
 ) -> list[_Solved]:
     """Return the modes ascending as they are `seen` from outside, or in the rotor frame.
 
-    Overdamped ones, which have the inertial frequency 0, stand behind the others.
+    Overdamped ones, which get the inertial frequency 0, stand behind the others.
     """
     vectors, *named = zip(*content.named_at(modes, speeds), strict=True)
     inertial, codes, diameters = (np.array([row[:count] for row in rows]) for rows in named)
-    growth = np.array([entry.values[:count].real for entry in modes])
+    values = np.array([entry.values[:count] for entry in modes])
+    growth, decays = values.real, np.array([_decays(entry)[:count] for entry in modes])
     resolution = np.array([[entry.resolution] for entry in modes])
     moves = oscillates(growth, inertial, resolution)
+    moves &= ~decays_alone(growth, values.imag, np.reshape(speeds, (-1, 1)))
+    codes = named_overdamped(codes, ~moves & decays)
     inertial = np.where(moves, inertial, 0.0)
     key = _ranks(inertial) if seen else np.broadcast_to(np.arange(count), inertial.shape)
-    order = np.lexsort((key, ~moves & (growth < -resolution)))
+    order = np.lexsort((key, ~moves & decays))
     solved = zip(modes, vectors, inertial, codes, diameters, order, strict=True)
     return [
         _Solved(
@@ -243,6 +248,11 @@ def _classified(
         ).columns(chosen)
         for entry, shapes, *found, chosen in solved
     ]
+
+
+def _decays(modes: FloquetModes) -> np.ndarray:
+    """Return which motions decay by more than rounding can feign, shape (k,)."""
+    return modes.values.real < -(modes.resolution if modes.bounds is None else modes.bounds)
 
 
 def _ranks(frequencies: np.ndarray) -> np.ndarray:
@@ -295,7 +305,7 @@ def _lowest(
         return solved, tracks
     first = solved[0].columns(tracks.columns[0])
     modes = first.modes
-    overdamped = (first.inertial == 0.0) & (modes.values.real < -modes.resolution)
+    overdamped = (first.inertial == 0.0) & _decays(modes)
     frequencies = first.inertial if seen else modes.values.imag
     chosen = np.sort(np.lexsort((frequencies, overdamped))[:count])
     used = tracks.columns[:, chosen]
@@ -318,6 +328,7 @@ def _collected(
     inertial = np.array(inertial)
     resolution = np.array([[entry.resolution] for entry in modes])
     neutral = (inertial == 0.0) & (np.abs(eigenvalues.real) <= resolution)
+    neutral &= ~np.array([_decays(entry) for entry in modes])
     growth = np.where(neutral, 0.0, eigenvalues.real)
     ratio, decrement = damping_of(growth, inertial)
     return Campbell(

@@ -21,6 +21,7 @@ _STYLES = {  # colour, line
     whirl.STATIC: ("0.7", ":"),
     whirl.UNKNOWN: ("0.2", "-"),
     whirl.FOUNDATION: (plotting.COLORS[5], "-"),
+    whirl.OVERDAMPED: ("0.7", ":"),
 }
 
 

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
-from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
+from exudyn_rotor.linear.modal.damping import oscillates
+from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
@@ -29,7 +30,8 @@ _UNSTABLE = 1e-4
 class Campbell(Result):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
-    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others.
+    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others; real
+    eigenvalues of the rotor frame are such from a decay of a hundred times the speed on.
     In the order of :meth:`tracked`, column j is the same mode at all speeds.
 
     Attributes
@@ -63,7 +65,8 @@ class Campbell(Result):
         Estimated ``λ − λ_reduced`` with λ of the full model: its real part is what the basis of a
         reduced rotor lacks in growth [1/s], its imaginary part in the frequency in the rotor frame
         [rad/s]. Zero for a full model; where no number of modes was asked for, NaN of those beyond
-        twice the highest speed and the lowest six; None where it is not known.
+        twice the highest speed and the lowest six, and always of overdamped motions that decay
+        faster than these; None where it is not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     splits : ndarray, shape (s, k), or None
@@ -141,7 +144,8 @@ class Campbell(Result):
         'forward' and 'backward' are seen from outside, relative to the spin; 'mixed' where the
         weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
         'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
-        is displaced; 'unknown' where neither shapes nor interfaces show the mode.
+        is displaced; 'overdamped' for a lateral motion that decays without oscillating;
+        'unknown' where neither shapes nor interfaces show the mode.
         """
         return np.array(WHIRLS)[self.whirl_codes]
 

@@ -24,9 +24,11 @@ from exudyn_rotor.threads import one_thread
 
 WHIRLS = (
     "forward", "backward", "mixed", "axial", "torsional", "radial", "static", "unknown",
-    "foundation",
+    "foundation", "overdamped",
 )  # fmt: skip
-FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN, FOUNDATION = range(len(WHIRLS))
+FORWARD, BACKWARD, MIXED, AXIAL, TORSIONAL, RADIAL, STATIC, UNKNOWN, FOUNDATION, OVERDAMPED = range(
+    len(WHIRLS)
+)
 
 # kinds of motion: 'lateral' has one nodal diameter, 'disc' more; 'other' are radial ones and those
 # that neither shapes nor interfaces show; 'foundation' moves more mass beside the rotor than in it
@@ -41,8 +43,6 @@ DIAMETER_SHARE = 0.7
 
 # inertial frequencies below this share of the speed are round-off
 _STATIC = 1e-7
-# share of |λ| below which a frequency is that of critical damping
-_NO_OSCILLATION = 1e-6
 # share of the mean wave number that turns one way in one motion of a pair
 _CIRCULAR = 0.8
 _SAMPLES = 8000  # nodes; of fewer, energies of waves depend on how the mesh numbers them
@@ -330,24 +330,10 @@ def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     return np.array(FAMILIES)[kinds]
 
 
-def oscillates(
-    growth: np.ndarray, frequency: np.ndarray, resolution: float | np.ndarray = 0.0
-) -> np.ndarray:
-    """Return where motions oscillate in the inertial frame: neither overdamped nor free."""
-    return frequency > np.maximum(_NO_OSCILLATION * np.abs(growth), resolution)
-
-
-def damping_of(growth: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return damping ratio and logarithmic decrement at inertial frequencies [rad/s].
-
-    The ratio lies from −1 to 1. The decrement is NaN where a motion decays or grows without
-    oscillating: at critical damping the root of the rounding is the least frequency that is one.
-    """
-    size = np.hypot(growth, frequency)
-    still = ~oscillates(growth, frequency)
-    ratio = np.where(still, -np.sign(growth), -growth / np.where(size > 0.0, size, 1.0))
-    decrement = -2.0 * np.pi * growth / np.where(still, np.nan, frequency)
-    return ratio + 0.0, np.where(growth == 0.0, 0.0, decrement) + 0.0
+def named_overdamped(codes: np.ndarray, overdamped: np.ndarray) -> np.ndarray:
+    """Return whirl codes; lateral motions that are overdamped have no sense."""
+    lateral = np.isin(codes, (FORWARD, BACKWARD, MIXED, STATIC))
+    return np.where(overdamped & lateral, OVERDAMPED, codes)
 
 
 def _energy(amplitudes: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
+from exudyn_rotor.linear.modal.damping import damping_of
+from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, families
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS

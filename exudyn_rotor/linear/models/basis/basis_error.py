@@ -163,13 +163,19 @@ def relative_errors(
     return np.where(np.isinf(errors), np.nan, errors)
 
 
-def judged(frequencies: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+def judged(
+    frequencies: np.ndarray, growth: np.ndarray, speeds: np.ndarray, every: bool = False
+) -> np.ndarray:
     """Return which modes (s, k) an analysis of all modes is judged by.
 
     Those up to twice the fastest speed in the inertial frame, and the lowest six that move, or all
-    if these are fewer; the highest modes of a larger basis are always wrong.
+    if these are fewer; the highest modes of a larger basis are always wrong. If `every`, all that
+    move. Overdamped ones count up to decays of that size: a faster one is that of a damper on the
+    mass next to it, of which a mesh has less, the finer it is.
     """
     moving = np.where(frequencies > 0.0, frequencies, np.inf)
     lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
     lowest = np.where(np.isfinite(lowest), lowest, frequencies.max(axis=1, keepdims=True))
-    return frequencies <= np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
+    limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
+    overdamped = (frequencies == 0.0) & (-growth > limit)
+    return ((frequencies <= limit) | every) & ~overdamped

@@ -48,7 +48,7 @@ class FullRotor(FullEquations):
         return turn @ self.rotor.interfaces[name].mean_motion(self.rotor.node_count).toarray()
 
     def point_motions(self, most: int) -> PointMotions:
-        """Return up to `most` nodes, at most 400, spread over the mesh; `rows` are their motions."""
+        """Return up to `most` nodes, or 400, spread over the mesh; `rows` are their motions."""
         axes = axes_of(self.axis)
         nodes = spread(len(self.nodes), min(most, _MOST_NODES))
         rows = (3 * nodes[:, None] + np.arange(3)).ravel()
