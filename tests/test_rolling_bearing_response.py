@@ -175,6 +175,33 @@ def test_a_run_from_it_stays_on_it(founded):
     assert max(away_in_a_run(body, found, spin)) < 1e-2
 
 
+@pytest.mark.parametrize("speeds", [[0.0], [100.0]])
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_rotor_that_tilts_about_its_only_bearing_is_told(speeds, count):
+    solid = ring_rotor(0.1, 0.2, 8.0)
+    rotor = solid.with_interface("left", range(5)).reduce(0)
+    with pytest.raises(ValueError, match="against tilting: all stand at 'left'; add one at"):
+        rolling_bearing_response(
+            rotor, speeds, supports=count * [bearing("left")], gravity=[3.0, -9.81, 0.0]
+        )
+
+
+def test_a_load_along_the_axis_that_nothing_holds_is_told():
+    with pytest.raises(ValueError, match=r"holds the rotor along its axis, .* 'seat'; add a stiff"):
+        rolling_bearing_response(
+            point(), [100.0], supports=bearing(), gravity=GRAVITY,
+            loads=[HarmonicForce("seat", [0.0, 0.0, 5.0])],
+        )  # fmt: skip
+
+
+def test_gravity_along_the_axis_presses_no_element():
+    """Upright and all but balanced, a rotor of 1 µm clearance rests at no element."""
+    unbalance = [Unbalance("seat", 1e-7)]
+    given = {"supports": bearing(clearance=1e-6), "own": False}
+    with pytest.raises(ValueError, match="gravity: lies along the axis, where it presses no"):
+        rolling_bearing_response(point(), [30.0], unbalance, gravity=[0, 0, -9.81], **given)
+
+
 def test_refused_input():
     balls = bearing()
     for given, match in (

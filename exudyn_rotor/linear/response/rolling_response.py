@@ -27,6 +27,7 @@ from exudyn_rotor.linear.models.linear_model import (
     warn_of_left_out_stiffening,
 )
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.linear.response.contact_balance import Harmonics
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
@@ -39,6 +40,7 @@ from exudyn_rotor.linear.response.rolling_motion import RollingProblem, SteadyMo
 from exudyn_rotor.linear.response.rolling_result import RollingBearingResponse
 from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero
@@ -46,6 +48,7 @@ from exudyn_rotor.threads import one_thread
 
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
+_NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
 _ROUND = 1e-12  # share of the largest harmonic
 
 
@@ -106,7 +109,8 @@ def rolling_bearing_response(
     Raises
     ------
     TypeError, ValueError
-        For bad input, no rolling bearing, two ball pass frequencies, and no load at all.
+        For bad input, no rolling bearing, two ball pass frequencies, no load at all, and a load
+        on a motion that no support holds.
     UnconvergedError
         Where no steady motion of these two frequencies is found.
 
@@ -176,13 +180,44 @@ def rolling_bearing_response(
         unbalance = unbalance_load(model, unbalances, own)
     _check_loaded(static, values[0] * unbalance)
     problem = RollingProblem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
-    with one_thread():
-        solved = problem.swept(values[::-1] if downwards else values, tolerance)
+    try:
+        with one_thread():
+            solved = problem.swept(values[::-1] if downwards else values, tolerance)
+    except ValueError as error:
+        pressed = bool(weight or loads) or not np.any(gravity)
+        raise _explained(error, model.free_motions, given, pressed) from error
     solved = solved[::-1] if downwards else solved
     _warn_of_left_out(max(solved, key=lambda one: one.error), tolerance)
     found = _result(problem, observed, values, solved)
     _warn_of_instability(found)
     return found
+
+
+def _explained(
+    error: ValueError, free: Sequence[str], supports: Sequence[Given], pressed: bool
+) -> ValueError:
+    """Return the error with what the rotor lacks, where that is known: a support or a load."""
+    across = [name for name in free if name not in _NOT_ACROSS]
+    ends = ", ".join(dict.fromkeys(repr(one.interface) for one in supports))
+    if across:
+        motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
+        lacking = (
+            f"supports: nothing holds the rotor against {motion}: all stand at {ends}; add one at "
+            "another interface"
+        )
+    elif ModeKind.AXIAL.value in free and not isinstance(error, UnconvergedError):
+        lacking = (
+            f"supports: nothing holds the rotor along its axis, where supports stand at {ends}; add "
+            "a stiffness along the axis, or leave out loads along it"
+        )
+    elif not pressed:
+        lacking = (
+            "gravity: lies along the axis, where it presses no element; give a load across it, or "
+            "an unbalance that is not small"
+        )
+    else:
+        return error
+    return type(error)(f"{lacking} ({error})")
 
 
 def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> None:

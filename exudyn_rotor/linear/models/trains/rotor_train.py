@@ -125,6 +125,8 @@ class RotorTrain:
             positions[name] = checks.vector(given, f"positions[{name!r}]", "m", size=3)
         check_places(rotors, links, positions)
         driven = checks.labels(self.driven, "driven", rotors)
+        if len(set(driven)) < len(driven):
+            raise ValueError(f"driven: needs every rotor once, got {list(driven)}")
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
