@@ -10,6 +10,7 @@ from exudyn_rotor import Support
 from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.protocol import PointMotions
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 
 NU, SPEED = 1000.0, 300.0
 
@@ -69,3 +70,13 @@ def test_energies_of_waves_do_not_depend_on_how_a_mesh_numbers_its_nodes():
         for rotor in (reduced, moved)
     )
     np.testing.assert_allclose(two, one, rtol=1e-8, atol=1e-10 * one.max())
+
+
+def test_slow_growth_beside_a_free_motion_keeps_its_name():
+    """Closer to zero than two copies of a free motion may be, but not zero to rounding."""
+    vectors = np.zeros((1, 6, 3))
+    vectors[0, 0, 0] = vectors[0, 2, 1] = vectors[0, 3, 2] = 1.0
+    modes = FloquetModes(np.array([0.0, 1e-4, -1e-4], complex), vectors, np.array([0]), 1e-3)
+    _, _, codes, diameters = ring_content(0, 1, 2).named(modes, SPEED)
+    assert [WHIRLS[code] for code in codes] == ["axial", "forward", "forward"]
+    assert diameters.tolist() == [0, 1, 1]

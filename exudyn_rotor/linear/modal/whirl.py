@@ -11,7 +11,7 @@ Dynamics of Rotating Systems (2005).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -209,7 +209,7 @@ class WhirlContent:
                 vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
                 halves = [np.flatnonzero(~negative), np.flatnonzero(negative)]
             for half in halves:
-                for group in repeated(entry.values[half], entry.resolution):
+                for group in _copies(entry.values[half], entry.resolution):
                     copies = vectors[:, :, half[group]]
                     # free motions are the same at all speeds
                     if not np.array_equal(copies, last[0]):
@@ -328,6 +328,13 @@ def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     for code, kind in special.items():
         kinds = np.where(np.asarray(codes) == code, kind, kinds)
     return np.array(FAMILIES)[kinds]
+
+
+def _copies(values: np.ndarray, resolution: float) -> Iterator[np.ndarray]:
+    """Yield the indices of values that are one; of zero only what rounding has made of it."""
+    for group in repeated(values, resolution):
+        zero = values[group] == 0.0
+        yield from (part for part in (group[zero], group[~zero]) if part.size > 1)
 
 
 def named_overdamped(codes: np.ndarray, overdamped: np.ndarray) -> np.ndarray:

@@ -207,7 +207,7 @@ def _explained(
         )
     elif ModeKind.AXIAL.value in free and not isinstance(error, UnconvergedError):
         lacking = (
-            f"supports: nothing holds the rotor along its axis, where supports stand at {ends}; add "
+            f"supports: nothing holds the rotor along its axis, with supports at {ends}; add "
             "a stiffness along the axis, or leave out loads along it"
         )
     elif not pressed:
