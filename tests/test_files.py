@@ -173,7 +173,7 @@ def test_no_impossible_rotor_loads(key, tmp_path):
         ("ReducedRotor", {"interface_names": np.array(["left", "left"])}),
         ("ReducedRotor", {"rigid": np.array([f"motion {i}" for i in range(10)])}),
         ("ReducedRotor", {"centrifugal.yield_stress": np.array(-1.0)}),
-        ("Campbell", {"field.whirl_codes": np.full((3, 2), 9)}),
+        ("Campbell", {"field.whirl_codes": np.full((3, 2), 10)}),
         ("Campbell", {"field.order": np.zeros((3, 2), dtype=int)}),
         ("StressHistory", {"field.nodes": np.array([2, 4])}),
         ("StressHistory", {"field.triangles": np.array([[0, 1, 4]])}),

@@ -21,6 +21,8 @@ from void_films import (
 )
 
 from exudyn_rotor import (
+    BaseAcceleration,
+    BaseRecord,
     Foundation,
     HarmonicForce,
     JournalBearing,
@@ -28,6 +30,7 @@ from exudyn_rotor import (
     RotorTrain,
     Support,
     Unbalance,
+    base_response,
     campbell,
     critical_speed_map,
     harmonic_response,
@@ -37,6 +40,7 @@ from exudyn_rotor import (
     stability_threshold,
     steady_state,
     unbalance_response,
+    unstable_ranges,
 )
 from exudyn_rotor.bearings.film import void_states
 from exudyn_rotor.linear.periodic.exponents import exponents
@@ -189,6 +193,30 @@ def test_a_limit_of_stability_is_that_of_the_film():
     s = exponent(state, 0.5 * reduced.invariants.mass, 0.5j * found.values[0])
     assert abs(s.real) < 1e-5 * abs(s)
     assert s.imag == pytest.approx(found.frequencies_inertial[0], rel=1e-5)
+
+
+def test_unstable_ranges_begin_at_the_limit_of_the_film():
+    supports = bearings(rotor())
+    (found,) = unstable_ranges(rotor(), [600.0, 700.0], supports=supports, accuracy=None)
+    s = exponent(supports[0]._state(found[0], None), 53.5, 0.5j * found[0])
+    assert abs(s.real) < 1e-6 * abs(s)
+    assert found[1] == 700.0
+
+
+def test_ground_that_shakes_on_and_on_has_the_response_in_harmonics():
+    """After exp(−16 · 0.7) of the start, with straight lines between samples: (ν h)²/12 = 8e-5."""
+    reduced, speed, nu = rotor(), 300.0, 120.0
+    time = np.linspace(0.0, 0.8, 3201)
+    shaken = BaseRecord(time, np.outer(np.sin(nu * time), [1.0, 0.0, 0.0]))
+    given = {"speed": speed, "supports": bearings(reduced)}
+    found = base_response(reduced, shaken, **given)
+    last = found.time > 0.7
+    waves = np.exp(1j * nu * found.time[last])
+    fit = np.linalg.lstsq(np.column_stack([waves.real, waves.imag]), found.motion[last, 0, :2])[0]
+    load = BaseAcceleration([-1j, 0.0, 0.0])
+    expected = harmonic_response(reduced, [nu], loads=load, accuracy=None, **given).motion
+    expected = expected[0, 0, 0, :2]
+    assert np.abs(fit[0] - 1j * fit[1] - expected).max() < 2e-4 * np.abs(expected).max()
 
 
 def test_trains_processes_and_speeds_give_the_same():

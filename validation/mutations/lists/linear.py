@@ -203,6 +203,30 @@ LINEAR = [
         ),
     ),
     *mutations(
+        "linear/modal/whirl.py",
+        "test_seen_from_outside.py",
+        ("of two equal frequencies any one", "(1.0 - _EVEN)", "(1.0 + _EVEN)"),
+        (
+            "of two equal frequencies that against the spin",
+            "np.where(speed < 0.0, -1, 1)",
+            "np.where(speed < 0.0, 1, -1)",
+        ),
+        (
+            "slow growth is a copy of a free motion",
+            "in (group[zero], group[~zero])",
+            "in (group,)",
+        ),
+    ),
+    *mutations(
+        "linear/modal/damping.py",
+        "test_campbell_kinds.py",
+        (
+            "motions that are over at once oscillate with the spin",
+            "~oscillates(growth, nu) & gone",
+            "oscillates(growth, nu) & gone",
+        ),
+    ),
+    *mutations(
         "linear/modal/campbell.py",
         "test_campbell_kinds.py",
         (
