@@ -1,7 +1,9 @@
-"""Properties that are computed once for each object."""
+"""Properties, and functions of an object, that are computed once for each object."""
 
 import functools
+from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
+from weakref import WeakKeyDictionary
 
 Value = TypeVar("Value")
 
@@ -21,3 +23,18 @@ class cached_property(functools.cached_property[Value]):  # noqa: N801, TID251
             if instance is None:
                 return self
             return instance.__dict__.setdefault(self.attrname, self.func(instance))
+
+
+def kept(function: Callable[..., Value]) -> Callable[..., Value]:
+    """Keep what a function finds of an object as long as the object lives.
+
+    Its other arguments have to be hashable; the result must not refer to the object.
+    """
+    results: WeakKeyDictionary = WeakKeyDictionary()
+
+    @functools.wraps(function)
+    def known(each: object, *rest: object) -> Value:
+        found = results.setdefault(each, {})
+        return found[rest] if rest in found else found.setdefault(rest, function(each, *rest))
+
+    return known

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
 from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes
 from exudyn_rotor.linear.periodic.eigenvalues import repeated
@@ -89,20 +90,10 @@ class WhirlContent:
         """
         return cls.from_points(model.point_motions(_SAMPLES))
 
-    @classmethod
-    @one_thread()
-    def from_points(cls, points: PointMotions) -> WhirlContent:
-        """Build the content from points and their motions."""
-        none = np.zeros((0, points.motion.shape[1]))
-        standing = none if points.standing is None else points.standing
-        starts = points.ends[:-1]
-        coordinates = np.split(points.points, starts)
-        motions = np.split(points.motion, [3 * start for start in starts])
-        still = [standing, *[none] * len(starts)]
-        orders, *each = zip(*map(_operators, coordinates, motions, still), strict=True)
-        # the energies of several rotors add up
-        operators = (np.concatenate(parts, axis=-2) for parts in each)
-        return cls(orders[0], *operators, standing, points.rows)
+    @staticmethod
+    def from_points(points: PointMotions) -> WhirlContent:
+        """Build the content from points and their motions; made once for each of these."""
+        return _content_of(points)
 
     def within(self, basis: np.ndarray | None) -> WhirlContent:
         """Return the content of a basis (c, r) of the coordinates; None for all of them."""
@@ -319,6 +310,21 @@ class WhirlContent:
 
     def _chosen(self, vectors: np.ndarray) -> np.ndarray:
         return vectors if self.rows is None else vectors[:, self.rows]
+
+
+@kept
+@one_thread()
+def _content_of(points: PointMotions) -> WhirlContent:
+    none = np.zeros((0, points.motion.shape[1]))
+    standing = none if points.standing is None else points.standing
+    starts = points.ends[:-1]
+    coordinates = np.split(points.points, starts)
+    motions = np.split(points.motion, [3 * start for start in starts])
+    still = [standing, *[none] * len(starts)]
+    orders, *each = zip(*map(_operators, coordinates, motions, still), strict=True)
+    # the energies of several rotors add up
+    operators = (np.concatenate(parts, axis=-2) for parts in each)
+    return WhirlContent(orders[0], *operators, standing, points.rows)
 
 
 def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:

@@ -12,7 +12,22 @@ TOP = [
             "            with __import__('logging')._lock:\n"
             "                return instance.__dict__.setdefault",
         ),
-        ("the value not kept", ".setdefault(", ".__class__().setdefault("),
+        ("the value not kept", "__dict__.setdefault(", "__dict__.copy().setdefault("),
+    ),
+    *mutations(
+        "cached.py",
+        "test_cached.py",
+        (
+            "results of other objects taken",
+            "results.setdefault(each, {})",
+            "results.setdefault(known, {})",
+        ),
+        ("other arguments not looked at", "rest in found", "found"),
+        (
+            "results never let go",
+            "WeakKeyDictionary = WeakKeyDictionary()",
+            "WeakKeyDictionary = {}",
+        ),
     ),
     *mutations(
         "storage.py",

@@ -7,10 +7,10 @@ turning frame (:mod:`exudyn_rotor.reduction`), as far as its own columns do not 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.models.protocol import Mesh
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor, without_supports
 from exudyn_rotor.reduction.other_basis import in_basis
@@ -120,20 +120,12 @@ class Basis:
         return bool(parts[1] - parts[0] > _MISSING * parts[1])
 
 
-_known: WeakKeyDictionary[ReducedRotor, ReducedRotor | None] = WeakKeyDictionary()
-
-
+@kept
 def finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
     """Return a rotor with the columns of `rotor`, then those that it lacks, mass-orthonormal.
 
     None where these are not known. The latter diagonalise the stiffness, ascending. Made once.
     """
-    if rotor not in _known:
-        _known[rotor] = _finer_rotor(rotor)
-    return _known[rotor]
-
-
-def _finer_rotor(rotor: ReducedRotor) -> ReducedRotor | None:
     attached, in_attached = rotor.with_attachments, rotor.in_attached
     return None if in_attached is None else _beside(rotor, attached, in_attached)
 

@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
+from exudyn_rotor.cached import cached_property, kept
 from exudyn_rotor.linear.models.free_motions import free_motions_of_reduced, free_motions_of_solid
 from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
@@ -26,9 +25,11 @@ from exudyn_rotor.linear.models.rotor.spin import Spin, spin_of
 from exudyn_rotor.linear.models.rotor.supported_rotor import SupportedRotor
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem, Terms
+from exudyn_rotor.reduction.fields import ModeShapes
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
@@ -255,11 +256,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
                 for name, entry in rotor.interfaces.items()
             ]  # fmt: skip
             return ring_motions(rings, self.size)
-        nodes = spread(len(rotor.shapes.nodes), most)
-        points = (rotor.shapes.nodes[nodes] - rotor.axis.point) @ axes
-        motion = rotor.shapes.matrix.reshape(-1, 3, self.size)[nodes]
-        motion = np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1)
-        return PointMotions(points, motion, None, True)
+        return _mesh_motions(rotor.shapes, rotor.axis, most)
 
     def whole_space(self, held: bool) -> WholeSpace:
         """Return all coordinates, `held` without a spin that nothing holds."""
@@ -273,23 +270,17 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         return WholeSpace(light, can_be_sent=True, driven=driven)
 
 
-_known: WeakKeyDictionary[ReducedRotor, dict[str, tuple[Invariants, SpinTerms, str]]]
-_known = WeakKeyDictionary()
-
-
+@kept
 def without_supports(rotor: ReducedRotor, stiffening: str) -> tuple[Invariants, SpinTerms, str]:
     """Return what supports do not change: invariants, terms and level; made once for each level."""
-    known = _known.setdefault(rotor, {})
-    if stiffening not in known:
-        origin = rotor.axis.project(rotor.center_of_mass)
-        invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
-        level = chosen_level(stiffening, invariants.K2 is not None)
-        terms = SpinTerms.of(invariants, second_order(invariants, level))
-        estimate = invariants.K2_estimated if stiffening == "auto" else None
-        if terms.K4 is not invariants.K4 or estimate is not invariants.K2_estimated:
-            invariants = replace(invariants, K4=terms.K4, K2_estimated=estimate)
-        known[stiffening] = invariants, terms, level
-    return known[stiffening]
+    origin = rotor.axis.project(rotor.center_of_mass)
+    invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+    level = chosen_level(stiffening, invariants.K2 is not None)
+    terms = SpinTerms.of(invariants, second_order(invariants, level))
+    estimate = invariants.K2_estimated if stiffening == "auto" else None
+    if terms.K4 is not invariants.K4 or estimate is not invariants.K2_estimated:
+        invariants = replace(invariants, K4=terms.K4, K2_estimated=estimate)
+    return invariants, terms, level
 
 
 def add_terms(terms: dict[int, np.ndarray], harmonics: Terms, U: np.ndarray) -> None:
@@ -311,3 +302,13 @@ def congruent(X: np.ndarray, U: np.ndarray) -> np.ndarray:
             block = U.T @ part @ U
             result += 0.5 * (block + sign * block.T)
     return result
+
+
+@kept
+def _mesh_motions(shapes: ModeShapes, axis: SpinAxis, most: int) -> PointMotions:
+    """Return up to `most` nodes along (n1, n2, e) from a point of the axis."""
+    axes, nodes = axes_of(axis), spread(len(shapes.nodes), most)
+    points = (shapes.nodes[nodes] - axis.point) @ axes
+    motion = shapes.matrix.reshape(len(shapes.nodes), 3, -1)[nodes]
+    motion = np.einsum("ab,sak->sbk", axes, motion).reshape(3 * len(nodes), -1)
+    return PointMotions(points, motion, None, True)
