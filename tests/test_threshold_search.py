@@ -10,11 +10,12 @@ from scipy.optimize import linear_sum_assignment
 from exudyn_rotor import Support, linear_model, stability_threshold
 from exudyn_rotor.linear.stability import thresholds
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt
+from exudyn_rotor.linear.stability.growth_over import GrowthOver
 from exudyn_rotor.linear.stability.threshold_search import Search
 from validation.extremes.rotors import held, shaft_frequencies, shaft_rotor
 
 
-class Given(thresholds._Made):
+class Given(GrowthOver):
     """Growth of one motion, a function of the parameter; counts its calls."""
 
     def __init__(self, real: Callable[[float], float]) -> None:
@@ -59,7 +60,7 @@ def test_a_limit_of_a_finer_model_is_searched_beside_the_limit(monkeypatch, shif
         return float(np.sqrt(complex(sign * (value - 0.5 - shift))).real) - 1e-9
 
     finer = Given(real)
-    monkeypatch.setattr(thresholds, "_Finer", lambda _: finer)
+    monkeypatch.setattr(thresholds, "Finer", lambda _: finer)
     search = Search(finer, 1.0)
     search.at(0.0), search.at(1.0)
     finer.calls = 0
@@ -72,7 +73,7 @@ def test_a_limit_of_a_finer_model_is_searched_beside_the_limit(monkeypatch, shif
 def test_a_narrow_range_of_a_finer_model_is_found(monkeypatch, onset, distance):
     """Unstable from 0.52 to 0.522, between the steps away from a limit at 0.5."""
     finer = Given(lambda value: 1e-6 - (value - 0.521) ** 2)
-    monkeypatch.setattr(thresholds, "_Finer", lambda _: finer)
+    monkeypatch.setattr(thresholds, "Finer", lambda _: finer)
     search = Search(finer, 1.0)
     search.at(0.0), search.at(1.0)
     found = thresholds._searched_again(search, 0.5, onset)

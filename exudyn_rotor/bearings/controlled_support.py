@@ -10,8 +10,24 @@ import numpy as np
 from exudyn_rotor.bearings.support import Coefficient, Support
 
 
+class _InPairs:
+    """Own coordinates that come in pairs, along the two directions across the axis."""
+
+    inertia: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Number of own coordinates."""
+        return 2 * len(self.inertia)
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Inertia of every own coordinate, shape (2b,) [kg]."""
+        return np.repeat(self.inertia, 2)
+
+
 @dataclass(frozen=True, eq=False)
-class ControlledSupport:
+class ControlledSupport(_InPairs):
     """Linear equations between a rotor and a controller, ``M p̈ + D ṗ + K p = 0``.
 
     The ports p are pairs along (n1, n2), which stand still: the displacement where the bearing
@@ -38,23 +54,13 @@ class ControlledSupport:
     static_stiffness: np.ndarray
 
     @property
-    def size(self) -> int:
-        """Number of own coordinates."""
-        return 2 * len(self.inertia)
-
-    @property
-    def masses(self) -> np.ndarray:
-        """Inertia of every own coordinate, shape (2b,) [kg]."""
-        return np.repeat(self.inertia, 2)
-
-    @property
     def direct_stiffness(self) -> np.ndarray:
         """Stiffness that acts without the controller, shape (2, 2) [N/m]."""
         return self.stiffness[:2, :2]
 
 
 @dataclass(frozen=True, eq=False)
-class FilmSupport:
+class FilmSupport(_InPairs):
     """A film whose voids remember, with what they remember as own coordinates.
 
     The ports are those of :class:`ControlledSupport` without that of sensors: the journal's
@@ -82,16 +88,6 @@ class FilmSupport:
     def sensor(self) -> str:
         """The journal's interface."""
         return self.interface
-
-    @property
-    def size(self) -> int:
-        """Number of own coordinates."""
-        return 2 * len(self.inertia)
-
-    @property
-    def masses(self) -> np.ndarray:
-        """Inertia of every own coordinate, shape (2b,) [kg]."""
-        return np.repeat(self.inertia, 2)
 
     @property
     def direct_stiffness(self) -> float:

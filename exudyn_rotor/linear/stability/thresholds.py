@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.basis_error import BasisError
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.linear_model import Target
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError, fold
-from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
+from exudyn_rotor.linear.stability.growth_over import (
+    Finer,
+    GrowthOver,
+    Options,
+    OverParameter,
+    OverSpeed,
+    Supports,
+)
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
 from exudyn_rotor.sweep import ascending_from_zero
@@ -31,7 +33,6 @@ _NEAR, _TIMES = 5e-3, 10.0
 _REACH, _STEPS, _POINTS = 0.05, 6, 9
 # of such a step: to which the distance is found
 _SHARE = 0.02
-Supports = Sequence[Support] | Support
 
 
 def stability_threshold(
@@ -109,7 +110,7 @@ def stability_threshold(
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        made: _Made = _OverSpeed.of(target, high, given | {"supports": supports})
+        made: GrowthOver = OverSpeed.of(target, high, given | {"supports": supports})
     else:
         if speed is None:
             given = "target" if callable(target) else "supports"
@@ -119,7 +120,7 @@ def stability_threshold(
                 "the parameter"
             )
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
-        made = _OverParameter(target, supports, speed, _Options.of(given))
+        made = OverParameter(target, supports, speed, Options.of(given))
     search = Search(made, high - low)
     for point in np.linspace(low, high, samples + 1):
         search.at(float(point))
@@ -164,7 +165,7 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     array([[300., 400.]])
     """
     values = ascending_from_zero(speeds, "speeds")
-    made = _OverSpeed.of(target, values[-1], given)
+    made = OverSpeed.of(target, values[-1], given)
     search = Search(made, values[-1])
     points = [float(value) for value in values]
     search.known |= zip(points, made.task.at_all(points), strict=True)
@@ -231,7 +232,7 @@ def _searched_again(search: Search, value: float, onset: bool) -> float:
     The growth of motions that meet changes with the root of the parameter: it has no slope there.
     The verdict at the limit tells on which side the other lies.
     """
-    finer, reach = Search(_Finer(search.made), search.span), _REACH * search.span
+    finer, reach = Search(Finer(search.made), search.span), _REACH * search.span
     low, high = min(search.known), max(search.known)
     side = -1.0 if finer.unstable(value) == onset else 1.0
     for distance in reach * 4.0 ** np.arange(1.0 - _STEPS, 1.0):
@@ -275,133 +276,3 @@ def _warn_of_basis(
     worst = int(np.nanargmax(errors))
     what = f"the limit of stability at {values[worst]:.5g}, {label},"
     limits[worst].basis.warn(errors[worst], what)
-
-
-@dataclass(frozen=True, eq=False)
-class _Options:
-    """Options of :func:`exudyn_rotor.stability`."""
-
-    model: dict
-    modes: int | None
-    residual: float
-    method: str
-    tolerance: float
-    accuracy: float | None
-
-    @classmethod
-    def of(cls, given: dict) -> _Options:
-        given = dict(given)
-        method, tolerance = given.pop("method", "auto"), given.pop("tolerance", 1e-9)
-        modes, residual = given.pop("modes", None), given.pop("residual", 1e-7)
-        accuracy = given.pop("accuracy", 1e-2)
-        options.check_basis_accuracy(accuracy)
-        check_options(method, tolerance, modes, residual)
-        unknown = set(given) - {"supports", "body", "stiffening"}
-        if unknown:
-            raise TypeError(f"stability: unknown option {', '.join(sorted(unknown))}")
-        return cls(given, modes, residual, method, tolerance, accuracy)
-
-
-class _Made:
-    """Growth over a parameter.
-
-    `accuracy` is that of the basis, `solver` method and tolerance of exponents.
-    """
-
-    accuracy: float | None
-    solver: tuple[str, float]
-
-    def growth(self, value: float, named: bool = False) -> Growth:
-        """Return the growth, with the names of the motions if asked for."""
-        raise NotImplementedError
-
-    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
-        """Return None: a second growth tells the rates of exponents."""
-        return None
-
-    def basis(self, value: float) -> tuple[BasisError, float]:
-        """Return the check of the basis, and the spin speed."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True, eq=False)
-class _OverSpeed(_Made):
-    """The parameter is the spin speed."""
-
-    task: GrowthAt
-    named: GrowthAt
-    checked: BasisError
-
-    @classmethod
-    def of(cls, target: Target, highest: float, given: dict) -> _OverSpeed:
-        chosen = _Options.of(given)
-        model = linear_model(target, **chosen.model)
-        space = held_space(model, highest, chosen.modes, chosen.residual)
-        parts = space, chosen.method, chosen.tolerance
-        checked = BasisError.of(model, chosen.accuracy, held=True)
-        named = GrowthAt(*parts, WhirlContent.of(model), keeps=True)
-        return cls(GrowthAt(*parts, keeps=True), named, checked)
-
-    @property
-    def accuracy(self) -> float | None:
-        return self.checked.accuracy
-
-    @property
-    def solver(self) -> tuple[str, float]:
-        return self.task.method, self.task.tolerance
-
-    def growth(self, value: float, named: bool = False) -> Growth:
-        return (self.named if named else self.task)(value)
-
-    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
-        return self.task.rates(growth, value, step)
-
-    def basis(self, value: float) -> tuple[BasisError, float]:
-        return self.checked, value
-
-
-@dataclass(frozen=True, eq=False)
-class _Finer(_Made):
-    """Growth with the shapes that the basis of a reduced rotor lacks first."""
-
-    made: _Made
-
-    def growth(self, value: float) -> Growth:
-        """Return the growth at a value of the parameter."""
-        basis, speed = self.made.basis(value)
-        space = basis.left_out.equations.space(0, speed, held=True)
-        method, tolerance = self.made.solver
-        # high frequencies of what the basis lacks take many times as long by Floquet's method
-        return GrowthAt(space, "hill" if method == "auto" else method, tolerance)(speed)
-
-
-@dataclass(frozen=True, eq=False)
-class _OverParameter(_Made):
-    """The parameter changes the model at one spin speed."""
-
-    target: Target | Callable[[float], Target]
-    supports: Supports | Callable[[float], Supports]
-    speed: float
-    options: _Options
-
-    @property
-    def accuracy(self) -> float | None:
-        return self.options.accuracy
-
-    @property
-    def solver(self) -> tuple[str, float]:
-        return self.options.method, self.options.tolerance
-
-    def growth(self, value: float, named: bool = False) -> Growth:
-        chosen, model = self.options, self._model(value)
-        space = held_space(model, self.speed, chosen.modes, chosen.residual)
-        content = WhirlContent.of(model) if named else None
-        return GrowthAt(space, chosen.method, chosen.tolerance, content)(self.speed)
-
-    def basis(self, value: float) -> tuple[BasisError, float]:
-        return BasisError.of(self._model(value), self.accuracy, held=True), self.speed
-
-    def _model(self, value: float) -> LinearModel:
-        target = self.target(value) if callable(self.target) else self.target
-        supports = self.supports(value) if callable(self.supports) else self.supports
-        return linear_model(target, supports=supports, **self.options.model)

@@ -9,6 +9,7 @@ from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
+from validation.mutations.lists.linear_stability import LINEAR_STABILITY
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.multibody_rotor import MULTIBODY_ROTOR
 from validation.mutations.lists.pictures import PICTURES
@@ -36,6 +37,7 @@ ALL = (
     *LINEAR_MODELS,
     *LINEAR_PERIODIC,
     *LINEAR,
+    *LINEAR_STABILITY,
     *TRAINS,
     *EVALUATION,
     *PICTURES,
