@@ -32,9 +32,9 @@ import scipy.linalg as la
 
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.periodic.fundamental import sampled, state_matrix
-from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.periodic.shared_motions import shared_motions
 
 _FINER = 2  # angles for each that the harmonics need
 _STEPS = 8
@@ -44,15 +44,8 @@ _ENOUGH = 0.05
 _MORE = 10.0  # times what is told that an error may be
 # share of a divisor from which on a harmonic of F is left to the rest
 _NEAR = 0.3
-# length of motions, over the largest, below which they are none of their own
-_DEPENDENT = 1e-6
-_HALF = 0.5  # of a motion: what a copy has to have of it to be compared
-# of a column that stands for one: how it changes is not asked, but what comes of the others is
-_SMALL = 1e-4
 # share of the largest entry that keeps weights from zero
 _LEAST = 1e-16
-# relative distance of exponents that may share their motion
-_SAME = 1e-6
 
 
 def checked(
@@ -135,9 +128,9 @@ class _Remainder:
             limits = np.append(limits, 0.5 * decay)
         if not (decay > 0.0 and np.all(np.isfinite(f))):
             return np.inf, np.ones(len(self.values))
-        relative = f / limits[:, None]
+        relative, scales = la.matrix_balance(f / limits[:, None], permute=False, separate=True)
         roots, vectors = np.linalg.eig(relative + _LEAST * relative.max(initial=_LEAST))
-        weights = np.abs(vectors[:, np.argmax(roots.real)])
+        weights = scales[0] * np.abs(vectors[:, np.argmax(roots.real)])
         repeated = np.repeat(weights, [1] * count + [len(self.values) - count] * bool(fast.size))
         return float(roots.real.max()), repeated
 
@@ -197,25 +190,35 @@ class _States:
     ----------
     system : PeriodicSystem
     angles : ndarray, shape (n,)
-    values : ndarray, shape (2k,)
-        λ.
+    T : ndarray, shape (2k, 2k)
+        With λ on its diagonal, and beside it where motions are given by what they span together.
     P, E : ndarray, shape (n, 2k, 2k)
-        States ``(x, ẋ/s)`` and ``Ṗ + PΛ − AP``.
+        States ``(x, ẋ/s)`` and ``Ṗ + PT − AP``.
     scale : float
         s [1/s].
+    moved : ndarray, shape (2k,)
+        The diagonal of T less the exponents that are checked.
     """
 
     system: PeriodicSystem
     angles: np.ndarray
-    values: np.ndarray
+    T: np.ndarray
     P: np.ndarray
     E: np.ndarray
     scale: float
+    moved: np.ndarray
 
     @classmethod
     def of(cls, system: PeriodicSystem, found: HillMotions) -> _States:
-        """Return the states of motions; of some that share their displacement, see below."""
-        values, shapes, at_rest = _independent(system, found)
+        """Return the states of motions, those of exponents that are one by what they span."""
+        shapes = found.shapes / np.linalg.norm(found.shapes, axis=(0, 1))
+        rates = found.values + 1j * system.speed * found.orders[:, None, None]
+        speeds, T = rates * shapes, np.diag(found.values.astype(complex))
+        moved = np.zeros(len(T), dtype=complex)
+        for group in shared_motions(system, found):
+            columns = group.columns
+            shapes[..., columns], speeds[..., columns] = group.shapes, group.speeds
+            T[np.ix_(columns, columns)], moved[columns] = group.T, group.moved
         reach = (int(found.orders[-1]) + system.order) // system.step
         count = _FINER * (2 * reach + 1) + 1
         angles = 2.0 * np.pi / (system.step * count) * np.arange(count)
@@ -225,24 +228,24 @@ class _States:
             flat = waves @ X.reshape(len(X), -1)
             return flat.reshape(count, *X.shape[1:])
 
-        rates = values + 1j * system.speed * found.orders[:, None, None]
-        scale = max(np.abs(values).max(), abs(system.speed))
-        # of ``t exp(λt) p`` only the velocity p is kept, which is no solution by itself
-        moved = np.where(at_rest, 0.0, shapes)
-        x, v = at_angles(moved), at_angles(np.where(at_rest, shapes, rates * shapes))
-        a = at_angles(rates * np.where(at_rest, shapes, rates * shapes))
+        turning = 1j * system.speed * found.orders[:, None, None]
+        scale = max(np.abs(found.values).max(), abs(system.speed))
+        x, v = at_angles(shapes), at_angles(speeds)
         M, D, K = sampled(system, angles)
-        forced = a + np.linalg.solve(M, D @ v + K @ x)
+        drift = at_angles(turning * shapes + shapes @ T - speeds)
+        forced = at_angles(turning * speeds + speeds @ T) + np.linalg.solve(M, D @ v + K @ x)
         P = np.concatenate([x, v / scale], axis=1)
-        E = np.concatenate([np.where(at_rest, -v, 0.0), forced / scale], axis=1)
+        E = np.concatenate([drift, forced / scale], axis=1)
         lengths = np.sqrt(np.mean(np.linalg.norm(P, axis=1) ** 2, axis=0))
-        lengths = np.where(at_rest, 1.0 / _SMALL, 1.0) * np.where(lengths > 0.0, lengths, 1.0)
-        return cls(system, angles, values, P / lengths, E / lengths, scale)
+        lengths = np.where(lengths > 0.0, lengths, 1.0)
+        T = T * lengths[:, None] / lengths
+        return cls(system, angles, T, P / lengths, E / lengths, scale, moved)
 
     def remainder(self, allowed: np.ndarray) -> _Remainder:
         """Return what is left with these motions as coordinates."""
-        F = _solved(self.P, -self.E)
-        return _Remainder(F, self.values, allowed, self.system.base, np.zeros(len(allowed)))
+        values = np.diagonal(self.T)
+        F = _solved(self.P, -self.E) + self.T - np.diag(values)
+        return _Remainder(F, values, allowed, self.system.base, self.moved)
 
     def with_frozen(self, gone: np.ndarray, allowed: np.ndarray) -> _Remainder:
         """Return what is left with frozen directions in the place of motions."""
@@ -254,54 +257,19 @@ class _States:
         rates = 1j * base * np.fft.fftfreq(count, 1.0 / count)[:, None, None]
         E = np.fft.ifft(rates * np.fft.fft(Q, axis=0), axis=0) - A @ Q
         P = np.concatenate([self.P[:, :, ~gone], Q], axis=2)
-        F = _solved(P, -np.concatenate([self.E[:, :, ~gone], E], axis=2))
-        kept, fast = np.count_nonzero(~gone), slice(np.count_nonzero(~gone), None)
+        slow = self.E[:, :, ~gone] - self.P[:, :, gone] @ self.T[np.ix_(gone, ~gone)]
+        F = _solved(P, -np.concatenate([slow, E], axis=2))
+        own, moved = self.T[np.ix_(~gone, ~gone)], self.moved[~gone]
+        fast = slice(len(own), None)
         if not np.all(np.isfinite(F)):
-            return _Remainder(F, self.values, allowed[~gone], base, np.zeros(kept))
+            return _Remainder(F, np.diagonal(self.T), allowed[~gone], base, moved)
+        F[:, : len(own), : len(own)] += own - np.diag(np.diagonal(own))
         means, turn = np.linalg.eig(F[:, fast, fast].mean(axis=0))
         F[:, :, fast] = F[:, :, fast] @ turn
         F[:, fast] = _solved(np.broadcast_to(turn, (count, *turn.shape)), F[:, fast])
         F[:, fast, fast] -= np.diag(means)
-        values = np.append(self.values[~gone], means)
-        return _Remainder(F, values, allowed[~gone], base, np.zeros(kept))
-
-
-def _independent(
-    system: PeriodicSystem, found: HillMotions
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return λ and harmonics of motions, and which are at rest at the beginning.
-
-    Two exponents that are one with one motion ``exp(λt) p``, as those of a free motion, have
-    ``t exp(λt) p`` beside it, but for what follows it: it begins with a velocity alone. Of several
-    these are the ones that are damped least.
-    """
-    values, shapes = found.values.astype(complex), found.shapes.astype(complex)
-    shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
-    near = max(found.resolution, _SAME * abs(system.speed))
-    at_rest, left = np.zeros(len(values), dtype=bool), np.arange(len(values))
-    damping = (system.D[0] + system.D[0].T).real
-    while left.size:
-        apart = values[left] - values[left[0]]
-        steps = np.rint(apart.imag / system.base).astype(int)
-        alike = np.flatnonzero(np.abs(apart - 1j * steps * system.base) <= near)
-        copies = [shifted(shapes[:, :, left[i]], steps[i]) for i in alike]
-        flat = np.array(copies).reshape(len(alike), -1).T
-        # an exponent may be a copy by chance, many harmonics away: that is another motion
-        kept = np.linalg.norm(flat, axis=0) > _HALF
-        group, left, flat = left[alike[kept]], np.delete(left, alike[kept]), flat[:, kept]
-        if group.size < 2:
-            continue
-        span, sizes, _ = np.linalg.svd(flat, full_matrices=False)
-        rank = np.count_nonzero(sizes > _DEPENDENT * sizes[0])
-        if rank == group.size or group.size > 2 * rank:
-            continue
-        span = span[:, :rank].reshape(*shapes.shape[:2], rank)
-        by_damping = np.einsum("hki,kl,hlj->ij", span.conj(), damping, span)
-        turned = span @ np.linalg.eigh(by_damping)[1]
-        values[group] = values[group[0]]
-        shapes[:, :, group] = np.concatenate([span, turned], axis=2)[:, :, : group.size]
-        at_rest[group[rank:]] = True
-    return values, shapes, at_rest
+        values = np.append(np.diagonal(own), means)
+        return _Remainder(F, values, allowed[~gone], base, moved)
 
 
 def _fastest(A: np.ndarray, count: int) -> np.ndarray:

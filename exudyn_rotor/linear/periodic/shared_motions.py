@@ -1,0 +1,128 @@
+"""Motions of exponents that are nearly one, as what they span together.
+
+Where exponents are one but for multiples of the base, an eigenvalue problem may give one motion
+twice, and ``t exp(λt) p`` beside ``exp(λt) p`` not at all. What it cannot part it still tells
+together: with columns Z of states that span all of these motions, ``Ż = A Z − Z T``, T upper
+triangular with the exponents on its diagonal. In harmonics that is an invariant subspace of Hill's
+equations, by inverse iteration of all its columns at once. Source: Golub, Van Loan, Matrix
+Computations (2013), Sect. 7.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
+
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices, shifted
+from exudyn_rotor.linear.periodic.hill_motions import HillMotions
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+
+# relative distance of exponents that may share their motion
+_SAME = 1e-6
+# length of what is left of a motion, over the largest, below which it is none of its own
+_DEPENDENT = 1e-3
+_HALF = 0.5  # of a motion: what a copy has to have of it to be compared
+# distance of the shift from the exponents, over the speed, and over their distance from each other
+_AWAY, _WIDER = 1e-3, 10.0
+_STEPS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class SharedMotions:
+    """What some motions span together.
+
+    Attributes
+    ----------
+    columns : ndarray of int, shape (m,)
+        Which motions.
+    shapes, speeds : ndarray, shape (h, k, m)
+        Harmonics of x and ẋ.
+    T : ndarray, shape (m, m)
+        Upper triangular.
+    moved : ndarray, shape (m,)
+        Its diagonal less the exponents, modulo ipΩ.
+    """
+
+    columns: np.ndarray
+    shapes: np.ndarray
+    speeds: np.ndarray
+    T: np.ndarray
+    moved: np.ndarray
+
+
+def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMotions]:
+    """Return those of motions that are nearly dependent."""
+    shapes = found.shapes / np.linalg.norm(found.shapes, axis=(0, 1))
+    near = max(found.resolution, _SAME * abs(system.speed))
+    result, left = [], np.arange(len(found.values))
+    while left.size:
+        first = left[0]
+        apart = found.values[left] - found.values[first]
+        steps = np.rint(apart.imag / system.base).astype(int)
+        alike = np.flatnonzero(np.abs(apart - 1j * steps * system.base) <= near)
+        copies = np.stack([shifted(shapes[:, :, left[i]], steps[i]) for i in alike], axis=-1)
+        # an exponent may be a copy by chance, many harmonics away: that is another motion
+        kept = np.linalg.norm(copies, axis=(0, 1)) > _HALF
+        group, copies = left[alike[kept]], copies[..., kept]
+        values = found.values[group] - 1j * steps[alike[kept]] * system.base
+        left = np.delete(left, alike[kept])
+        inside = _dependent(values, copies, abs(system.speed))
+        if inside.size:
+            given = values[inside], copies[..., inside]
+            result.append(_together(system, found.orders, group[inside], *given))
+    return [each for each in result if each is not None]
+
+
+def _dependent(values: np.ndarray, copies: np.ndarray, speed: float) -> np.ndarray:
+    """Return which motions (h, k, j) depend on each other, with all that are near these."""
+    flat = copies.reshape(-1, len(values))
+    _, sizes, shares = np.linalg.svd(flat, full_matrices=False)
+    small = sizes <= _DEPENDENT * sizes[0]
+    mixed = np.any(np.abs(shares[small]) > _DEPENDENT, axis=0)
+    if np.count_nonzero(mixed) < 2:
+        return np.zeros(0, dtype=int)
+    center = values[mixed].mean()
+    reach = _WIDER * _away(values[mixed], speed)
+    return np.flatnonzero(mixed | (np.abs(values - center) <= reach))
+
+
+def _away(values: np.ndarray, speed: float) -> float:
+    return max(_AWAY * speed, _WIDER * np.abs(values - values.mean()).max())
+
+
+def _together(
+    system: PeriodicSystem,
+    orders: np.ndarray,
+    columns: np.ndarray,
+    values: np.ndarray,
+    copies: np.ndarray,
+) -> SharedMotions | None:
+    """Return what motions with λ (m,) and harmonics (h, k, m) span; None where that fails."""
+    count, speed = len(columns), abs(system.speed)
+    shift = values.mean() + _away(values, speed)
+    M, D, K = hill_matrices(system, orders)
+    scale = max(abs(shift), speed)
+    x = copies.reshape(-1, count)
+    rng = np.random.default_rng(0)  # what is missing has a share of it
+    Z = np.concatenate([x, x * values / scale]) + 1e-3 * rng.normal(size=(2 * len(x), count))
+    Q = np.linalg.qr(Z)[0]
+    try:
+        factors = la.lu_factor(shift**2 * M + shift * D + K)
+        for _ in range(_STEPS):
+            x, w = Q[: len(x)], scale * Q[len(x) :]
+            larger = la.lu_solve(factors, M @ (w + shift * x) + D @ x)
+            last, (Q, R) = Q, np.linalg.qr(np.concatenate([larger, (shift * larger - x) / scale]))
+        inverse = np.linalg.inv(R)
+    except (np.linalg.LinAlgError, ValueError):
+        return None
+    T, turn = la.schur(shift * np.eye(count) - Q.conj().T @ last @ inverse, output="complex")
+    Q = Q @ turn
+    apart = np.diagonal(T) - values[:, None]
+    places = linear_sum_assignment(np.abs(apart))[1]
+    order = np.argsort(places)
+    x, w = (X.reshape(len(orders), system.size, count) for X in np.split(Q, 2))
+    speeds = scale * w + 1j * system.speed * orders[:, None, None] * x
+    return SharedMotions(columns[order], x, speeds, T, np.diagonal(T) - values[order])
