@@ -27,7 +27,7 @@ _DEPENDENT = 1e-3
 _HALF = 0.5  # of a motion: what a copy has to have of it to be compared
 # distance of the shift from the exponents, over the speed, and over their distance from each other
 _AWAY, _WIDER = 1e-3, 10.0
-_STEPS = 10
+_STEPS = 30
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,14 +69,15 @@ def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMot
         group, copies = left[alike[kept]], copies[..., kept]
         values = found.values[group] - 1j * steps[alike[kept]] * system.base
         left = np.delete(left, alike[kept])
-        inside = _dependent(values, copies, abs(system.speed))
+        least = min(max(_AWAY * abs(system.speed), found.resolution), 0.5 * abs(system.speed))
+        inside = _dependent(values, copies, least)
         if inside.size:
             given = values[inside], copies[..., inside]
-            result.append(_together(system, found.orders, group[inside], *given))
+            result.append(_together(system, found.orders, group[inside], *given, least))
     return [each for each in result if each is not None]
 
 
-def _dependent(values: np.ndarray, copies: np.ndarray, speed: float) -> np.ndarray:
+def _dependent(values: np.ndarray, copies: np.ndarray, least: float) -> np.ndarray:
     """Return which motions (h, k, j) depend on each other, with all that are near these."""
     flat = copies.reshape(-1, len(values))
     _, sizes, shares = np.linalg.svd(flat, full_matrices=False)
@@ -85,12 +86,12 @@ def _dependent(values: np.ndarray, copies: np.ndarray, speed: float) -> np.ndarr
     if np.count_nonzero(mixed) < 2:
         return np.zeros(0, dtype=int)
     center = values[mixed].mean()
-    reach = _WIDER * _away(values[mixed], speed)
+    reach = _away(values[mixed], least)
     return np.flatnonzero(mixed | (np.abs(values - center) <= reach))
 
 
-def _away(values: np.ndarray, speed: float) -> float:
-    return max(_AWAY * speed, _WIDER * np.abs(values - values.mean()).max())
+def _away(values: np.ndarray, least: float) -> float:
+    return max(least, _WIDER * np.abs(values - values.mean()).max())
 
 
 def _together(
@@ -99,10 +100,11 @@ def _together(
     columns: np.ndarray,
     values: np.ndarray,
     copies: np.ndarray,
+    least: float,
 ) -> SharedMotions | None:
     """Return what motions with λ (m,) and harmonics (h, k, m) span; None where that fails."""
     count, speed = len(columns), abs(system.speed)
-    shift = values.mean() + _away(values, speed)
+    shift = values.mean() + _away(values, least)
     M, D, K = hill_matrices(system, orders)
     scale = max(abs(shift), speed)
     x = copies.reshape(-1, count)

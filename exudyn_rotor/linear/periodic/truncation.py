@@ -226,7 +226,9 @@ def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, Hill
     errors, bounds = companion.errors
     half = len(states) // 2
     shapes = np.einsum("nh,nkj->hkj", u.conj(), states[:half].reshape(len(orders), -1, 2 * half))
-    resolution, values = resolution_of(values), resolved(values, errors)
+    resolution = resolution_of(values)
+    # what is beyond that would be taken for another copy
+    values = resolved(values, np.minimum(errors, resolution))
     return companion, HillSolution(values, shapes, states, orders, resolution, bounds)
 
 
