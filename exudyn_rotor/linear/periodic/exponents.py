@@ -114,13 +114,30 @@ def check_eigen(system: PeriodicSystem, method: str) -> None:
 
 
 def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
-    """Return one copy of all exponents with their motions, the most central where it is told."""
+    """Return one copy of all exponents with their motions, the most central where it is told.
+
+    Motions that fail the check, of which some are copies of others, are chosen once more: by their
+    families, from all harmonics.
+    """
+    found = _chosen_by_hill(system, tolerance, True)
+    try:
+        return checked(system, found, gone(found.values, system.speed), tolerance)
+    except UnconvergedError as unconverged:
+        try:
+            found = _chosen_by_hill(system, tolerance, False)
+            return checked(system, found, gone(found.values, system.speed), tolerance)
+        except UnconvergedError:
+            raise unconverged from None
+
+
+def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> HillMotions:
+    """Return motions as they are chosen at `first`, or once more."""
 
     def choose(solution: HillSolution) -> Chosen | None:
         if solution.pairs is not None:
             columns = np.arange(2 * system.size)
         else:
-            columns = _central(solution, system.step, 2 * system.size)
+            columns = _central(solution, system.step, 2 * system.size) if first else None
         if columns is None:  # strongly damped motions hardly have a mean harmonic
             columns = one_of_each_family(solution, system.speed)
         if columns is None:
@@ -130,8 +147,7 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
         sizes = _sizes(values, abs(system.speed))
         return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
 
-    found = solve_hill(system, choose, tolerance).with_conjugates()
-    return checked(system, found, gone(found.values, system.speed), tolerance)
+    return solve_hill(system, choose, tolerance, first).with_conjugates()
 
 
 def _without_conjugates(

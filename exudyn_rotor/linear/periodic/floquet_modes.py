@@ -92,8 +92,7 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
     try:
-        choose = partial(_one_of_each_family, speed=system.speed)
-        found = _checked(system, solve_hill(system, choose, tolerance), tolerance)
+        found = _by_hill(system, tolerance)
     except UnconvergedError as unconverged:
         try:
             found = _checked(system, propagated(system, tolerance), tolerance)
@@ -102,6 +101,19 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     found = found.columns(_for_all(system, found))
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)
+
+
+def _by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
+    """Return motions by Hill's method; from all harmonics where they fail the check."""
+    choose = partial(_one_of_each_family, speed=system.speed)
+    found = solve_hill(system, choose, tolerance)
+    try:
+        return _checked(system, found, tolerance)
+    except UnconvergedError as unconverged:
+        try:
+            return _checked(system, solve_hill(system, choose, tolerance, False), tolerance)
+        except UnconvergedError:
+            raise unconverged from None
 
 
 def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:

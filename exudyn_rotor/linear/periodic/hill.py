@@ -43,7 +43,9 @@ _SAME, _ALIKE = 1e-6, 0.7
 Choice = Callable[[HillSolution], Chosen | None]
 
 
-def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> HillMotions:
+def solve_hill(
+    system: PeriodicSystem, choose: Choice, tolerance: float, halfway: bool = True
+) -> HillMotions:
     """Return motions of truncations that are large enough for them.
 
     All are chosen from one truncation; those that lack harmonics then follow into larger ones by
@@ -57,6 +59,8 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         Chooses from the motions of a truncation; None where it is too small to tell.
     tolerance : float
         Largest error of a λ, relative to :attr:`Chosen.sizes`.
+    halfway : bool, optional
+        Whether to try :meth:`.Truncation.halfway` first.
 
     Raises
     ------
@@ -65,7 +69,7 @@ def solve_hill(system: PeriodicSystem, choose: Choice, tolerance: float) -> Hill
         than two steps.
     """
     order, error = system.step, np.inf
-    truncation = Truncation.halfway(system)
+    truncation = Truncation.halfway(system) if halfway else None
     if truncation is not None:
         with suppress(UnconvergedError):  # by motions that it does not have
             followed, _ = _chosen(system, truncation, choose, tolerance)
