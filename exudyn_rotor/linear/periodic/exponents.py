@@ -126,7 +126,7 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
         try:
             found = _chosen_by_hill(system, tolerance, False)
             return checked(system, found, gone(found.values, system.speed), tolerance)
-        except UnconvergedError:
+        except (UnconvergedError, np.linalg.LinAlgError):
             raise unconverged from None
 
 

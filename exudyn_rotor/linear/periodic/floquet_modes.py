@@ -112,7 +112,7 @@ def _by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     except UnconvergedError as unconverged:
         try:
             return _checked(system, solve_hill(system, choose, tolerance, False), tolerance)
-        except UnconvergedError:
+        except (UnconvergedError, np.linalg.LinAlgError):
             raise unconverged from None
 
 

@@ -12,6 +12,8 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, times
 
+_OFF_ROOT = 1e-9  # share of the speed that keeps a matrix invertible
+
 
 def hill_matrices(
     system: PeriodicSystem, orders: np.ndarray
@@ -64,14 +66,23 @@ def feedback(
             excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
         if np.ndim(excited) == 0:
             continue
-        dynamic = system.dynamic(0, values + 1j * n * system.speed)
-        answer = -np.linalg.solve(dynamic, excited.T[:, :, None])[:, :, 0].T
+        answer = -_answer(system, values + 1j * n * system.speed, excited)
         answers[n] = answer
         for m in range(len(orders)):
             back = _links(terms, orders[m] - n)
             if back is not None:
                 result[m] += _applied(*back, values + 1j * n * system.speed, answer)
     return result, answers
+
+
+def _answer(system: PeriodicSystem, rates: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return what mean coefficients answer to forces (k, j); next to a root where they are at it."""
+    try:
+        solved = np.linalg.solve(system.dynamic(0, rates), forces.T[:, :, None])
+    except np.linalg.LinAlgError:
+        dynamic = system.dynamic(0, rates + 1j * _OFF_ROOT * system.speed)
+        solved = np.linalg.solve(dynamic, forces.T[:, :, None])
+    return solved[:, :, 0].T
 
 
 def excitation(

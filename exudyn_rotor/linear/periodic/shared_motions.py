@@ -24,7 +24,7 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 _SAME = 1e-6
 # length of what is left of a motion, over the largest, below which it is none of its own
 _DEPENDENT = 1e-3
-_HALF = 0.5  # of a motion: what a copy has to have of it to be compared
+_MOST = 0.9  # of a motion: what a copy has to have of it to be compared
 # distance of the shift from the exponents, over the speed, and over their distance from each other
 _AWAY, _WIDER = 1e-3, 10.0
 _STEPS = 30
@@ -63,16 +63,16 @@ def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMot
         apart = found.values[left] - found.values[first]
         steps = np.rint(apart.imag / system.base).astype(int)
         alike = np.flatnonzero(np.abs(apart - 1j * steps * system.base) <= near)
-        copies = np.stack([shifted(shapes[:, :, left[i]], steps[i]) for i in alike], axis=-1)
+        copies = np.stack([shifted(shapes[:, :, left[i]], -steps[i]) for i in alike], axis=-1)
         # an exponent may be a copy by chance, many harmonics away: that is another motion
-        kept = np.linalg.norm(copies, axis=(0, 1)) > _HALF
+        kept = np.linalg.norm(copies, axis=(0, 1)) > _MOST
         group, copies = left[alike[kept]], copies[..., kept]
         values = found.values[group] - 1j * steps[alike[kept]] * system.base
         left = np.delete(left, alike[kept])
         least = min(max(_AWAY * abs(system.speed), found.resolution), 0.5 * abs(system.speed))
         inside = _dependent(values, copies, least)
         if inside.size:
-            given = values[inside], copies[..., inside]
+            given = values[inside], copies[..., inside], found.bounds[group[inside]]
             result.append(_together(system, found.orders, group[inside], *given, least))
     return [each for each in result if each is not None]
 
@@ -100,6 +100,7 @@ def _together(
     columns: np.ndarray,
     values: np.ndarray,
     copies: np.ndarray,
+    bounds: np.ndarray,
     least: float,
 ) -> SharedMotions | None:
     """Return what motions with λ (m,) and harmonics (h, k, m) span; None where that fails."""
@@ -123,7 +124,8 @@ def _together(
     T, turn = la.schur(shift * np.eye(count) - Q.conj().T @ last @ inverse, output="complex")
     Q = Q @ turn
     apart = np.diagonal(T) - values[:, None]
-    places = linear_sum_assignment(np.abs(apart))[1]
+    told = bounds + _SAME * speed
+    places = linear_sum_assignment(np.abs(apart) / told[:, None])[1]
     order = np.argsort(places)
     x, w = (X.reshape(len(orders), system.size, count) for X in np.split(Q, 2))
     speeds = scale * w + 1j * system.speed * orders[:, None, None] * x
