@@ -76,7 +76,7 @@ def feedback(
 
 
 def _answer(system: PeriodicSystem, rates: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Return what mean coefficients answer to forces (k, j); next to a root where they are at it."""
+    """Return what mean coefficients answer to forces (k, j), at a root what they do beside it."""
     try:
         solved = np.linalg.solve(system.dynamic(0, rates), forces.T[:, :, None])
     except np.linalg.LinAlgError:

@@ -25,8 +25,7 @@ _SAME = 1e-6
 # length of what is left of a motion, over the largest, below which it is none of its own
 _DEPENDENT = 1e-3
 _MOST = 0.9  # of a motion: what a copy has to have of it to be compared
-# distance of the shift from the exponents, over the speed, and over their distance from each other
-_AWAY, _WIDER = 1e-3, 10.0
+_WIDER = 10.0  # times the distance of exponents from each other: that of the shift from them
 _STEPS = 30
 
 
@@ -69,7 +68,7 @@ def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMot
         group, copies = left[alike[kept]], copies[..., kept]
         values = found.values[group] - 1j * steps[alike[kept]] * system.base
         left = np.delete(left, alike[kept])
-        least = min(max(_AWAY * abs(system.speed), found.resolution), 0.5 * abs(system.speed))
+        least = min(_WIDER * near, 0.5 * abs(system.speed))
         inside = _dependent(values, copies, least)
         if inside.size:
             given = values[inside], copies[..., inside], found.bounds[group[inside]]

@@ -114,8 +114,20 @@ LINEAR_PERIODIC = [
     *mutations(
         "linear/periodic/remainder.py",
         "test_hill.py::test_stiff_dampers_do_not_hide_slow_motions",
-        ("free motions as they come", "if group.size < 2:", "if True:"),
         ("motions gone within a turn as Hill finds them", "if frozen.share < rest.share:", "if 0:"),
+    ),
+    *mutations(
+        "linear/periodic/shared_motions.py",
+        "test_uneven_supports.py",
+        ("motions given twice as they come", "if inside.size:", "if False:"),
+        ("copies brought the other way", "-steps[i])", "steps[i])"),
+        ("shift of the wrong sign", "(shift * larger - x)", "(shift * larger + x)"),
+        ("exponents shared as they come", "apart) / told[:, None]", "apart)"),
+    ),
+    *mutations(
+        "linear/periodic/exponents.py",
+        "test_uneven_supports.py",
+        ("motions that fail the check not chosen again", "tolerance, False)", "tolerance, True)"),
     ),
     *mutations(
         "linear/periodic/fundamental.py",
