@@ -276,3 +276,10 @@ def test_frozen_directions_come_back_after_a_period():
     assert np.abs(normals[:, None] @ found).max() < 1e-12
     steps = np.linalg.norm(found - np.roll(found, 1, axis=0), axis=(1, 2))
     assert steps[0] == pytest.approx(steps[1:].mean(), rel=0.05)
+
+
+def test_entries_of_very_different_sizes_are_weighed_without_a_warning():
+    """Factors of balancing beyond 1e18 would overflow; an exact triangle needs no share at all."""
+    F = np.triu(np.full((1, 6, 6), 1e-200), 2) + np.triu(np.ones((1, 6, 6)), 4)
+    rest = _Remainder(F, np.arange(6.0) + 0j, np.full(6, 1e-3), 1.0, np.zeros(6))
+    assert rest.share < 1e-6

@@ -44,8 +44,8 @@ _ENOUGH = 0.05
 _MORE = 10.0  # times what is told that an error may be
 # share of a divisor from which on a harmonic of F is left to the rest
 _NEAR = 0.3
-# share of the largest entry that keeps weights from zero
-_LEAST = 1e-16
+# shares of the largest entry that keep weights from zero, and factors of balancing within 1e12
+_LEAST, _LEAST_BALANCED = 1e-16, 1e-24
 
 
 def checked(
@@ -128,7 +128,10 @@ class _Remainder:
             limits = np.append(limits, 0.5 * decay)
         if not (decay > 0.0 and np.all(np.isfinite(f))):
             return np.inf, np.ones(len(self.values))
-        relative, scales = la.matrix_balance(f / limits[:, None], permute=False, separate=True)
+        relative = f / limits[:, None]
+        relative, scales = la.matrix_balance(
+            relative + _LEAST_BALANCED * relative.max(), permute=False, separate=True
+        )
         roots, vectors = np.linalg.eig(relative + _LEAST * relative.max(initial=_LEAST))
         weights = scales[0] * np.abs(vectors[:, np.argmax(roots.real)])
         repeated = np.repeat(weights, [1] * count + [len(self.values) - count] * bool(fast.size))

@@ -26,7 +26,8 @@ _SAME = 1e-6
 _DEPENDENT = 1e-3
 _MOST = 0.9  # of a motion: what a copy has to have of it to be compared
 _WIDER = 10.0  # times the distance of exponents from each other: that of the shift from them
-_STEPS = 30
+# steps of inverse iteration, which end where columns turn by less, and not less from step to step
+_STEPS, _STILL, _SLOWER = 30, 1e-10, 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +63,9 @@ def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMot
         apart = found.values[left] - found.values[first]
         steps = np.rint(apart.imag / system.base).astype(int)
         alike = np.flatnonzero(np.abs(apart - 1j * steps * system.base) <= near)
+        if alike.size < 2:
+            left = left[1:]
+            continue
         copies = np.stack([shifted(shapes[:, :, left[i]], -steps[i]) for i in alike], axis=-1)
         # an exponent may be a copy by chance, many harmonics away: that is another motion
         kept = np.linalg.norm(copies, axis=(0, 1)) > _MOST
@@ -110,13 +114,16 @@ def _together(
     x = copies.reshape(-1, count)
     rng = np.random.default_rng(0)  # what is missing has a share of it
     Z = np.concatenate([x, x * values / scale]) + 1e-3 * rng.normal(size=(2 * len(x), count))
-    Q = np.linalg.qr(Z)[0]
+    Q, turned = np.linalg.qr(Z)[0], np.inf
     try:
         factors = la.lu_factor(shift**2 * M + shift * D + K)
         for _ in range(_STEPS):
             x, w = Q[: len(x)], scale * Q[len(x) :]
             larger = la.lu_solve(factors, M @ (w + shift * x) + D @ x)
             last, (Q, R) = Q, np.linalg.qr(np.concatenate([larger, (shift * larger - x) / scale]))
+            before, turned = turned, np.linalg.norm(Q - last @ (last.conj().T @ Q))
+            if _SLOWER * before < turned <= _STILL:  # rounding is left
+                break
         inverse = np.linalg.inv(R)
     except (np.linalg.LinAlgError, ValueError):
         return None

@@ -108,6 +108,11 @@ LINEAR_PERIODIC = [
         "test_remainder.py",
         ("exponents that are wrong given", "if not rest.share <= 1.0:", "if False:"),
         ("directions that do not come back after a turn", "-shares[:, None", "shares[:, None"),
+        (
+            "factors of balancing overflow",
+            "_LEAST_BALANCED = 1e-16, 1e-24",
+            "_LEAST_BALANCED = 1e-16, 0.0",
+        ),
         ("rest of the wrong sign", "harmonics[0]), 0.0)", "-harmonics[0]), 0.0)"),
         ("changes of coordinates backwards", "self.values[:, None]\n", "-self.values[:, None]\n"),
     ),
