@@ -83,12 +83,12 @@ def turned_harmonics(matrix: np.ndarray) -> dict[int, np.ndarray]:
         return {}
     R = _turns(len(matrix))
     products = (R.transpose(0, 2, 1) @ matrix)[:, None] @ R  # R is real: Rᵀ has the terms R_nᵀ
-    spectrum = {n: np.zeros(matrix.shape, dtype=complex) for n in range(-2, 3)}
+    spectrum = np.zeros((5, *matrix.shape), dtype=complex)  # from −2 to 2
     for n, row in enumerate(products):
-        for m, product in enumerate(row):
-            spectrum[n + m - 2] += product
-    largest = np.abs(matrix).max(initial=0.0)
-    return {n: X for n, X in spectrum.items() if np.abs(X).max() > 1e-14 * largest}
+        spectrum[n : n + 3] += row
+    sizes = np.abs(spectrum).max(axis=(1, 2))
+    kept = np.flatnonzero(sizes > 1e-14 * np.abs(matrix).max())
+    return {int(n) - 2: spectrum[n] for n in kept}
 
 
 @cache
