@@ -7,9 +7,13 @@ from os import PathLike
 
 import numpy as np
 from matplotlib import pyplot
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, NullLocator
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -233,12 +237,46 @@ def _fit(ax: Axes3D, points: np.ndarray, margin: float) -> tuple[float, float, f
     return (body[0] + 0.15) / with_bar[0], 0.15, 0.2 / with_bar[0], 0.7
 
 
-def legend_above(ax: Axes, columns: int = 2, handles: list | None = None) -> None:
+def legend_above(ax: Axes, columns: int = 2) -> None:
     """Put the legend above the axes, where it hides nothing, in fewer columns where it is wide."""
-    shown = {} if handles is None else {"handles": handles}
+    _put_above(ax, columns, ax.get_legend_handles_labels()[0])
+
+
+def legend_of_seen(ax: Axes, columns: int, handles: list[Artist]) -> None:
+    """Put a legend above the axes that has only what lies within their limits, also later ones.
+
+    A handle stands for all lines and patches of the axes with its label.
+    """
+
+    def update(ax: Axes) -> None:
+        if ax.get_legend() is shown[0]:  # not one that a script has put in its place
+            seen = {each.get_label() for each in (*ax.lines, *ax.patches) if _is_seen(ax, each)}
+            kept = [handle for handle in handles if handle.get_label() in seen]
+            shown[0] = _put_above(ax, columns, kept)
+
+    shown = [ax.get_legend()]
+    update(ax)
+    for changed in ("xlim_changed", "ylim_changed"):
+        ax.callbacks.connect(changed, update)
+
+
+def _is_seen(ax: Axes, artist: Line2D | Patch) -> bool:
+    if isinstance(artist, Line2D) and artist.get_linestyle() == "None":  # markers alone
+        places = artist.get_transform().transform(artist.get_xydata())
+        return ax.bbox.count_contains(places) > 0
+    path = artist.get_transform().transform_path(artist.get_path())
+    return path.cleaned(remove_nans=True).intersects_bbox(ax.bbox, filled=False)
+
+
+def _put_above(ax: Axes, columns: int, handles: list[Artist]) -> Legend:
     for ncols in range(columns, 0, -1):
         legend = ax.legend(
-            loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=ncols, frameon=False, **shown
+            handles=handles,
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            ncols=ncols,
+            frameon=False,
         )
         if legend.get_window_extent().width <= _WIDEST * ax.bbox.width:
             break
+    return legend

@@ -78,6 +78,30 @@ def test_modes_are_crossed_where_their_frequency_is_a_multiple_of_the_speed(diag
     assert "2 × spin speed" in [text.get_text() for text in ax.get_legend().get_texts()]
 
 
+def test_a_legend_has_what_lies_within_the_limits(diagram):
+    """The modes at 15.9 Hz are crossed by the spin speed there, by twice the speed at half of it.
+
+    The mode along the axis is above and beside the others in the legend.
+    """
+
+    def shown():
+        return [text.get_text() for text in ax.get_legend().get_texts()]
+
+    ax = diagram.plot(orders=[1, 2], operating_range=(100.0, 110.0))
+    motions, lines = ["forward", "backward", "axial"], ["spin speed", "2 × spin speed"]
+    assert shown() == [*motions, "operating range", *lines, "crossing"]
+    ax.set_ylim(0.0, 10.0)
+    assert shown() == ["operating range", *lines]
+    ax.set_xlim(0.0, 4.0)
+    assert shown() == lines
+    ax.set_ylim(0.0, 20.0)
+    assert shown() == [*motions, *lines]
+    one = diagram.plot().legend(["a script's own"])
+    one.axes.set_ylim(0.0, 10.0)
+    assert one.axes.get_legend() is one
+    pyplot.close("all")
+
+
 def test_crossings_agree_with_critical_speeds():
     """Two masses on a rod in unlike bearings; the grid is fine, so lines are straight between."""
     inertia = np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])

@@ -54,11 +54,9 @@ def draw_campbell(
             _draw_mode(
                 ax, speeds[start:stop], values[start:stop, column], codes[start:stop, column]
             )
-    drawn = codes[1:] if len(speeds) > 1 else codes
     handles = [
         Line2D([], [], color=color, ls=line, label=whirl.WHIRLS[code])
         for code, (color, line) in _STYLES.items()
-        if np.any(drawn == code)
     ]
     if np.any(unstable):
         at = np.broadcast_to(speeds[:, None], unstable.shape)[unstable]
@@ -69,7 +67,8 @@ def draw_campbell(
 def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray) -> None:
     """Draw one mode, changing its style where its whirl changes."""
     if len(speeds) == 1:
-        ax.plot(speeds, values, "o", color=_STYLES[codes[0]][0], ms=4)
+        label = whirl.WHIRLS[codes[0]]
+        ax.plot(speeds, values, "o", color=_STYLES[codes[0]][0], ms=4, label=label)
         return
     # a piece between two speeds takes the style of its end: at rest the sense is not yet settled
     start = 0
@@ -77,7 +76,6 @@ def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarr
     for stop in range(1, len(pieces) + 1):
         if stop == len(pieces) or pieces[stop] != pieces[start]:
             color, line = _STYLES[pieces[start]]
-            ax.plot(
-                speeds[start : stop + 1], values[start : stop + 1], ls=line, color=color, lw=1.3
-            )
+            piece, label = slice(start, stop + 1), whirl.WHIRLS[pieces[start]]
+            ax.plot(speeds[piece], values[piece], ls=line, color=color, lw=1.3, label=label)
             start = stop
