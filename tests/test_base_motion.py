@@ -84,6 +84,20 @@ def test_damped_rest_under_a_lasting_acceleration():
     np.testing.assert_allclose(found.displacement("left")[-1], ends, rtol=1e-6)
 
 
+@pytest.mark.parametrize("samples", [2, 11])
+@pytest.mark.parametrize("speed", [0.0, 5.0, 500.0])
+def test_peaks_are_those_of_the_motion_and_not_of_the_record(samples, speed):
+    """A sudden acceleration a moves an undamped mass by 2 a/ω² at most, here after 3 ms.
+
+    Lines between the times are within 1 % of the motion, and a peak is between two of them at most.
+    """
+    omega, times = 1000.0, np.linspace(0.0, 0.05, samples)
+    sudden = BaseRecord(times, np.tile([1.0, 0.0, 0.0], (samples, 1)))
+    found = base_response(rigid(), sudden, speed=speed, supports=springs(omega))
+    assert found.peak("left")[0] == pytest.approx(2.0 / omega**2, rel=0.01)
+    assert found.time[-1] == pytest.approx(0.05, abs=2e-3)
+
+
 # ------------------------------------------------------------------ scenes
 
 SHAKEN = BaseRecord(
