@@ -186,6 +186,10 @@ def test_refused_calls_leave_the_scene_as_it_was():
         (ValueError, "at: 'top' is unknown", (body, MOTOR, "top")),
         (ValueError, "at: 'point' is a single node", (body, MOTOR, "point")),
         (ValueError, "base: a drive on the whole rotor", (body, MOTOR, None, ground)),
+        (TypeError, "takes 1 positional argument", (body, TorqueCurve(lambda speed: 5.0))),
+        (TypeError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, time: None))),
+        (ValueError, "curve: its torque: needs", (body, TorqueCurve(lambda speed, t: np.nan))),
+        (ValueError, "its table holds 1 to 2 rad/s, not 0", (body, TorqueCurve(([1, 2], [3, 4])))),
     ):
         with pytest.raises(error, match=match):
             add_drive(*arguments)

@@ -44,7 +44,8 @@ class Drive(ABC):
         Raises
         ------
         TypeError, ValueError
-            For bad input, and a speed beyond the table of a :class:`TorqueCurve`.
+            For bad input, and a speed beyond the table of a :class:`TorqueCurve`, or where its
+            function returns something else than a number.
         """
         return float(
             self._torque(checks.number(speed, "speed", "rad/s"), checks.number(time, "time", "s"))
@@ -103,7 +104,7 @@ class TorqueCurve(Drive):
 
     def _torque(self, speed: float, time: float) -> float:
         if callable(self.curve):
-            return self.curve(speed, time)
+            return checks.number(self.curve(speed, time), "curve: its torque", "N m")
         speeds, torques = self.curve
         slack = _ROUNDING * max(abs(speeds[0]), abs(speeds[-1]))
         if not self.extrapolate and not speeds[0] - slack <= speed <= speeds[-1] + slack:

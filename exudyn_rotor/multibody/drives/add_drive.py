@@ -114,8 +114,9 @@ def add_drive(
     Raises
     ------
     TypeError, ValueError
-        For bad input, a prescribed spin above all; nothing has been added then. A run that leaves
-        the range of a table stops with an error.
+        For bad input, a prescribed spin above all, and for a curve that has no torque at the spin
+        speed of the start; nothing has been added then. A run that leaves the range of a table
+        stops with an error.
 
     Examples
     --------
@@ -156,6 +157,7 @@ def add_drive(
             f"body: rotor {body.name!r} was added with marker_body=False; drives need the marker "
             "body"
         )
+    drive.torque(body.plan.setup.placement.speed)  # a curve that fails does so here, not in a run
     if at is None:
         if base is not None:
             raise ValueError("base: a drive on the whole rotor has none; give at='…', an interface")
