@@ -22,6 +22,7 @@ from exudyn_rotor import (
     add_rotor,
     add_supports,
     linear_model,
+    recommended_settings,
     unbalance_response,
 )
 
@@ -67,6 +68,27 @@ def test_a_stiff_solid_is_a_rigid_block():
         errors.append((apart / np.abs(expected).max()).max())
     assert errors[1] < 1e-4
     assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
+
+
+@pytest.mark.parametrize("solver", ["RK44", "ExplicitMidpoint", "GeneralizedAlpha"])
+def test_a_foundation_sags_under_its_weight_in_all_solvers(solver):
+    """Undamped modes from rest: ζ = (s·g/ω²)(1 − cos ωt), s the participation per modal mass."""
+    frequencies, participation = np.array([60.0, 90.0]), np.array([[2.0, 1.0], [0, 3], [0, 0]])
+    frame = Foundation.from_modes(
+        frequencies, 0.0, {"left": np.eye(3, 2)}, places={"left": [0.0, 0.2, 0.1]},
+        participation=participation,
+    )  # fmt: skip
+    mbs, gravity, end = exu.SystemContainer().AddSystem(), [3.0, -9.81, 0.0], 0.05
+    base = add_foundation(mbs, frame, gravity=gravity)
+    mbs.Assemble()
+    settings = recommended_settings(end, end / 800)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings, solverType=getattr(exu.DynamicSolverType, solver))
+    found = mbs.GetNodeOutput(base.node, exu.OutputVariableType.Coordinates)
+    swing = (1.0 - np.cos(frequencies * end)) / frequencies**2
+    phase = (frequencies * end / 800) ** 2 / 6.0 * frequencies * end  # of rules of second order
+    np.testing.assert_allclose(found, gravity @ participation * swing, rtol=phase.max())
 
 
 def test_bad_foundations_are_refused():

@@ -156,8 +156,8 @@ def add_foundation(
 ) -> SceneFoundation:
     """Add a foundation to a scene, on which supports can stand: ``add_supports(…, base=…)``.
 
-    Its equations are native matrices, so a step calls no Python. Its frame is held by constraints;
-    explicit solvers need ``eliminateConstraints``.
+    Its equations are native matrices, so a step calls no Python. Its frame is held by constraints,
+    which explicit solvers eliminate by default.
 
     Parameters
     ----------
@@ -234,7 +234,13 @@ def massless_body(nodes: list, size: int, S: np.ndarray | None = None) -> Object
 def hold(
     mbs: exudyn.MainSystem, frame: exudyn.NodeIndex, coordinates: Sequence[int] = range(6)
 ) -> None:
-    """Hold coordinates of a frame's node: translations, then rotations."""
+    """Hold coordinates of a frame's node: translations, then rotations.
+
+    They get an inertia, which moves nothing: explicit solvers solve with the whole mass matrix.
+    """
+    inertia = np.diag([float(coordinate in coordinates) for coordinate in range(6)])
+    hidden = VObjectGenericODE2(show=False)
+    mbs.AddObject(ObjectGenericODE2(nodeNumbers=[frame], massMatrix=inertia, visualization=hidden))
     origin = MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
     ground = mbs.AddMarker(origin)
     for coordinate in coordinates:
