@@ -10,7 +10,6 @@ deflection.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from exudyn_rotor.advice.run_loads import external_load, instants, turned, weight
 from exudyn_rotor.multibody.rotor.record import Record, newton_tolerance
@@ -106,7 +105,5 @@ def _moment_on_node(
 
 def _axes_of_rotation(body: RotorBody, q: np.ndarray) -> np.ndarray:
     """Return the inertial axes (3, 3), in rows, that the node's angles turn about, θ about e."""
-    a, b, _ = body.frame.angles + (body.layout.signs * q)[3:6]
-    Rx, Ry = Rotation.from_euler("x", a).as_matrix(), Rotation.from_euler("y", b).as_matrix()
-    axes = np.array([[1.0, 0.0, 0.0], Rx[:, 1], Rx @ Ry[:, 2]])
-    return body.layout.signs[3:6, None] * axes
+    signs = body.layout.signs
+    return signs[3:6, None] * body.frame.axes_of_angles((signs * q)[3:6])

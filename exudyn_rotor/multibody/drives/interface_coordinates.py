@@ -6,7 +6,8 @@ With the translation τ and the spin θ of the frame, and P = (n1, n2, e),
 
 are displacement and rotation in the axes (n1, n2, e) that stand still, x₀ the interface's point on
 the axis from the frame's origin, U and Φ its mean motion by the modal coordinates ζ (the
-coordinates of the interface itself, for a full body).
+coordinates of the interface itself, for a full body). The frame does not tilt, but what holds its
+tilts has the reaction, as of any load on the rotor: they have columns in the derivative.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.full.full_markers import interface_carrier
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.seats import Seat
+from exudyn_rotor.theory.nodal import skew as skew_matrix
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 
 _RIGID = 6  # coordinates of the node of the frame
@@ -30,7 +32,8 @@ _RIGID = 6  # coordinates of the node of the frame
 class InterfaceCoordinates:
     """Motion of an interface by the coordinates of two nodes, the frame's first.
 
-    The spin counts from where it starts.
+    The spin counts from where it starts. `tilts` are the coordinates of the frame's tilts,
+    `tilt_axes` their axes at θ = 0 as columns, and `turning` says which of them turn with θ.
     """
 
     nodes: tuple[exudyn.NodeIndex, ...]
@@ -40,6 +43,9 @@ class InterfaceCoordinates:
     spin: int
     sign: int
     start: float
+    tilts: list[int]
+    tilt_axes: np.ndarray
+    turning: np.ndarray
 
     @classmethod
     def of(cls, body: RotorBody | FullRotorBody, name: str, seat: Seat) -> InterfaceCoordinates:
@@ -56,7 +62,11 @@ class InterfaceCoordinates:
         point = own.T @ (body.axis.project(interface.reference) - body.frame.origin)
         modes = np.kron(np.eye(2), own.T) @ motion
         start = body.plan.setup.placement.angle
-        return cls(nodes, seat.axes, point, modes, body.locks.spin, body.locks.sign, start)
+        spin, tilts = body.locks.spin, list(body.locks.tilts)
+        tilt_axes = seat.axes.T @ body.frame.axes_of_angles().T[:, [tilt - 3 for tilt in tilts]]
+        turning = np.array(tilts) > spin  # the node's angles follow each other
+        held = tilts, tilt_axes, turning
+        return cls(nodes, seat.axes, point, modes, spin, body.locks.sign, start, *held)
 
     @property
     def size(self) -> int:
@@ -79,5 +89,7 @@ class InterfaceCoordinates:
         J[:3, self.spin] = self.sign * (skew @ arm)
         J[3:, self.spin] = self.sign * (skew @ turned)
         J[5, self.spin] += self.sign
+        tilting = np.where(self.turning, R @ self.tilt_axes, self.tilt_axes)
+        J[:3, self.tilts], J[3:, self.tilts] = -skew_matrix(arm) @ tilting, tilting
         J[:3, _RIGID:], J[3:, _RIGID:] = R @ self.modes[:3], R @ self.modes[3:]
         return x, J @ q_t, J

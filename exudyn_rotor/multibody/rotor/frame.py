@@ -88,6 +88,15 @@ class BodyFrame:
         """True where the axes of the marker body are those of the mesh."""
         return np.array_equal(self.B, np.eye(3))
 
+    def axes_of_angles(self, moved: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
+        """Return the inertial axes (3, 3), in rows, that the node's angles turn about.
+
+        `moved` are its coordinates: angles beyond those of the reference [rad].
+        """
+        a, b, _ = self.angles + np.asarray(moved)
+        Rx, Ry = Rotation.from_euler("x", a).as_matrix(), Rotation.from_euler("y", b).as_matrix()
+        return np.array([[1.0, 0.0, 0.0], Rx[:, 1], Rx @ Ry[:, 2]])
+
     def points(self, mesh_points: np.ndarray) -> np.ndarray:
         """Return mesh points (…, 3) in coordinates of the marker body."""
         return (np.asarray(mesh_points) - self.origin) @ self.B.T

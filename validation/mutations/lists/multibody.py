@@ -251,10 +251,13 @@ MULTIBODY = [
     *mutations(
         "multibody/drives/interface_coordinates.py",
         "test_geared_rotors.py::test_axes_and_senses_change_nothing "
-        "test_geared_rotors.py::test_energy_goes_into_drives_springs_and_losses",
+        "test_geared_rotors.py::test_energy_goes_into_drives_springs_and_losses "
+        "test_couplings.py::test_what_holds_the_frame_has_the_reaction",
         ("node's sense of the spin", "theta = self.sign * q[self.spin]", "theta = q[self.spin]"),
         ("arm without the spin", "self.sign * (skew @ arm)", "0.0 * (skew @ arm)"),
         ("modes do not turn", "R @ self.modes[:3], R @", "self.modes[:3], R @"),
+        ("reaction without its arm", "-skew_matrix(arm) @ tilting", "0.0 * tilting"),
+        ("tilts that turn stand still", "np.array(tilts) > spin", "np.array(tilts) < spin"),
     ),
     *mutations(
         "multibody/drives/connect_rotors.py",
