@@ -245,13 +245,15 @@ def legend_above(ax: Axes, columns: int = 2) -> None:
 def legend_of_seen(ax: Axes, columns: int, handles: list[Artist]) -> None:
     """Put a legend above the axes that has only what lies within their limits, also later ones.
 
-    A handle stands for all lines and patches of the axes with its label.
+    A handle stands for all lines and patches of the axes with its label, also behind an underscore,
+    which keeps them out of other legends.
     """
 
     def update(ax: Axes) -> None:
         if ax.get_legend() is shown[0]:  # not one that a script has put in its place
-            seen = {each.get_label() for each in (*ax.lines, *ax.patches) if _is_seen(ax, each)}
-            kept = [handle for handle in handles if handle.get_label() in seen]
+            seen = [each.get_label() for each in (*ax.lines, *ax.patches) if _is_seen(ax, each)]
+            labels = {label.removeprefix("_") for label in seen}
+            kept = [handle for handle in handles if handle.get_label() in labels]
             shown[0] = _put_above(ax, columns, kept)
 
     shown = [ax.get_legend()]
@@ -265,7 +267,8 @@ def _is_seen(ax: Axes, artist: Line2D | Patch) -> bool:
         places = artist.get_transform().transform(artist.get_xydata())
         return ax.bbox.count_contains(places) > 0
     path = artist.get_transform().transform_path(artist.get_path())
-    return path.cleaned(remove_nans=True).intersects_bbox(ax.bbox, filled=False)
+    filled = isinstance(artist, Patch)
+    return path.cleaned(remove_nans=True).intersects_bbox(ax.bbox, filled=filled)
 
 
 def _put_above(ax: Axes, columns: int, handles: list[Artist]) -> Legend:

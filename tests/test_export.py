@@ -96,6 +96,8 @@ def test_a_legend_has_what_lies_within_the_limits(diagram):
     assert shown() == lines
     ax.set_ylim(0.0, 20.0)
     assert shown() == [*motions, *lines]
+    ax.set_xlim(16.2, 16.8)
+    assert shown() == [*motions, "operating range", "spin speed"]
     one = diagram.plot().legend(["a script's own"])
     one.axes.set_ylim(0.0, 10.0)
     assert one.axes.get_legend() is one

@@ -67,7 +67,7 @@ def draw_campbell(
 def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarray) -> None:
     """Draw one mode, changing its style where its whirl changes."""
     if len(speeds) == 1:
-        label = whirl.WHIRLS[codes[0]]
+        label = f"_{whirl.WHIRLS[codes[0]]}"
         ax.plot(speeds, values, "o", color=_STYLES[codes[0]][0], ms=4, label=label)
         return
     # a piece between two speeds takes the style of its end: at rest the sense is not yet settled
@@ -76,6 +76,6 @@ def _draw_mode(ax: Axes, speeds: np.ndarray, values: np.ndarray, codes: np.ndarr
     for stop in range(1, len(pieces) + 1):
         if stop == len(pieces) or pieces[stop] != pieces[start]:
             color, line = _STYLES[pieces[start]]
-            piece, label = slice(start, stop + 1), whirl.WHIRLS[pieces[start]]
+            piece, label = slice(start, stop + 1), f"_{whirl.WHIRLS[pieces[start]]}"
             ax.plot(speeds[piece], values[piece], ls=line, color=color, lw=1.3, label=label)
             start = stop
