@@ -14,10 +14,15 @@ MESH = ("x", "y", "z")
 CYLINDER = ("radial", "tangential", "axial")
 # of the rotor's size: nodes closer to the axis have no radial direction
 _ON_AXIS = 1e-9
+# springs, over the largest diagonal entry of the stiffness. Along mesh axes: clamped nodes move by
+# less than 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest
+# spring, keep four digits. A spring across them is rounded into the node's free directions by 1e-16
+# of itself, which a soft rotor shows: less stiff, and clamped nodes move by less than 1e-7
+_ALONG, _ACROSS = 1e6, 1e3
 
 
 def checked_directions(directions: str | Iterable[str] | None) -> tuple[str, ...]:
-    """Return names of directions; all of the mesh axes for None.
+    """Return names of directions; all of the mesh axes for None, and for all three of the others.
 
     Raises
     ------
@@ -34,7 +39,7 @@ def checked_directions(directions: str | Iterable[str] | None) -> tuple[str, ...
             f"directions: needs some of {list(MESH)} or some of {list(CYLINDER)}, not of both, got "
             f"{list(names)}"
         )
-    return names
+    return MESH if len(names) == len(MESH) else names
 
 
 def held_directions(
@@ -65,3 +70,9 @@ def held_directions(
     columns = np.repeat(np.arange(node.size)[:, None], 3, axis=1)
     entries = units[node, which].ravel(), (rows.ravel(), columns.ravel())
     return sp.csr_array(entries, shape=(nodes.size, node.size))
+
+
+def holding_spring(columns: sp.csr_array, stiffness: sp.csr_array) -> float:
+    """Return the spring [N/m] that holds the directions of :func:`held_directions`."""
+    along = np.isin(np.abs(columns.data), (0.0, 1.0)).all()
+    return float((_ALONG if along else _ACROSS) * stiffness.diagonal().max())

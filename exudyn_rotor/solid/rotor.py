@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.solid import matrices, units
 from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.solid.clamp import checked_directions, held_directions
+from exudyn_rotor.solid.clamp import checked_directions, held_directions, holding_spring
 from exudyn_rotor.solid.elements import NgsolveElements
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.model import FiniteElementModel, StressRecovery
@@ -28,10 +28,6 @@ from exudyn_rotor.theory.axis import SpinAxis
 
 AxisLike = SpinAxis | str | ArrayLike
 Rotor = TypeVar("Rotor", bound="FiniteElementRotor")
-
-# of the largest diagonal entry: clamped nodes move by less than 1e-10 of the others, and dense
-# eigenvalues, whose error is relative to the stiffest spring, keep four digits
-_CLAMP = 1e6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -347,7 +343,7 @@ class FiniteElementRotor:
             )
         columns = held_directions(self.nodes, self.axis, held, chosen)
         free = sp.csr_array(sp.eye_array(self.nodes.size) - columns @ columns.T)
-        spring = _CLAMP * self.stiffness.diagonal().max()
+        spring = holding_spring(columns, self.stiffness)
         stiffness = matrices.frozen(
             sp.csr_array(free @ self.stiffness @ free + spring * (columns @ columns.T))
         )
