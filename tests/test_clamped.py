@@ -7,7 +7,7 @@ import scipy.linalg as la
 from models import STEEL, block_beam
 from netgen.occ import Cylinder, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import SolidRotor, SpinAxis, free_modes
+from exudyn_rotor import SolidRotor, SpinAxis, craig_bampton_modes, free_modes
 from exudyn_rotor.solid.clamp import held_directions
 
 
@@ -70,3 +70,22 @@ def test_slender_rotors_are_held_across_the_mesh_axes(axis, directions):
     found = free_modes(held, 3).frequencies ** 2
     precision = np.finfo(float).eps * 1e3 * values[-1] / expected[0]
     np.testing.assert_allclose(found, expected, rtol=precision)
+
+
+@pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
+def test_craig_bampton_modes_leave_out_a_clamped_interface(beam, coupling):
+    """Its motions are those of the springs that hold it, a thousand times those of the mesh."""
+    held = beam.clamped("left")
+    modes = craig_bampton_modes(held, 4, coupling=coupling)
+    assert {label.split()[0] for label in modes.labels[:6]} == {"right"}
+    chosen = craig_bampton_modes(held, 4, ["right"], coupling=coupling)
+    np.testing.assert_allclose(modes.matrix, chosen.matrix)
+    bound = np.sqrt((beam.stiffness.diagonal() / beam.mass.diagonal()).max())
+    assert held.reduce(modes).frequencies.max() < bound
+
+
+def test_craig_bampton_modes_say_what_is_held_in_part(beam):
+    held = beam.clamped("left", "tangential")
+    with pytest.raises(ValueError, match=r"clamped in some directions: leave it out, interfaces="):
+        craig_bampton_modes(held, 4, coupling="RBE3")
+    assert len(craig_bampton_modes(held, 4, ["right"], coupling="RBE3").labels) == 10

@@ -42,12 +42,11 @@ def attachment_modes(rotor: FiniteElementRotor, others: np.ndarray) -> ModeBasis
     ValueError
         If the rotor has loose parts.
     """
-    moving = coupled(rotor.stiffness).reshape(-1, 3)
     rigid = rigid_interfaces(rotor, others)
     loads = [
         one.mean_motion(rotor.node_count).T.toarray()
         for one in rotor.interfaces.values()
-        if one not in rigid and (moving[one.nodes].any() or not rotor.grounded)
+        if one not in rigid and not is_clamped(rotor, one)
     ]
     if rigid or rotor.grounded:
         loads.append(rotor.mass @ rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass))
@@ -83,6 +82,12 @@ def static_responses(
         loads[coordinates(moving)], _TOLERANCE
     )
     return columns
+
+
+def is_clamped(rotor: FiniteElementRotor, interface: Interface) -> bool:
+    """Return whether all nodes of an interface are held in all directions."""
+    moving = coupled(rotor.stiffness).reshape(-1, 3)
+    return rotor.grounded and not moving[interface.nodes].any()
 
 
 def rigid_interfaces(rotor: FiniteElementRotor, modes: np.ndarray) -> list[Interface]:

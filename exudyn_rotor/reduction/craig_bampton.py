@@ -5,7 +5,7 @@ Source: Craig, Bampton, "Coupling of substructures for dynamic analyses", AIAA J
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
 
 import numpy as np
@@ -13,6 +13,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.attachment import is_clamped
 from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, eigenmode_labels
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
@@ -49,7 +50,7 @@ def craig_bampton_modes(
     """Return static modes of the interfaces, then eigenmodes with the interfaces fixed.
 
     Every interface has three unit translations and three unit rotations of its reference point,
-    about the mesh axes; an interface with a single node has the translations only. No interface
+    about the mesh axes; an interface with a single node has the translations only. No motion
     is left out: together the static modes contain the rigid motions.
 
     Parameters
@@ -58,7 +59,8 @@ def craig_bampton_modes(
     count : int
         Number of fixed-interface eigenmodes; may be zero.
     interfaces : iterable of str, optional
-        Names of the rotor's interfaces to use; all of them by default.
+        Names of the rotor's interfaces to use; by default all but those that are clamped, whose
+        motions are the springs' that hold them. Leave out, too, what is clamped in some directions.
     coupling : {'RBE2', 'RBE3'}, optional
         'RBE2': the nodes of an interface move as one rigid body. 'RBE3': their weighted mean
         motion (:meth:`Interface.mean_motion`) is prescribed and the surface may deform.
@@ -96,7 +98,7 @@ def craig_bampton_modes(
     checks.count(count, "count")
     checks.choice(coupling, "coupling", _COUPLINGS)
     checks.tolerance(tolerance)
-    chosen = _choose(rotor.interfaces, interfaces)
+    chosen = _choose(rotor, interfaces)
     static, values, eigenmodes = _COUPLINGS[coupling](rotor, count, chosen, tolerance)
     labels = sum((_labels(interface) for interface in chosen), ()) + eigenmode_labels(count)
     return ModeBasis(
@@ -107,8 +109,11 @@ def craig_bampton_modes(
     )
 
 
-def _choose(known: Mapping[str, Interface], names: Iterable[str] | None) -> list[Interface]:
-    names = checks.labels(list(known) if names is None else names, "interfaces", known)
+def _choose(rotor: FiniteElementRotor, names: Iterable[str] | None) -> list[Interface]:
+    known = rotor.interfaces
+    if names is None:
+        names = [name for name in known if not is_clamped(rotor, known[name])]
+    names = checks.labels(names, "interfaces", known)
     if not names or len(set(names)) < len(names):
         raise ValueError(f"interfaces: name at least one, and each of them once; got {list(names)}")
     return [known[name] for name in names]
@@ -150,7 +155,7 @@ def _rigid_coupling(
             f"the interfaces do not hold the rotor, or it has loose parts ({error})"
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
-    _check_equilibrium((rotor.stiffness @ static)[inner], rounding(rotor.stiffness, static))
+    _check_equilibrium(rotor, (rotor.stiffness @ static)[inner], rounding(rotor.stiffness, static))
     values, inner_modes = _eigenmodes(stiffness, mass, inverse, count, tolerance)
     lanczos.check_modes(stiffness, mass, values, inner_modes)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
@@ -171,10 +176,10 @@ def _mean_coupling(
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
     inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
     static = inverse.prescribe(np.eye(constraints.shape[0]))
-    _check_mean_motion(constraints, static)
+    _check_mean_motion(rotor, constraints, static)
     precision = relative_rounding(stiffness, rigid)
     force = lanczos.without_reactions(stiffness @ static, constraints)
-    _check_equilibrium(force, rounding(stiffness, static, precision))
+    _check_equilibrium(rotor, force, rounding(stiffness, static, precision))
     values, modes = _eigenmodes(stiffness, mass, inverse, count, tolerance, constraints)
     lanczos.check_modes(
         stiffness, mass, values, modes, precision=precision, constraints=constraints
@@ -235,19 +240,28 @@ def _refuse_shared_nodes(chosen: list[Interface]) -> None:
             owner[node] = interface.name
 
 
-def _check_equilibrium(force: np.ndarray, allowed: np.ndarray) -> None:
+def _check_equilibrium(rotor: FiniteElementRotor, force: np.ndarray, allowed: np.ndarray) -> None:
     """Check that static modes need no `force` but at the interfaces, up to rounding of ``K u``."""
     if np.any(np.linalg.norm(force, axis=0) > allowed):
         raise ValueError(
             "a static interface mode is not in equilibrium; the stiffness may not be symmetric "
-            "or is too badly conditioned"
+            f"or is too badly conditioned{_held_in_part(rotor)}"
         )
 
 
-def _check_mean_motion(constraints: sp.csr_array, static: np.ndarray) -> None:
+def _check_mean_motion(
+    rotor: FiniteElementRotor, constraints: sp.csr_array, static: np.ndarray
+) -> None:
     error = np.abs(constraints @ static - np.eye(len(static.T))).max()
     if error > _MOTION_TOLERANCE:
         raise ValueError(
             f"the interfaces miss their unit motions by {error:.1e}; the interfaces nearly "
-            "depend on each other"
+            f"depend on each other{_held_in_part(rotor)}"
         )
+
+
+def _held_in_part(rotor: FiniteElementRotor) -> str:
+    """Return what else may be the cause of a bad condition."""
+    if not rotor.grounded:
+        return ""
+    return ", or one is clamped in some directions: leave it out, interfaces=[…]"
