@@ -12,6 +12,9 @@ from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _LOOSEST, _TIGHTEST = 1e-5, 1e-9
+# of the tolerance, for a full body: its elements' forces are larger than those of the motion, and
+# those of interfaces that discs hold rigid by a hundred times more
+_OF_FULL = 1e-3
 _COORDINATE = 0.01  # m, Exudyn's default
 _MOST_STEPS = 2**31  # Exudyn counts steps with 32 bits
 
@@ -54,7 +57,8 @@ def recommended_settings(
         twice as much with 10 modes and ten times as much with 20 modes and rigid markers.
     ``newton.relativeTolerance`` : a tenth of `accuracy`, from 1e-9 to 1e-5
         The default, 1e-8, iterates far below the error of the step size; 1e-5 changes the motion
-        by 1e-5 of its size and saves a third of the iterations.
+        by 1e-5 of its size and saves a third of the iterations. For a full body a thousandth of
+        that: it is a share of the forces, which are those of the elements there.
     ``newton.absoluteTolerance`` : a hundredth of the relative one
         Decides where nothing moves. It is a force [N], so that without `body` it is that of a rotor
         of a metre and some kilograms: the forces of a rotor of a millimetre are below it, and
@@ -106,6 +110,7 @@ def recommended_settings(
         newton.numericalDifferentiation.minimumCoordinateSize = _COORDINATE * min(1.0, length)
     if isinstance(body, FullRotorBody):
         settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
+        newton.relativeTolerance = max(_OF_FULL * tolerance, _TIGHTEST)
     return settings
 
 

@@ -12,11 +12,12 @@ import numpy as np
 
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.component import ModeBasis
+from exudyn_rotor.solid.clamp import clamped_coordinates
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers.choice import coordinates
 from exudyn_rotor.solvers.inertia_relief import held_inverse, inertia_relief
-from exudyn_rotor.theory.nodal import coupled, rotations, translations
+from exudyn_rotor.theory.nodal import rotations, translations
 
 # share of its motion by which an interface may deform and still be rigid on purpose (RBE2)
 _RIGID = 1e-6
@@ -86,8 +87,7 @@ def static_responses(
 
 def is_clamped(rotor: FiniteElementRotor, interface: Interface) -> bool:
     """Return whether all nodes of an interface are held in all directions."""
-    moving = coupled(rotor.stiffness).reshape(-1, 3)
-    return rotor.grounded and not moving[interface.nodes].any()
+    return bool(clamped_coordinates(rotor.stiffness).reshape(-1, 3)[interface.nodes].all())
 
 
 def rigid_interfaces(rotor: FiniteElementRotor, modes: np.ndarray) -> list[Interface]:

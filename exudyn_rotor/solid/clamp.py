@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from exudyn_rotor import checks
 from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import coupled
 
 MESH = ("x", "y", "z")
 CYLINDER = ("radial", "tangential", "axial")
@@ -17,8 +18,9 @@ _ON_AXIS = 1e-9
 # springs, over the largest diagonal entry of the stiffness. Along mesh axes: clamped nodes move by
 # less than 1e-10 of the others, and dense eigenvalues, whose error is relative to the stiffest
 # spring, keep four digits. A spring across them is rounded into the node's free directions by 1e-16
-# of itself, which a soft rotor shows: less stiff, and clamped nodes move by less than 1e-7
-_ALONG, _ACROSS = 1e6, 1e3
+# of itself, which a soft rotor shows: less stiff, and clamped nodes move by less than 1e-6
+_ALONG, _ACROSS = 1e6, 1e2
+_STIFFER = 1e4  # than all that is coupled: no spring to the ground that means something
 
 
 def checked_directions(directions: str | Iterable[str] | None) -> tuple[str, ...]:
@@ -76,3 +78,11 @@ def holding_spring(columns: sp.csr_array, stiffness: sp.csr_array) -> float:
     """Return the spring [N/m] that holds the directions of :func:`held_directions`."""
     along = np.isin(np.abs(columns.data), (0.0, 1.0)).all()
     return float((_ALONG if along else _ACROSS) * stiffness.diagonal().max())
+
+
+def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
+    """Return which coordinates are clamped along mesh axes (3n,): those on nothing but a spring."""
+    joined, diagonal = coupled(stiffness), stiffness.diagonal()
+    if not joined.any():
+        return joined
+    return ~joined & (diagonal > _STIFFER * diagonal[joined].max())

@@ -12,6 +12,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.multibody.rotor import inputs
 from exudyn_rotor.multibody.rotor.plan import Plan, laid_out
 from exudyn_rotor.prestress.static_solution import relief_rotations
+from exudyn_rotor.solid.clamp import clamped_coordinates
 from exudyn_rotor.solid.damping import sparse_damping
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.formulation import Formulation
@@ -104,9 +105,20 @@ def make_full_plan(rotor: SolidRotor, setup: inputs.Setup) -> FullPlan:
 
 
 def _invariants(rotor: SolidRotor, origin: np.ndarray) -> Invariants:
-    basis = sp.eye_array(3 * rotor.node_count, format="csr")
+    """Return the invariants of nodal displacements, of which clamped ones take no part.
+
+    They keep their springs and masses, without load or coupling: else sudden loads would throw the
+    springs, and Newton's tolerance be a share of their forces.
+    """
+    clamped = clamped_coordinates(rotor.stiffness).astype(float)
+    basis = sp.csr_array(sp.diags_array(1.0 - clamped))
     matrices = (rotor.mass, rotor.stiffness, sparse_damping(rotor))
-    return Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+    moving = Invariants.of(rotor.nodes - origin, *matrices, basis, rotor.axis.direction)
+    M, K = (
+        sp.csr_array(one + sp.diags_array(clamped * whole.diagonal()))
+        for one, whole in ((moving.M, rotor.mass), (moving.K, rotor.stiffness))
+    )
+    return replace(moving, M=M, K=K)
 
 
 def _check_possible(rotor: SolidRotor, formulation: Formulation) -> None:
