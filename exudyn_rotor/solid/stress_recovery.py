@@ -13,14 +13,16 @@ EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 _CORNER_SLOPES = np.vstack([np.eye(3), -np.ones(3)])
 
 
-def _nodal_slopes(nodes_per_element: int) -> np.ndarray:
-    """Return ∂N_j/∂ξ_c at node a of the reference element, shape (a, j, c)."""
+# Barycentric coordinates of the four integration points, which are exact for quadratic functions.
+_POINTS = np.full((4, 4), (5.0 - np.sqrt(5.0)) / 20.0) + np.eye(4) / np.sqrt(5.0)
+
+
+def _slopes_at_points(nodes_per_element: int) -> np.ndarray:
+    """Return ∂N_j/∂ξ_c at the integration points, shape (p, j, c); one for constant slopes."""
     if nodes_per_element == 4:
-        return np.broadcast_to(_CORNER_SLOPES, (4, 4, 3))
-    corners = np.eye(4)
-    mids = np.array([(corners[a] + corners[b]) / 2 for a, b in EDGES])
+        return _CORNER_SLOPES[None]
     slopes = []
-    for point in np.vstack([corners, mids]):
+    for point in _POINTS:
         at_corners = (4 * point - 1)[:, None] * _CORNER_SLOPES
         at_mids = [
             4 * (point[a] * _CORNER_SLOPES[b] + point[b] * _CORNER_SLOPES[a]) for a, b in EDGES
@@ -29,12 +31,23 @@ def _nodal_slopes(nodes_per_element: int) -> np.ndarray:
     return np.array(slopes)
 
 
+def _at_nodes(nodes_per_element: int) -> np.ndarray:
+    """Return what makes values at the integration points linear ones at the nodes, (a, p)."""
+    if nodes_per_element == 4:
+        return np.ones((4, 1))
+    corners = np.linalg.inv(_POINTS)
+    mids = [(corners[a] + corners[b]) / 2 for a, b in EDGES]
+    return np.vstack([corners, mids])
+
+
 @dataclass(frozen=True, eq=False)
 class TetrahedronStress:
     """Maps displacement columns to nodal stress, ``recovery(displacements)``.
 
-    Each element's stress is evaluated at its own nodes; a node gets the mean of its elements. At
-    a node shared by two materials this is the mean over both.
+    Each element's stress is that at its integration points, linear between them; a node gets the
+    mean of its elements. A straight element's stress is linear. In a curved one that has two faces
+    on a smooth surface, which is flat where they meet, it grows without bound there. At a node
+    shared by two materials this is the mean over both.
 
     Parameters
     ----------
@@ -67,14 +80,18 @@ class TetrahedronStress:
             )
         slopes = self._slopes()
         mean = self._mean()
-        stress = [mean @ self._element_stress(slopes, column) for column in columns.T]
+        at_nodes = _at_nodes(self.tetrahedra.shape[1])
+        stress = [
+            mean @ np.matmul(at_nodes, self._element_stress(slopes, column)).reshape(-1, 6)
+            for column in columns.T
+        ]
         return np.stack(stress, axis=2) if stress else np.zeros((len(self.nodes), 6, 0))
 
     def _slopes(self) -> np.ndarray:
-        """Return ∂N_j/∂x_c at node a of element t, shape (t, a, j, c)."""
-        reference = _nodal_slopes(self.tetrahedra.shape[1])
-        jacobians = np.einsum("tjx,ajc->taxc", self.nodes[self.tetrahedra], reference)
-        return np.einsum("ajc,tacx->tajx", reference, np.linalg.inv(jacobians))
+        """Return ∂N_j/∂x_c at point p of element t, shape (t, p, j, c)."""
+        reference = _slopes_at_points(self.tetrahedra.shape[1])
+        jacobians = np.einsum("tjx,pjc->tpxc", self.nodes[self.tetrahedra], reference)
+        return np.einsum("pjc,tpcx->tpjx", reference, np.linalg.inv(jacobians))
 
     def _mean(self) -> sp.csr_array:
         """Return the operator (n, t·a) that averages element values at the nodes."""
@@ -84,7 +101,7 @@ class TetrahedronStress:
         return sp.csr_array(entries, shape=(len(self.nodes), where.size))
 
     def _element_stress(self, slopes: np.ndarray, column: np.ndarray) -> np.ndarray:
-        """Return Hooke's stress at the nodes of all elements, shape (t·a, 6)."""
+        """Return Hooke's stress at the points of all elements, shape (t, p, 6)."""
         moved = column.reshape(-1, 3)[self.tetrahedra]
         gradient = np.matmul(moved.transpose(0, 2, 1)[:, None], slopes)
         first, second = self.lame.T[:, :, None]
@@ -92,4 +109,4 @@ class TetrahedronStress:
         normal = normal + (first * np.trace(gradient, axis1=2, axis2=3))[..., None]
         pairs = ((1, 2), (0, 2), (0, 1))
         shear = [second * (gradient[..., i, j] + gradient[..., j, i]) for i, j in pairs]
-        return np.concatenate([normal, np.stack(shear, axis=2)], axis=2).reshape(-1, 6)
+        return np.concatenate([normal, np.stack(shear, axis=2)], axis=2)

@@ -20,6 +20,17 @@ SOLID = [
     ),
     *mutations(
         "solid/stress_recovery.py",
+        "test_stress_recovery.py",
+        (
+            "stress of integration points given to corners",
+            "corners = np.linalg.inv(_POINTS)",
+            "corners = np.eye(4)",
+        ),
+        ("points elsewhere than their values", "np.eye(4) / np.sqrt(5.0)", "np.eye(4) / 2.0"),
+        ("mid nodes without their mean", "(corners[a] + corners[b]) / 2 for", "corners[a] for"),
+    ),
+    *mutations(
+        "solid/stress_recovery.py",
         "test_solid.py::test_stress_of_linear_displacements_is_hookes_law",
         ("shear strain halved", "shear = [second * (", "shear = [0.5 * second * ("),
         (
