@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.other_basis import in_basis
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 
@@ -49,22 +50,9 @@ def keep_modes(reduced: ReducedRotor, indices: Sequence[int]) -> ReducedRotor:
     columns = np.r_[np.arange(rigid), rigid + chosen].astype(int)
     if columns.size == 0:
         raise ValueError("keep_modes: this rotor has no rigid motions; keep at least one mode")
-    shapes = reduced.shapes
-    if shapes is not None:
-        stress = None if shapes.stress is None else shapes.stress[:, :, columns]
-        shapes = replace(shapes, matrix=shapes.matrix[:, columns], stress=stress)
+    kept = in_basis(reduced, np.eye(reduced.size)[:, columns], reduced.rigid_kinds)
     attached = reduced.attached
-    return replace(
-        reduced,
-        invariants=reduced.invariants.in_basis(np.eye(reduced.size)[:, columns]),
-        interfaces={
-            name: replace(interface, motion=interface.motion[:, columns])
-            for name, interface in reduced.interfaces.items()
-        },
-        mode_mass=reduced.mode_mass[np.ix_(columns, columns)],
-        shapes=shapes,
-        attached=None if attached is None else attached.of_columns(columns),
-    )
+    return replace(kept, attached=None if attached is None else attached.of_columns(columns))
 
 
 def _checked(indices: Sequence[int], count: int) -> np.ndarray:
