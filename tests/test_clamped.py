@@ -72,6 +72,11 @@ def test_slender_rotors_are_held_across_the_mesh_axes(axis, directions):
     np.testing.assert_allclose(found, expected, rtol=precision)
 
 
+def test_springs_of_a_second_clamp_are_no_stiffer(beam):
+    twice, once = beam.clamped("left").clamped("right"), beam.clamped(["left", "right"])
+    assert twice.stiffness.diagonal().max() == once.stiffness.diagonal().max()
+
+
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
 def test_craig_bampton_modes_leave_out_a_clamped_interface(beam, coupling):
     """Its motions are those of the springs that hold it, a thousand times those of the mesh."""

@@ -59,7 +59,7 @@ def recommended_settings(
         The default, 1e-8, iterates far below the error of the step size; 1e-5 changes the motion
         by 1e-5 of its size and saves a third of the iterations. For a full body a thousandth of
         that: it is a share of the forces, which are those of the elements there.
-    ``newton.absoluteTolerance`` : a hundredth of the relative one
+    ``newton.absoluteTolerance`` : a hundredth of the relative one of a reduced body
         Decides where nothing moves. It is a force [N], so that without `body` it is that of a rotor
         of a metre and some kilograms: the forces of a rotor of a millimetre are below it, and
         contacts and films would not be iterated. With a `body` of the mass m and the length L it is

@@ -77,7 +77,8 @@ def held_directions(
 def holding_spring(columns: sp.csr_array, stiffness: sp.csr_array) -> float:
     """Return the spring [N/m] that holds the directions of :func:`held_directions`."""
     along = np.isin(np.abs(columns.data), (0.0, 1.0)).all()
-    return float((_ALONG if along else _ACROSS) * stiffness.diagonal().max())
+    moving = stiffness.diagonal()[~clamped_coordinates(stiffness)]
+    return float((_ALONG if along else _ACROSS) * moving.max())
 
 
 def clamped_coordinates(stiffness: sp.csr_array) -> np.ndarray:
