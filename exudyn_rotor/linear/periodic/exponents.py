@@ -11,6 +11,8 @@ Two independent ways for periodic systems: Hill's method (:mod:`.hill`), of whos
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
@@ -25,7 +27,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     UnconvergedError,
     fold,
 )
-from exudyn_rotor.linear.periodic.remainder import checked
+from exudyn_rotor.linear.periodic.remainder import checked, first_or_again
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # distance of exponents, over the base, and cosine of shapes, from which families are conjugate
@@ -119,15 +121,10 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     Motions that fail the check, of which some are copies of others, are chosen once more: by their
     families, from all harmonics.
     """
-    found = _chosen_by_hill(system, tolerance, True)
-    try:
-        return checked(system, found, gone(found.values, system.speed), tolerance)
-    except UnconvergedError as unconverged:
-        try:
-            found = _chosen_by_hill(system, tolerance, False)
-            return checked(system, found, gone(found.values, system.speed), tolerance)
-        except (UnconvergedError, np.linalg.LinAlgError):
-            raise unconverged from None
+    return first_or_again(
+        partial(_chosen_by_hill, system, tolerance),
+        lambda found: checked(system, found, gone(found.values, system.speed), tolerance),
+    )
 
 
 def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> HillMotions:

@@ -29,7 +29,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
     UnconvergedError,
 )
-from exudyn_rotor.linear.periodic.remainder import checked
+from exudyn_rotor.linear.periodic.remainder import checked, first_or_again
 from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # decay over Ω above which a motion is gone before the coefficients change
@@ -106,14 +106,10 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
 def _by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     """Return motions by Hill's method; from all harmonics where they fail the check."""
     choose = partial(_one_of_each_family, speed=system.speed)
-    found = solve_hill(system, choose, tolerance)
-    try:
-        return _checked(system, found, tolerance)
-    except UnconvergedError as unconverged:
-        try:
-            return _checked(system, solve_hill(system, choose, tolerance, False), tolerance)
-        except (UnconvergedError, np.linalg.LinAlgError):
-            raise unconverged from None
+    return first_or_again(
+        partial(solve_hill, system, choose, tolerance),
+        lambda found: _checked(system, found, tolerance),
+    )
 
 
 def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:

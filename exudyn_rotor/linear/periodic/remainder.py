@@ -25,6 +25,7 @@ any angle.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -87,6 +88,33 @@ def checked(
     errors[kept] = rest.errors
     rounding = np.where(~gone & (errors > told), found.rounding + errors, found.rounding)
     return replace(found, rounding=rounding)
+
+
+def first_or_again(
+    choose: Callable[[bool], HillMotions], check: Callable[[HillMotions], HillMotions]
+) -> HillMotions:
+    """Return motions that pass a check; if those chosen first fail it, others, chosen again.
+
+    Parameters
+    ----------
+    choose : callable
+        Returns motions; at first it is called with True, and again with False.
+    check : callable
+        Returns motions with their bounds, or raises what :func:`checked` does.
+
+    Raises
+    ------
+    UnconvergedError
+        That of `choose` at first, or of the first check where the second choice fails, too.
+    """
+    found = choose(True)
+    try:
+        return check(found)
+    except UnconvergedError as unconverged:
+        try:
+            return check(choose(False))
+        except (UnconvergedError, np.linalg.LinAlgError):
+            raise unconverged from None
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,12 +130,12 @@ LINEAR_PERIODIC = [
         ("exponents shared as they come", "apart) / told[:, None]", "apart)"),
     ),
     *mutations(
-        "linear/periodic/exponents.py",
+        "linear/periodic/remainder.py",
         "test_uneven_supports.py",
         (
             "motions that fail the check not chosen again",
-            "(system, tolerance, False)\n",
-            "(system, tolerance, True)\n",
+            "check(choose(False))",
+            "check(choose(True))",
         ),
     ),
     *mutations(
