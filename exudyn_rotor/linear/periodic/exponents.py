@@ -124,7 +124,7 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     return first_or_again(
         partial(_chosen_by_hill, system, tolerance),
         lambda found: checked(system, found, gone(found.values, system.speed), tolerance),
-    )
+    ).with_conjugates()
 
 
 def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> HillMotions:
@@ -144,7 +144,7 @@ def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> Hi
         sizes = _sizes(values, abs(system.speed))
         return Chosen(columns, values, solution.shapes[:, :, columns], sizes, paired)
 
-    return solve_hill(system, choose, tolerance, first).with_conjugates()
+    return solve_hill(system, choose, tolerance, first)
 
 
 def _without_conjugates(

@@ -8,7 +8,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -114,11 +114,9 @@ def _by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
 
 def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:
     """Return motions, one for each pair of exponents, that pass the check of all."""
-    every = found.with_conjugates()
-    if len(every.values) != 2 * system.size:
+    if len(found.values) + np.count_nonzero(found.paired) != 2 * system.size:
         raise UnconvergedError(f"at {system.speed:g} rad/s: exponents are no pairs")
-    every = checked(system, every, gone(every.values, system.speed), tolerance)
-    return replace(found, rounding=every.rounding[: len(found.values)])
+    return checked(system, found, gone(found.values, system.speed), tolerance)
 
 
 def gone(values: np.ndarray, speed: float) -> np.ndarray:

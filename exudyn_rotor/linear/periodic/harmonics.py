@@ -52,6 +52,29 @@ def _blocks(terms: Terms, orders: np.ndarray, size: int) -> np.ndarray:
     return blocks.reshape(len(orders) * size, -1)
 
 
+def real_basis(count: int) -> np.ndarray:
+    """Return the unitary matrix from harmonics −N … N to cosine and sine terms.
+
+    In these Hill's matrices are real, which is three times faster to solve.
+    """
+    u = np.zeros((count, count), dtype=complex)
+    if count % 2:
+        u[count // 2, count // 2] = 1.0
+    for low in range(count // 2):
+        high = count - 1 - low
+        u[high, [high, low]] = np.sqrt(0.5)
+        u[low, [high, low]] = -1j * np.sqrt(0.5), 1j * np.sqrt(0.5)
+    return u
+
+
+def in_basis(matrix: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return a matrix of harmonics in cosine and sine terms, those of :func:`real_basis`."""
+    count, size = len(u), len(matrix) // len(u)
+    blocks = matrix.reshape(count, size, count, size)
+    turned = np.tensordot(u, np.tensordot(blocks, u.conj(), (2, 1)), (1, 0))  # n, a, b, m
+    return turned.transpose(0, 1, 3, 2).reshape(matrix.shape).real
+
+
 def feedback(
     system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
 ) -> tuple[np.ndarray, dict[int, np.ndarray]]:

@@ -25,28 +25,28 @@ any angle.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.periodic.first_bound import (
+    ENOUGH,
+    angles_of,
+    first_bound,
+    largest_share,
+    left_to_rest,
+)
 from exudyn_rotor.linear.periodic.fundamental import sampled, state_matrix
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
-from exudyn_rotor.linear.periodic.shared_motions import shared_motions
+from exudyn_rotor.linear.periodic.shared_motions import SharedMotions, shared_motions
 
-_FINER = 2  # angles for each that the harmonics need
 _STEPS = 8
 _HELPS = 0.9  # of the share: more is left by a step that does not help
-# share of the radii allowed that is enough
-_ENOUGH = 0.05
 _MORE = 10.0  # times what is told that an error may be
-# share of a divisor from which on a harmonic of F is left to the rest
-_NEAR = 0.3
-# shares of the largest entry that keep weights from zero, and factors of balancing within 1e12
-_LEAST, _LEAST_BALANCED = 1e-16, 1e-24
 
 
 def checked(
@@ -58,8 +58,8 @@ def checked(
     ----------
     system : PeriodicSystem
     found : HillMotions
-        All 2k motions, with the conjugates.
-    gone : ndarray of bool, shape (2k,)
+        With their conjugates, all 2k motions.
+    gone : ndarray of bool, shape (j,)
         Which are gone within a turn: these have to decay, with any rate.
     tolerance : float
         Error of λ that is allowed beside the bounds, relative to the sizes.
@@ -69,10 +69,16 @@ def checked(
     UnconvergedError
         If some may err by more than ten times what is told.
     """
+    few, paired = found, np.flatnonzero(found.paired)
+    found, gone = few.with_conjugates(), np.append(gone, gone[paired])
     told = tolerance * np.where(np.isfinite(found.sizes), found.sizes, abs(system.base))
     told = told + found.bounds
     allowed = np.where(gone, -0.5 * found.values.real, _MORE * told)
-    motions = _States.of(system, found)
+    groups = shared_motions(system, found)
+    pairs = paired, len(few.values) + np.arange(len(paired))
+    if first_bound(system, found, pairs, groups, allowed) <= ENOUGH:
+        return few
+    motions = _States.of(system, found, groups)
     rest, kept = motions.remainder(allowed).smallest(), np.ones(len(gone), dtype=bool)
     if np.any(gone) and rest.share > 1.0:
         frozen = motions.with_frozen(gone, allowed).smallest()
@@ -87,7 +93,7 @@ def checked(
     errors = np.zeros(len(gone))
     errors[kept] = rest.errors
     rounding = np.where(~gone & (errors > told), found.rounding + errors, found.rounding)
-    return replace(found, rounding=rounding)
+    return replace(few, rounding=rounding[: len(few.values)])
 
 
 def first_or_again(
@@ -156,14 +162,9 @@ class _Remainder:
             limits = np.append(limits, 0.5 * decay)
         if not (decay > 0.0 and np.all(np.isfinite(f))):
             return np.inf, np.ones(len(self.values))
-        relative = f / limits[:, None]
-        relative, scales = la.matrix_balance(
-            relative + _LEAST_BALANCED * relative.max(), permute=False, separate=True
-        )
-        roots, vectors = np.linalg.eig(relative + _LEAST * relative.max(initial=_LEAST))
-        weights = scales[0] * np.abs(vectors[:, np.argmax(roots.real)])
+        needed, weights = largest_share(f, limits)
         repeated = np.repeat(weights, [1] * count + [len(self.values) - count] * bool(fast.size))
-        return float(roots.real.max()), repeated
+        return needed, repeated
 
     @property
     def share(self) -> float:
@@ -179,7 +180,7 @@ class _Remainder:
         """Return the rest after as many changes of coordinates as it takes, or as help."""
         best = self
         for _ in range(_STEPS):
-            if best.share <= _ENOUGH or not np.isfinite(best.share):
+            if best.share <= ENOUGH or not np.isfinite(best.share):
                 break
             try:
                 now = best._smaller()
@@ -198,7 +199,9 @@ class _Remainder:
         harmonics = np.fft.fft(F, axis=0) / n
         rates = 1j * self.base * np.fft.fftfreq(n, 1.0 / n)[:, None, None]
         divisors = rates + self.values - self.values[:, None]
-        kept = np.abs(harmonics) >= _NEAR * np.abs(divisors)
+        radii = np.zeros((fixed, fixed))  # frozen directions have none
+        radii[:count, :count] = np.minimum(self.allowed, self.allowed[:, None])
+        kept = left_to_rest(harmonics, divisors, radii)
         kept[:, count:, count:] = True
         kept[0, range(fixed), range(fixed)] = True
         change = np.where(kept, 0.0, harmonics / np.where(kept, 1.0, divisors))
@@ -240,19 +243,20 @@ class _States:
     moved: np.ndarray
 
     @classmethod
-    def of(cls, system: PeriodicSystem, found: HillMotions) -> _States:
+    def of(
+        cls, system: PeriodicSystem, found: HillMotions, groups: Sequence[SharedMotions]
+    ) -> _States:
         """Return the states of motions, those of exponents that are one by what they span."""
         shapes = found.shapes / np.linalg.norm(found.shapes, axis=(0, 1))
         rates = found.values + 1j * system.speed * found.orders[:, None, None]
         speeds, T = rates * shapes, np.diag(found.values.astype(complex))
         moved = np.zeros(len(T), dtype=complex)
-        for group in shared_motions(system, found):
+        for group in groups:
             columns = group.columns
             shapes[..., columns], speeds[..., columns] = group.shapes, group.speeds
             T[np.ix_(columns, columns)], moved[columns] = group.T, group.moved
-        reach = (int(found.orders[-1]) + system.order) // system.step
-        count = _FINER * (2 * reach + 1) + 1
-        angles = 2.0 * np.pi / (system.step * count) * np.arange(count)
+        angles = angles_of(system, found.orders)
+        count = len(angles)
         waves = np.exp(1j * angles[:, None] * found.orders)
 
         def at_angles(X: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.periodic.harmonics import hill_matrices, shifted
+from exudyn_rotor.linear.periodic.harmonics import hill_matrices, in_basis, real_basis, shifted
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 
@@ -41,7 +41,7 @@ class SharedMotions:
     shapes, speeds : ndarray, shape (h, k, m)
         Harmonics of x and ẋ.
     T : ndarray, shape (m, m)
-        Upper triangular.
+        Upper triangular; of real exponents real, and but for blocks of two.
     moved : ndarray, shape (m,)
         Its diagonal less the exponents, modulo ipΩ.
     """
@@ -57,7 +57,9 @@ def shared_motions(system: PeriodicSystem, found: HillMotions) -> list[SharedMot
     """Return those of motions that are nearly dependent."""
     shapes = found.shapes / np.linalg.norm(found.shapes, axis=(0, 1))
     near = max(found.resolution, _SAME * abs(system.speed))
-    result, left = [], np.arange(len(found.values))
+    apart = found.values[:, None] - found.values
+    apart = apart - 1j * system.base * np.rint(apart.imag / system.base)
+    result, left = [], np.flatnonzero(np.count_nonzero(np.abs(apart) <= near, axis=1) > 1)
     while left.size:
         first = left[0]
         apart = found.values[left] - found.values[first]
@@ -109,7 +111,15 @@ def _together(
     """Return what motions with λ (m,) and harmonics (h, k, m) span; None where that fails."""
     count, speed = len(columns), abs(system.speed)
     shift = values.mean() + _away(values, least)
-    M, D, K = hill_matrices(system, orders)
+    basis, every = real_basis(len(orders)), hill_matrices(system, orders)
+    real = not np.any(values.imag)
+    if real:  # then motions are, but for a factor, and so are Hill's equations in this basis
+        every = tuple(in_basis(X, basis) for X in every)
+        values, shift = values.real, shift.real
+        copies = np.tensordot(basis, copies, 1)
+        twice = np.sum(copies**2, axis=(0, 1))
+        copies = (copies * np.exp(-0.5j * np.angle(twice))).real
+    M, D, K = every
     scale = max(abs(shift), speed)
     x = copies.reshape(-1, count)
     rng = np.random.default_rng(0)  # what is missing has a share of it
@@ -127,12 +137,16 @@ def _together(
         inverse = np.linalg.inv(R)
     except (np.linalg.LinAlgError, ValueError):
         return None
-    T, turn = la.schur(shift * np.eye(count) - Q.conj().T @ last @ inverse, output="complex")
+    T, turn = la.schur(
+        shift * np.eye(count) - Q.conj().T @ last @ inverse, output="real" if real else "complex"
+    )
     Q = Q @ turn
     apart = np.diagonal(T) - values[:, None]
     told = bounds + _SAME * speed
     places = linear_sum_assignment(np.abs(apart) / told[:, None])[1]
     order = np.argsort(places)
     x, w = (X.reshape(len(orders), system.size, count) for X in np.split(Q, 2))
+    if real:
+        x, w = (np.tensordot(basis.conj().T, X, 1) for X in (x, w))
     speeds = scale * w + 1j * system.speed * orders[:, None, None] * x
     return SharedMotions(columns[order], x, speeds, T, np.diagonal(T) - values[order])

@@ -21,6 +21,8 @@ from exudyn_rotor.linear.periodic.harmonics import (
     excitation,
     feedback,
     hill_matrices,
+    in_basis,
+    real_basis,
     spacing,
 )
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
@@ -125,7 +127,7 @@ class Truncation:
         own, columns, sides = self.own, self.columns[chosen.columns], self.sides[chosen.columns]
         shapes = own.shapes[:, :, columns]
         load, outer = feedback(system, own.values[columns], shapes, own.orders)
-        load = np.einsum("nh,hkj->nkj", _real_basis(len(own.orders)), load)
+        load = np.einsum("nh,hkj->nkj", real_basis(len(own.orders)), load)
         given = self.solution.shapes[:, :, chosen.columns]
         scale = np.sum(given.conj() * chosen.shapes, axis=(0, 1))
         scale = scale / np.sum(np.abs(given) ** 2, axis=(0, 1))
@@ -219,8 +221,8 @@ def _raised(
 
 def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, HillSolution]:
     """Return all motions of one truncation."""
-    u = _real_basis(len(orders))
-    matrices = (_turned(X, u) for X in hill_matrices(system, orders))
+    u = real_basis(len(orders))
+    matrices = (in_basis(X, u) for X in hill_matrices(system, orders))
     companion = Companion.of(*matrices, system.rounding)
     values, states = companion.modes()
     errors, bounds = companion.errors
@@ -230,26 +232,3 @@ def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, Hill
     # what is beyond that would be taken for another copy
     values = resolved(values, np.minimum(errors, resolution))
     return companion, HillSolution(values, shapes, states, orders, resolution, bounds)
-
-
-def _real_basis(count: int) -> np.ndarray:
-    """Return the unitary matrix from harmonics −N … N to cosine and sine terms.
-
-    In these Hill's matrices are real, which is three times faster to solve.
-    """
-    u = np.zeros((count, count), dtype=complex)
-    if count % 2:
-        u[count // 2, count // 2] = 1.0
-    for low in range(count // 2):
-        high = count - 1 - low
-        u[high, [high, low]] = np.sqrt(0.5)
-        u[low, [high, low]] = -1j * np.sqrt(0.5), 1j * np.sqrt(0.5)
-    return u
-
-
-def _turned(matrix: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return a matrix of harmonics in cosine and sine terms."""
-    count, size = len(u), len(matrix) // len(u)
-    blocks = matrix.reshape(count, size, count, size)
-    turned = np.tensordot(u, np.tensordot(blocks, u.conj(), (2, 1)), (1, 0))  # n, a, b, m
-    return turned.transpose(0, 1, 3, 2).reshape(matrix.shape).real
