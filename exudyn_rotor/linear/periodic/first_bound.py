@@ -122,27 +122,33 @@ def _remainder(
     shapes[..., :count] = _real(shapes[..., :count])
     values = found.values[columns]
     speeds = (values + rates) * shapes
-    slips = np.zeros_like(shapes)
+    turns = (values + rates) * speeds
     T, moved = np.diag(values), np.zeros(len(columns))
+    slips = np.zeros((*shapes.shape[:-1], count), dtype=complex)  # others have ẋ as speed
     for group in groups:
         # where they are among the real ones
         at = np.searchsorted(columns[:count], group.columns)
         shapes[..., at], speeds[..., at], moved[at] = group.shapes, group.speeds, group.moved.real
         T[np.ix_(at, at)] = group.T
         slips[..., at] = rates * group.shapes + group.shapes @ group.T - group.speeds
-    turns = rates * speeds + speeds @ T
+        turns[..., at] = rates * group.speeds + group.speeds @ group.T
     angles = angles_of(system, found.orders)
     waves = np.exp(1j * angles[:, None] * found.orders)
-    stacked = np.stack([shapes, speeds, slips, turns], axis=1)
-    seen = (waves @ stacked.reshape(len(stacked), -1)).reshape(len(angles), *stacked.shape[1:])
-    seen = np.concatenate([seen.real, seen[..., count:].imag], axis=-1)
-    x, v, drift, turning = seen.swapaxes(0, 1)
+
+    def seen(X: np.ndarray) -> np.ndarray:
+        """Return real motions (n, k, j) of harmonics X."""
+        at = (waves @ X.reshape(len(X), -1)).reshape(len(angles), *X.shape[1:])
+        return np.concatenate([at.real, at[..., count:].imag], axis=-1)
+
+    x, v, forced = (seen(X) for X in (shapes, speeds, turns))
+    slip = np.zeros_like(x)
+    slip[..., :count] = seen(slips)
     M, D, K = sampled(system, angles)
-    forced = turning + np.linalg.solve(M, D @ v + K @ x)
+    forced += np.linalg.solve(M, D @ v + K @ x)
     scale = max(np.abs(found.values).max(), abs(system.speed))
     P = np.concatenate([x, v / scale], axis=1)
     try:
-        rest = np.linalg.solve(P, -np.concatenate([drift, forced / scale], axis=1))
+        rest = np.linalg.solve(P, -np.concatenate([slip, forced / scale], axis=1))
     except np.linalg.LinAlgError:
         rest = np.full_like(P, np.inf)
     half = slice(count, len(columns))

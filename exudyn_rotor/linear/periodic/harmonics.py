@@ -67,12 +67,12 @@ def real_basis(count: int) -> np.ndarray:
     return u
 
 
-def in_basis(matrix: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return a matrix of harmonics in cosine and sine terms, those of :func:`real_basis`."""
-    count, size = len(u), len(matrix) // len(u)
-    blocks = matrix.reshape(count, size, count, size)
-    turned = np.tensordot(u, np.tensordot(blocks, u.conj(), (2, 1)), (1, 0))  # n, a, b, m
-    return turned.transpose(0, 1, 3, 2).reshape(matrix.shape).real
+def in_basis(matrices: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return matrices of harmonics (…, h k, h k) in cosine and sine terms, :func:`real_basis`."""
+    count, size = len(u), matrices.shape[-1] // len(u)
+    blocks = matrices.reshape(-1, count, size, count, size)
+    turned = np.tensordot(np.tensordot(blocks, u, (1, 1)), u.conj(), (2, 1))  # …, a, b, n, m
+    return turned.transpose(0, 3, 1, 4, 2).reshape(matrices.shape).real
 
 
 def feedback(

@@ -111,35 +111,40 @@ def _together(
     """Return what motions with λ (m,) and harmonics (h, k, m) span; None where that fails."""
     count, speed = len(columns), abs(system.speed)
     shift = values.mean() + _away(values, least)
-    basis, every = real_basis(len(orders)), hill_matrices(system, orders)
     real = not np.any(values.imag)
-    if real:  # then motions are, but for a factor, and so are Hill's equations in this basis
-        every = tuple(in_basis(X, basis) for X in every)
+    if real:  # then motions are, but for a factor, and so are Hill's equations in a real basis
+        few = _not_zero(orders, copies, system.order)
+        cut = np.flatnonzero(few)[0]
+        orders, basis = orders[few], real_basis(np.count_nonzero(few))
+        M, D, K = in_basis(np.stack(hill_matrices(system, orders)), basis)
         values, shift = values.real, shift.real
-        copies = np.tensordot(basis, copies, 1)
+        copies = np.tensordot(basis, copies[few], 1)
         twice = np.sum(copies**2, axis=(0, 1))
         copies = (copies * np.exp(-0.5j * np.angle(twice))).real
-    M, D, K = every
+    else:
+        M, D, K = hill_matrices(system, orders)
     scale = max(abs(shift), speed)
     x = copies.reshape(-1, count)
     rng = np.random.default_rng(0)  # what is missing has a share of it
     Z = np.concatenate([x, x * values / scale]) + 1e-3 * rng.normal(size=(2 * len(x), count))
     Q, turned = np.linalg.qr(Z)[0], np.inf
+    # LAPACK itself: scipy's checks take longer
+    factorise, solve = la.get_lapack_funcs(("getrf", "getrs"), (Z,))
     try:
-        factors = la.lu_factor(shift**2 * M + shift * D + K)
+        lu, pivots, singular = factorise(shift**2 * M + shift * D + K)
+        if singular:
+            return None
         for _ in range(_STEPS):
             x, w = Q[: len(x)], scale * Q[len(x) :]
-            larger = la.lu_solve(factors, M @ (w + shift * x) + D @ x)
+            larger, _ = solve(lu, pivots, M @ (w + shift * x) + D @ x)
             last, (Q, R) = Q, np.linalg.qr(np.concatenate([larger, (shift * larger - x) / scale]))
             before, turned = turned, np.linalg.norm(Q - last @ (last.conj().T @ Q))
             if _SLOWER * before < turned <= _STILL:  # rounding is left
                 break
-        inverse = np.linalg.inv(R)
+        T = shift * np.eye(count) - Q.conj().T @ last @ np.linalg.inv(R)
+        T, turn = la.schur(T, output="real" if real else "complex")
     except (np.linalg.LinAlgError, ValueError):
         return None
-    T, turn = la.schur(
-        shift * np.eye(count) - Q.conj().T @ last @ inverse, output="real" if real else "complex"
-    )
     Q = Q @ turn
     apart = np.diagonal(T) - values[:, None]
     told = bounds + _SAME * speed
@@ -149,4 +154,12 @@ def _together(
     if real:
         x, w = (np.tensordot(basis.conj().T, X, 1) for X in (x, w))
     speeds = scale * w + 1j * system.speed * orders[:, None, None] * x
+    if real:
+        x, speeds = (np.pad(X, ((cut, cut), (0, 0), (0, 0))) for X in (x, speeds))
     return SharedMotions(columns[order], x, speeds, T, np.diagonal(T) - values[order])
+
+
+def _not_zero(orders: np.ndarray, shapes: np.ndarray, more: int) -> np.ndarray:
+    """Return which harmonics motions (h, k, m) have, and `more` on both sides."""
+    sizes = np.linalg.norm(shapes, axis=(1, 2))
+    return np.abs(orders) <= np.abs(orders[sizes > _STILL * sizes.max()]).max() + more
