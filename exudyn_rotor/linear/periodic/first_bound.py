@@ -92,11 +92,14 @@ def first_bound(
     together = np.zeros(len(found.values), dtype=bool)
     for group in groups:
         together[group.columns] = True
+    if not all(np.isrealobj(group.T) for group in groups):
+        return np.inf
     apart = ~together[first]
+    if np.any(together[second] == apart):  # one of a pair without the other
+        return np.inf
     own = np.ones(len(found.values), dtype=bool)
     own[first[apart]] = own[second[apart]] = False
-    real = all(np.isrealobj(group.T) for group in groups) and not np.any(found.values[own].imag)
-    if not real or np.any(together[second] == apart):
+    if np.any(np.abs(found.values[own].imag) > ENOUGH * allowed[own]):
         return np.inf
     own, first, second = np.flatnonzero(own), first[apart], second[apart]
     values, F, moved = _remainder(system, found, np.append(own, first), len(own), groups)
@@ -120,15 +123,17 @@ def _remainder(
     rates = 1j * system.speed * found.orders[:, None, None]
     shapes = found.shapes[..., columns]
     shapes[..., :count] = _real(shapes[..., :count])
-    values = found.values[columns]
+    values, moved = found.values[columns], np.zeros(len(columns), dtype=complex)
+    moved[:count].imag = -values[:count].imag
+    values[:count] = values[:count].real
     speeds = (values + rates) * shapes
     turns = (values + rates) * speeds
-    T, moved = np.diag(values), np.zeros(len(columns))
+    T = np.diag(values)
     slips = np.zeros((*shapes.shape[:-1], count), dtype=complex)  # others have ẋ as speed
     for group in groups:
         # where they are among the real ones
         at = np.searchsorted(columns[:count], group.columns)
-        shapes[..., at], speeds[..., at], moved[at] = group.shapes, group.speeds, group.moved.real
+        shapes[..., at], speeds[..., at], moved[at] = group.shapes, group.speeds, group.moved
         T[np.ix_(at, at)] = group.T
         slips[..., at] = rates * group.shapes + group.shapes @ group.T - group.speeds
         turns[..., at] = rates * group.speeds + group.speeds @ group.T

@@ -1,0 +1,125 @@
+"""The first bound of exponents is above what the check tells at length, and hardly larger."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+from models import disc_rotor
+from test_stability import anisotropic
+from transformed import transformed
+
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic.exponents import _chosen_by_hill
+from exudyn_rotor.linear.periodic.first_bound import _share, first_bound
+from exudyn_rotor.linear.periodic.hill_motions import HillMotions
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.periodic.remainder import _Remainder, _States, checked
+from exudyn_rotor.linear.periodic.shared_motions import shared_motions
+from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
+
+TOLERANCE = 1e-9
+
+
+def both_bounds(system: PeriodicSystem, found: HillMotions, radius: float) -> tuple[float, float]:
+    """Return the first bound, and the share of equal radii after one change of coordinates."""
+    every = found.with_conjugates()
+    paired = np.flatnonzero(found.paired)
+    pairs = paired, len(found.values) + np.arange(len(paired))
+    groups, radii = shared_motions(system, every), np.full(len(every.values), radius)
+    states = _States.of(system, every, groups)
+    first = first_bound(system, every, pairs, groups, radii)
+    return first, states.remainder(radii)._smaller().share
+
+
+def on_uneven_supports(speed: float) -> PeriodicSystem:
+    """Return a rotor with free motions, which share their exponent."""
+    rotor = disc_rotor()
+    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
+    return LinearRotor.of(reduced, anisotropic()).at(speed)
+
+
+def two_motions(damping: float) -> PeriodicSystem:
+    """Return a system with one or two motions in pairs."""
+    C, K = np.diag([0.2, damping]), np.diag([20.0, 70.0])
+    return transformed(3.0, C, K, {2: np.full((2, 2), 0.3)}, 0.3)[0]
+
+
+SYSTEMS = {
+    "pairs": partial(two_motions, 0.4),
+    "beside real ones": partial(two_motions, 20.0),
+    "free": partial(on_uneven_supports, 200.0),
+    "free, the other way": partial(on_uneven_supports, -200.0),
+    "uneven rotor": lambda: LinearRotor.of(asymmetric_shaft(), anisotropic()).at(50.0),
+}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_it_is_above_what_a_change_of_coordinates_leaves(name):
+    """By sums of sizes in the place of largest sums."""
+    system = SYSTEMS[name]()
+    found = _chosen_by_hill(system, TOLERANCE, True)
+    first, share = both_bounds(system, found, 1e-6)
+    assert share <= first <= 5.0 * share
+
+
+def in_conjugate_pairs(size: float, count: int = 2, pairs: int = 2) -> tuple[np.ndarray, ...]:
+    """Return λ and F of real motions and of pairs, with harmonics −1, 0 and 1 at 33 angles.
+
+    F of ``P_R U`` is ``U⁻¹ R U`` with real R, where U combines real and imaginary parts.
+    """
+    rng = np.random.default_rng(5)
+    angles = 2.0 * np.pi * np.arange(33) / 33
+    order = count + 2 * pairs
+    waves = np.array([np.ones(33), np.cos(angles), np.sin(angles)])
+    R = size * np.einsum("wn,wij->nij", waves, rng.normal(size=(3, order, order)))
+    one, none = np.eye(pairs), np.zeros((count, pairs))
+    U = np.block([[np.eye(count), none, none], [none.T, one, one], [none.T, 1j * one, -1j * one]])
+    some = -0.2 + 1j * (0.2 + np.arange(pairs) / (2.1 * pairs))
+    values = np.concatenate([-1.0 - np.arange(count), some, some.conj()])
+    return values, np.linalg.inv(U) @ R @ U
+
+
+@pytest.mark.parametrize(("count", "pairs"), [(2, 2), (0, 3), (3, 0), (1, 1)])
+@pytest.mark.parametrize("size", [1e-2, 1e-4])
+def test_it_is_of_the_second_order(size, count, pairs):
+    """Of a rest F with harmonics all alike, of which each has its part in all others."""
+    values, F = in_conjugate_pairs(size, count, pairs)
+    none, radii = np.zeros(count + pairs), np.full(len(values), 1e-3)
+    rest = _Remainder(F, values, radii, 1.0, np.zeros(len(values)))
+    first = _share(values, F[..., : count + pairs], none, radii, 1.0)
+    left = rest._smaller().share
+    moved = np.abs(np.diagonal(F.mean(axis=0))).max() / 1e-3  # in both alike
+    assert left <= first
+    assert first - moved <= 30.0 * (left - moved)
+    assert first - moved <= 3e3 * (size / 1e-2) ** 2
+
+
+def test_a_change_of_coordinates_without_an_inverse_tells_nothing():
+    """Where the sizes of G have a spectral radius of nearly 4, ``(I − g)⁻¹`` bounds nothing."""
+    values = -1e-3 + 1j * np.arange(16.0)
+    apart = np.abs(values - values[:, None])
+    every = np.append(values, values.conj())
+    F = np.zeros((5, 32, 16), dtype=complex)
+    F[:, :16] = 0.28 * apart
+    assert _share(every, F, np.zeros(16), np.ones(32), 100.0) == np.inf
+
+
+@pytest.mark.parametrize("name", ["free", "free, the other way"])
+@pytest.mark.parametrize("wrong", ["value", "twice"])
+def test_motions_in_pairs_that_are_wrong_are_seen(name, wrong):
+    """λ off by more than is told; one motion twice, and another one not at all."""
+    system = SYSTEMS[name]()
+    found = _chosen_by_hill(system, TOLERANCE, True)
+    gone = np.zeros(len(found.values), dtype=bool)
+    assert checked(system, found, gone, TOLERANCE) is found  # the first bound is enough
+    values, shapes = found.values.copy(), found.shapes.copy()
+    pairs = np.flatnonzero(found.paired)
+    slow = pairs[np.argsort(np.abs(values[pairs]))][:2]
+    if wrong == "value":
+        values[slow[0]] += 100.0 * found.bounds[slow[0]] + 1e-4 * abs(system.speed)
+    else:
+        values[slow[0]], shapes[..., slow[0]] = values[slow[1]], shapes[..., slow[1]]
+    with pytest.raises(UnconvergedError, match="may be off by"):
+        checked(system, replace(found, values=values, shapes=shapes), gone, TOLERANCE)
