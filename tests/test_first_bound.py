@@ -18,10 +18,11 @@ from exudyn_rotor.linear.periodic.first_bound import (
     first_bound,
     left_to_rest,
 )
+from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.periodic.remainder import _Remainder, _States, checked
-from exudyn_rotor.linear.periodic.shared_motions import shared_motions
+from exudyn_rotor.linear.periodic.shared_motions import _owners, shared_motions
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 TOLERANCE = 1e-9
@@ -78,9 +79,11 @@ def test_it_is_above_what_a_change_of_coordinates_leaves(name):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_half_of_the_columns_are_those_of_all_motions(name):
-    """But for the length of motions, of which ``F_ij F_ji`` is free."""
+    """But for factors of motions, of which ``F_ij F_ji`` is free; also of motions that are wrong."""
     system = SYSTEMS[name]()
     every, (first, second), groups = given(system, _chosen_by_hill(system, TOLERANCE, True))
+    every = replace(every, shapes=every.shapes * np.exp(1j * np.arange(len(every.values))))
+    groups = [replace(group, speeds=1.001 * group.speeds) for group in groups]
     rest = _States.of(system, every, groups).remainder(np.ones(len(every.values)))
     own = np.setdiff1d(np.arange(len(every.values)), [*first, *second])
     half = np.append(own, first)
@@ -133,6 +136,26 @@ def test_it_is_of_the_second_order(size, count, pairs):
     assert left <= first
     assert first - moved <= 30.0 * (left - moved)
     assert first - moved <= 3e3 * (size / 1e-2) ** 2
+
+
+def test_a_copy_of_a_shared_motion_is_brought_beside_it():
+    """One of two that share zero, as its copy that is one base higher, or lower."""
+    system = SYSTEMS["free, with harmonics"]()
+    every, _, (group,) = given(system, _chosen_by_hill(system, TOLERANCE, True))
+    one = group.columns[0]
+    for steps in (1, -1):
+        values, shapes = every.values.copy(), every.shapes.copy()
+        values[one] += 1j * steps * system.base
+        shapes[..., one] = shifted(shapes[..., one], steps)
+        (found,) = shared_motions(system, replace(every, values=values, shapes=shapes))
+        assert set(found.columns) == set(group.columns)
+
+
+def test_an_exponent_is_that_which_is_told_best():
+    """0.45 and 0.5i, of 0 and 1: the sum of distances is least the other way round."""
+    exponents, values = np.array([0.45, 0.5j]), np.array([0.0, 1.0])
+    assert list(_owners(exponents, values, np.array([1e-3, 1.0]))) == [0, 1]
+    assert list(_owners(exponents, values, np.ones(2))) == [1, 0]
 
 
 def test_what_no_change_of_coordinates_takes_away_is_left():

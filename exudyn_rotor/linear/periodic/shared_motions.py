@@ -146,10 +146,7 @@ def _together(
     except (np.linalg.LinAlgError, ValueError):
         return None
     Q = Q @ turn
-    apart = np.diagonal(T) - values[:, None]
-    told = bounds + _SAME * speed
-    places = linear_sum_assignment(np.abs(apart) / told[:, None])[1]
-    order = np.argsort(places)
+    order = _owners(np.diagonal(T), values, bounds + _SAME * speed)
     x, w = (X.reshape(len(orders), system.size, count) for X in np.split(Q, 2))
     if real:
         x, w = (np.tensordot(basis.conj().T, X, 1) for X in (x, w))
@@ -163,3 +160,9 @@ def _not_zero(orders: np.ndarray, shapes: np.ndarray, more: int) -> np.ndarray:
     """Return which harmonics motions (h, k, m) have, and `more` on both sides."""
     sizes = np.linalg.norm(shapes, axis=(1, 2))
     return np.abs(orders) <= np.abs(orders[sizes > _STILL * sizes.max()]).max() + more
+
+
+def _owners(exponents: np.ndarray, values: np.ndarray, told: np.ndarray) -> np.ndarray:
+    """Return which of λ in `values`, each `told` to so much, each of `exponents` is."""
+    apart = np.abs(exponents - values[:, None])
+    return np.argsort(linear_sum_assignment(apart / told[:, None])[1])

@@ -148,9 +148,13 @@ LINEAR_PERIODIC = [
         "linear/periodic/shared_motions.py",
         "test_uneven_supports.py",
         ("motions given twice as they come", "if inside.size:", "if False:"),
-        ("copies brought the other way", "-steps[i])", "steps[i])"),
         ("shift of the wrong sign", "(shift * larger - x)", "(shift * larger + x)"),
-        ("exponents shared as they come", "apart) / told[:, None]", "apart)"),
+    ),
+    *mutations(
+        "linear/periodic/shared_motions.py",
+        "test_first_bound.py",
+        ("copies brought the other way", "-steps[i])", "steps[i])"),
+        ("exponents shared as they come", "apart / told[:, None]", "apart"),
     ),
     *mutations(
         "linear/periodic/remainder.py",
