@@ -222,7 +222,7 @@ def _raised(
 def _solved(system: PeriodicSystem, orders: np.ndarray) -> tuple[Companion, HillSolution]:
     """Return all motions of one truncation."""
     u = real_basis(len(orders))
-    matrices = in_basis(np.stack(hill_matrices(system, orders)), u)
+    matrices = (in_basis(X, u) for X in hill_matrices(system, orders))
     companion = Companion.of(*matrices, system.rounding)
     values, states = companion.modes()
     errors, bounds = companion.errors
