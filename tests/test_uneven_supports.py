@@ -87,6 +87,9 @@ ROWS = {
     "low speed": Row(
         0.3, (1.0, 2.0, 0.5), (1e6, 1e8), ((2e4, 4e4, 0, 0, 0), (1e4, 1e6, 0, 10, 0)), 1e4
     ),
+    "axial frequency twice the speed": Row(  # at which a matrix of harmonics left out is singular
+        5.0, (2.0, 2.0), (100.0,), ((4e4, 1e4, 1, 1e3, 0), (2e4, 4e4, 0, 0, 1e4))
+    ),
     "low speed, swirl": Row(0.3, (1.0, 1.0), (1e6,), ((2e4, 2e4, 1, 10, 1e3), (1e4, 4e4, 0, 1, 0))),
 }
 

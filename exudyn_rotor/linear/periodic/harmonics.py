@@ -12,7 +12,8 @@ import numpy as np
 
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, times
 
-_OFF_ROOT = 1e-9  # share of the speed that keeps a matrix invertible
+# shares of the speed of which the first keeps matrices invertible
+_OFF_ROOT = 0.0, 1e-9, 1e-6, 1e-3
 
 
 def hill_matrices(
@@ -100,11 +101,14 @@ def feedback(
 
 def _answer(system: PeriodicSystem, rates: np.ndarray, forces: np.ndarray) -> np.ndarray:
     """Return what mean coefficients answer to forces (k, j), at a root what they do beside it."""
-    try:
-        solved = np.linalg.solve(system.dynamic(0, rates), forces.T[:, :, None])
-    except np.linalg.LinAlgError:
-        dynamic = system.dynamic(0, rates + 1j * _OFF_ROOT * system.speed)
-        solved = np.linalg.solve(dynamic, forces.T[:, :, None])
+    for share in _OFF_ROOT:
+        dynamic = system.dynamic(0, rates + 1j * share * system.speed)
+        try:
+            solved = np.linalg.solve(dynamic, forces.T[:, :, None])
+            break
+        except np.linalg.LinAlgError:
+            if share == _OFF_ROOT[-1]:
+                raise
     return solved[:, :, 0].T
 
 
