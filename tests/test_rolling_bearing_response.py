@@ -35,7 +35,7 @@ def point(axis="z"):
     return solid.with_interface("seat", [0]).reduce(0)
 
 
-def integrated(one, speed, unbalance, length, kept):
+def integrated(one, speed, unbalance, length, kept, gravity=GRAVITY):
     """Return times and places of a mass on one bearing, after its transient; (2) written anew."""
     phases = 2.0 * np.pi / one.count * np.arange(one.count)
 
@@ -44,7 +44,7 @@ def integrated(one, speed, unbalance, length, kept):
         normals = np.array([np.cos(angle), np.sin(angle)])
         loads = one.stiffness * np.maximum(y[:2] @ normals - one.clearance, 0.0) ** 1.5
         spin = unbalance * speed**2 * np.array([np.cos(speed * t), np.sin(speed * t)])
-        force = spin - normals @ loads - one.damping * y[2:] + MASS * np.array(GRAVITY[:2])
+        force = spin - normals @ loads - one.damping * y[2:] + MASS * np.array(gravity[:2])
         return np.r_[y[2:], force / MASS]
 
     times = np.linspace(length - kept, length, 300)
@@ -64,6 +64,18 @@ def test_motion_is_that_of_an_integration_in_time(speed, clearance, unbalance):
     found = rolling_bearing_response(point(), [speed], given, supports=one, gravity=GRAVITY)
     times, expected = integrated(one, speed, unbalance, 0.12, 0.03)  # m/c = 5 ms
     away = np.abs(found.displacement(speed, times) - expected).max()
+    assert found.errors[0] <= 1e-2
+    assert away < 1e-2 * np.ptp(expected, axis=0).max()
+
+
+@pytest.mark.parametrize(("clearance", "unbalance"), [(0.0, 1e-4), (1e-6, 1e-3)])
+def test_soft_contacts_need_more_harmonics_than_stiff_ones(clearance, unbalance):
+    """Upright, pressed by its unbalance into less than a µm, which turns against the cage."""
+    one, upright = bearing(clearance=clearance, damping=3000.0), [0.0, 0.0, -9.81]
+    given = {"supports": one, "gravity": upright}
+    found = rolling_bearing_response(point(), [100.0], Unbalance("seat", unbalance), **given)
+    times, expected = integrated(one, 100.0, unbalance, 0.15, 0.03, upright)
+    away = np.abs(found.displacement(100.0, times) - expected).max()
     assert found.errors[0] <= 1e-2
     assert away < 1e-2 * np.ptp(expected, axis=0).max()
 
@@ -96,7 +108,7 @@ def test_small_unbalance_is_linear_and_told_so():
     seen = [found.phasor("seat", name, 0, 1)[0] for name in ("n1", "n2")]
     np.testing.assert_allclose(seen, expected, rtol=1e-3)
     assert found.linear_errors[0] < 0.1
-    unbalance = Unbalance("seat", 0.1)
+    unbalance = Unbalance("seat", 0.15)
     large = rolling_bearing_response(point(), [speed], unbalance, **given, tolerance=0.05)
     assert large.linear_errors[0] > 0.3
 
@@ -194,12 +206,29 @@ def test_a_load_along_the_axis_that_nothing_holds_is_told():
         )  # fmt: skip
 
 
-def test_gravity_along_the_axis_presses_no_element():
+@pytest.mark.parametrize("axis", ["z", [0.3, 0.2, 0.9]])  # across the second it leaves rounding
+def test_gravity_along_the_axis_presses_no_element(axis):
     """Upright and all but balanced, a rotor of 1 µm clearance rests at no element."""
-    unbalance = [Unbalance("seat", 1e-7)]
-    given = {"supports": bearing(clearance=1e-6), "own": False}
+    unbalance, rotor = [Unbalance("seat", 1e-7)], point(axis)
+    given = {"supports": bearing(clearance=1e-6), "gravity": -9.81 * rotor.axis.direction}
     with pytest.raises(ValueError, match="gravity: lies along the axis, where it presses no"):
-        rolling_bearing_response(point(), [30.0], unbalance, gravity=[0, 0, -9.81], **given)
+        rolling_bearing_response(rotor, [30.0], unbalance, **given)
+    with pytest.raises(ValueError, match="without a load no element carries"):
+        rolling_bearing_response(rotor, [30.0], own=False, **given)
+
+
+@pytest.mark.parametrize("axis", ["z", [1.0, 2.0, -2.0]])
+@pytest.mark.parametrize(("speeds", "amount"), [([100.0], 0.0), ([0.0, 100.0], 1e-4)])
+def test_loads_along_a_held_axis_press_no_element(axis, speeds, amount):
+    """On a spring along the axis, with or without clearance, at the speed without another load."""
+    rotor = point(axis)
+    given = {"loads": [HarmonicForce("seat", [0.0, 0.0, -5.0])], "own": False}
+    for clearance in (0.0, 5e-6):
+        held = [bearing(clearance=clearance), Support("seat", np.diag([0.0, 0.0, 1e6]))]
+        with pytest.raises(ValueError, match=f"press no element at {speeds[0]:g} rad/s"):
+            rolling_bearing_response(
+                rotor, speeds, [Unbalance("seat", amount)] if amount else (), supports=held, **given
+            )
 
 
 def test_refused_input():

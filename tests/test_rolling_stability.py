@@ -185,6 +185,29 @@ def test_many_preloaded_balls_are_a_linear_bearing(kind, family):
     assert found.exponents[0] == pytest.approx(linear.growth_of(family)[0], rel=1e-2)
 
 
+@pytest.mark.parametrize("speed", [30.0, 300.0])
+@pytest.mark.parametrize("axis", ["z", [1.0, 2.0, -2.0]])
+def test_a_bearing_that_is_not_touched_has_no_part(axis, speed):
+    """Around a rotor on a spring and a damper: roots of ``mλ² + dλ + k``, also overdamped."""
+    rotor, open_bearing = point(axis), bearing(clearance=1e-3)
+    gravity = -9.81 * rotor.axis.plane[:, 1]
+    for damping in (1e3, 1e5):
+        given = {"supports": [Support("seat", 1e6, damping), open_bearing], "gravity": gravity}
+        found = rolling_bearing_response(rotor, [speed], **given)
+        expected = np.roots([MASS, damping, 1e6]).real.max()
+        assert found.exponents[0] == pytest.approx(expected, rel=1e-6)
+        assert found.open_shares[0, 0] == 1.0
+        assert found.displacement(speed, [0.0])[0] == pytest.approx([0.0, -WEIGHT / 1e6], abs=1e-12)
+
+
+def test_a_motion_that_decays_within_a_ball_pass_is_stable():
+    """To exp(−89) of what it was, beside a motion along the axis that does not decay."""
+    held = [Support("seat", 1e6, 1e4), bearing(clearance=1e-3)]
+    found = rolling_bearing_response(point(), [30.0], supports=held, gravity=[0.0, -9.81, 0.0])
+    assert found.verdicts == ("stable",)
+    assert np.roots([MASS, 1e4, 1e6]).max() < found.exponents[0]
+
+
 def test_at_rest_it_is_that_of_the_contacts_at_any_angle():
     """Every eigenvalue has the real part −c/2m, but for overdamped motions."""
     one = bearing(damping=500.0)

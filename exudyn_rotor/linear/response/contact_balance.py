@@ -14,27 +14,23 @@ with q⁰ under weight and unbalance, f the force of the contacts on the inner r
 the rotor is uneven. Harmonics of g are taken from values at the points of a grid over ψ and θ
 (alternating frequency and time: T. M. Cameron, J. H. Griffin, J. Appl. Mech. 56 (1989), 149), and
 Newton's method has the exact derivative at these points. Harmonics beyond K and N are
-``H g``, too: one more iteration tells how large they are.
+``H g``, too: one more step of Newton's method, with the mean of the derivative, tells how large
+they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts, depth_under
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.protocol import Space
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
-from exudyn_rotor.linear.response.places import Motion, Place, in_frame
-from exudyn_rotor.theory.rotating_axes import into_rotor_frame
+from exudyn_rotor.linear.response.contact_rest import Harmonics, Rest
 
-Harmonics = Mapping[tuple[int, int], np.ndarray]  # (d,) by (k, n), of both signs
-
-_HARMONICS = 1e-10  # largest relative change of the rest's motion by its own further harmonics
-_SMALL = 1e-12  # share of a receptance that is rounding
 _MOST_ITERATIONS = 30
 _LEAST_SHARE = 1.0 / 64.0  # of a step of Newton's method
 _DAMPING = (1.0, 0.1)  # of k₀ over the highest frequency, with which a search begins
@@ -44,6 +40,7 @@ _LOST = (
     "speeds in smaller steps, or the other way (downwards=…); a damped run of a scene shows what "
     "the rotor does"
 )
+_FREE = 1e-9  # share of the springs k₀ that counts as no stiffness
 _UNSEEN = 0.03  # of the tolerance: harmonics that the force cannot make larger do not count
 
 
@@ -51,102 +48,6 @@ def unknowns(reach: tuple[int, int], bearings: int) -> int:
     """Return the number of unknowns of (2)."""
     K, N = reach
     return (2 * K + 1) * (2 * N + 1) * 2 * bearings
-
-
-@dataclass(frozen=True, eq=False)
-class Rest:
-    """All but the contacts at one spin speed, as the bearings feel it.
-
-    Attributes
-    ----------
-    space : Space
-        Equations with a spring k₀ in place of each bearing.
-    speed, passing : float
-        Ω and ZκΩ [rad/s].
-    seats : sequence of tuples of (Place, float)
-        Rings of each bearing: the inner one with 1, one that a foundation carries with −1.
-    loads : mapping of int to ndarray (k,)
-        Constant loads and unbalance, harmonics in the rotor frame.
-    """
-
-    space: Space
-    speed: float
-    passing: float
-    seats: Sequence[Sequence[tuple[Place, float]]]
-    loads: Mapping[int, np.ndarray]
-
-    @cached_property
-    def _known(self) -> dict[tuple[int, int], dict[int, np.ndarray]]:
-        return {}
-
-    def moved(self) -> Harmonics:
-        """Return q⁰ of (2)."""
-        answer = self._solved(self.loads, 0.0)
-        return {(0, n): q for n, q in self._seen(answer).items()}
-
-    def receptance(self, k: int, n: int) -> dict[int, np.ndarray]:
-        """Return H^p of (2) by p, each (d, d) [m/N]: motion n + p by forces of the harmonic n."""
-        if (k, n) < (0, 0):
-            return {-p: H.conj() for p, H in self.receptance(-k, -n).items()}
-        if (k, n) not in self._known:
-            columns = []
-            for unit in np.eye(2 * len(self.seats)):
-                answer = self._solved(self.pulled({0: unit}), k * self.passing + n * self.speed)
-                columns.append(self._seen(answer))
-            orders = sorted({p for column in columns for p in column})
-            zero = np.zeros(2 * len(self.seats))
-            found = {p: np.array([each.get(p, zero) for each in columns]).T for p in orders}
-            size = max(np.abs(H).max() for H in found.values())
-            self._known[k, n] = {p: H for p, H in found.items() if np.abs(H).max() > _SMALL * size}
-        return self._known[k, n]
-
-    def pulled(self, forces: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
-        """Return forces (d,) on the inner rings by n as loads (k,) in the rotor frame."""
-        loads: dict[int, np.ndarray] = {}
-        for n, force in forces.items():
-            for seat, pair in zip(self.seats, force.reshape(-1, 2), strict=True):
-                for ring, sign in seat:
-                    wrench = np.concatenate([sign * pair, np.zeros(4)])
-                    still = ring.stands or self.speed == 0.0
-                    for m, part in ({0: wrench} if still else into_rotor_frame(wrench)).items():
-                        loads[n + m] = loads.get(n + m, 0.0) + ring.motion.T @ part
-        return loads
-
-    def coordinates(self, forces: Harmonics) -> dict[tuple[int, int], np.ndarray]:
-        """Return the motion ``Re Σ x_kn exp i(kψ + nθ)``, k ≥ 0, in the rotor frame, (k,) each.
-
-        `forces` are g of (2).
-        """
-        found = {}
-        for k in range(max(k for k, _ in forces) + 1):
-            loads = self.pulled(
-                {n: (2.0 if k else 1.0) * g for (j, n), g in forces.items() if j == k}
-            )
-            if k == 0:
-                for n, load in self.loads.items():
-                    loads[n] = loads.get(n, 0.0) + load
-            for n, x in self._solved(loads, k * self.passing).items():
-                found[k, n] = x
-        return found
-
-    def _solved(self, loads: Mapping[int, np.ndarray], rate: float) -> dict[int, np.ndarray]:
-        return self.space.steady_motion(self.speed, loads, rate, _HARMONICS)
-
-    def _seen(self, answer: Motion) -> dict[int, np.ndarray]:
-        """Return the motions (d,) of the inner rings against the outer ones, inertial axes."""
-        rings = [ring for seat in self.seats for ring, _ in seat]
-        rows = np.array([ring.motion for ring in rings])
-        motion = {n: rows @ x for n, x in answer.items()}
-        if self.speed != 0.0:
-            motion = in_frame(motion, np.array([ring.stands for ring in rings]), "inertial")
-        seat_of = [index for index, seat in enumerate(self.seats) for _ in seat]
-        signs = np.array([sign for seat in self.seats for _, sign in seat])
-        found = {}
-        for n, each in motion.items():
-            moved = np.zeros((len(self.seats), 2), dtype=complex)
-            np.add.at(moved, seat_of, signs[:, None] * each[:, :2])
-            found[n] = moved.ravel()
-        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,10 +176,8 @@ class ContactBalance:
         places = np.zeros_like(loads)
         for b, one in enumerate(self.bearings):
             size = sizes[..., b, :]
-            depth = depth_under(one, size)
-            places[..., b, :] = (
-                (one.clearance + depth) * loads[..., b, :] / np.maximum(size, 1e-300)
-            )
+            far = one.clearance + depth_under(one, size)
+            places[..., b, :] = far * loads[..., b, :] / np.maximum(size, 1e-300)
         return self._spectrum(places.reshape(*self.points, -1))[self._places]
 
     def linear(self, c: np.ndarray) -> np.ndarray:
@@ -355,6 +254,12 @@ class ContactBalance:
                 return c
         raise UnconvergedError(_LOST)
 
+    def holds(self, c: np.ndarray) -> bool:
+        """Return whether contacts and rest hold the mean place of a motion: not in a clearance."""
+        mean = scipy.linalg.block_diag(*self.contacts(self.values(c))[2].mean(axis=(0, 1)))
+        H = self.rest.receptance(0, 0)[0]
+        return bool(np.linalg.norm(np.eye(len(mean)) - H @ mean, -2) > _FREE)
+
     # ------------------------------------------------------------ errors
 
     def distance(self, c: np.ndarray, right: np.ndarray) -> float:
@@ -367,14 +272,16 @@ class ContactBalance:
     def left_out(self, c: np.ndarray, tolerance: float) -> tuple[float, float]:
         """Return the root of the mean square of harmonics beyond K and of those beyond N.
 
-        Relative to that of the motion without its mean; first order in what is left out.
+        Relative to that of the motion without its mean; first order in what is left out, on
+        contacts with their mean stiffness.
         """
-        ghat = self._spectrum(self.contacts(self.values(c))[1])
+        _, g, slopes = self.contacts(self.values(c))
+        ghat, mean = self._spectrum(g), scipy.linalg.block_diag(*slopes.mean(axis=(0, 1)))
         N, (A, B), inside = self.reach[1], self.points, set(self.orders)
         size = np.linalg.norm(c[[order != (0, 0) for order in self.orders]])
         if size == 0.0:
             return 0.0, 0.0
-        largest = max(np.abs(H).max() for _, _, part in self._receptances.values() for H in part)
+        largest = max(np.abs(_on(mean, H, H)).max() for *_, H in self._receptances.values())
         beyond = {order: q for order, q in self.given.items() if order not in inside}
         sizes = np.abs(ghat).max(axis=-1) * largest
         for k in range(-(A // 2 - 1), A // 2):
@@ -386,6 +293,12 @@ class ContactBalance:
                         more = H @ ghat[k % A, n % B]
                         beyond[k, n + p] = beyond.get((k, n + p), 0.0) + more
         squares = [0.0, 0.0]
-        for (_, n), q in beyond.items():
-            squares[int(abs(n) > N)] += np.linalg.norm(q) ** 2
+        for (k, n), q in beyond.items():
+            moved = _on(mean, self.rest.receptance(k, n)[0], q)
+            squares[int(abs(n) > N)] += np.linalg.norm(moved) ** 2
         return tuple(np.sqrt(squares) / size)
+
+
+def _on(slopes: np.ndarray, H: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Return motions q (…, d) by springs k₀ as they are by the contacts, of ``k₀ − k`` (d, d)."""
+    return np.linalg.solve(np.eye(len(slopes)) - H @ slopes, q)

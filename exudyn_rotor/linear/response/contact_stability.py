@@ -36,8 +36,10 @@ _MOST_STEPS = 40_000
 _NEAR = 0.03  # relative change of the spin speed that is looked at
 _SAME = 1e-12  # relative difference of ratios that is rounding
 _SURE = 0.1  # of the exponent: an error that is small enough
+_HALVINGS = 2  # of a step
+_ROUNDED = -30.0  # logarithm of a multiplier that may be rounding
 _SLOW = 400  # cycles in a ball pass, from which on the bearings are looked at as they stand
-_ANGLES = 16  # of the cage, there
+_ANGLES = 16  # of the cage, there, and for means
 _MOST_COORDINATES = 60
 
 
@@ -55,8 +57,10 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
     Returns
     -------
     tuple of float
-        NaN and infinity where it would take too many steps. At rest, and where balls pass so slowly
-        that motions beside it do not feel them pass, the largest one at any angle of the cage.
+        NaN and infinity where it would take too many steps; a bound above where a motion decays
+        within a ball pass to what is rounding beside others. At rest, and where balls pass so
+        slowly that motions beside it do not feel them pass, the largest one at any angle of the
+        cage.
     """
     rest = balance.rest
     beside = _Beside(balance, c, space, rest.speed)
@@ -72,12 +76,13 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
     ratio, value, error, last, by_step = rest.passing / rest.speed, np.nan, np.inf, np.nan, np.nan
     for m, n in _near(ratio, int(_MOST_STEPS * step * rest.speed / (2.0 * np.pi))):
         period = 2.0 * np.pi * m / rest.passing
-        speed, steps = 2.0 * np.pi * n / period, int(np.ceil(period / step))
-        near = _Beside(balance, c, space, speed).equations()
-        found = near.largest_exponent(period, steps)
+        near = _Beside(balance, c, space, 2.0 * np.pi * n / period).equations()
         if np.isnan(by_step):
-            # the step's error falls with its square
-            by_step = near.largest_exponent(period, 2 * steps) - found
+            step, found, by_step = _small_enough(near, period, step)
+        else:
+            found = near.largest_exponent(period, int(np.ceil(period / step)))
+        if found * period < _ROUNDED:  # beside motions that do not decay it is rounding: a bound
+            return (value, error) if error < np.inf else (found, _SURE * abs(found))
         by_speed = 0.0 if abs(m - n * ratio) <= _SAME * m else abs(found - last)
         if not np.isnan(by_speed):
             value, error = found + 4.0 / 3.0 * by_step, by_speed + abs(by_step)
@@ -85,6 +90,23 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
             break
         last = found
     return value, error
+
+
+def _small_enough(
+    near: ChangingEquations, period: float, step: float
+) -> tuple[float, float, float]:
+    """Return a step [s], the exponent by it and by how much one by half of it is larger [1/s].
+
+    The step's error falls with its square.
+    """
+    steps = int(np.ceil(period / step))
+    found = near.largest_exponent(period, steps)
+    for halvings in range(_HALVINGS + 1):
+        finer = near.largest_exponent(period, 2 * steps)
+        by_step = finer - found
+        if halvings == _HALVINGS or abs(by_step) <= 0.5 * _SURE * abs(finer):
+            return period / steps, found, by_step
+        steps, found = 2 * steps, finer
 
 
 def _near(ratio: float, most: int) -> Iterator[tuple[int, int]]:
@@ -159,6 +181,7 @@ class _Beside:
         """Return the equations over time; with balls that stand at an angle ψ, if it is given."""
         system, rings = self.system, self.places
         M, D, K = (terms[0].real for terms in (system.M, system.D, system.K))
+        K = K + rings.T @ self._mean @ rings
         others = np.zeros((0, system.size)) if system.is_constant else system.ports.T
         changes = partial(self._changes, others, psi)
         return ChangingEquations(M, D, K, np.vstack([rings, others]), changes, self.fastest)
@@ -172,13 +195,20 @@ class _Beside:
         theta = self.speed * times
         size = p + len(others)
         stiffness = np.zeros((len(times), size, size))
-        stiffness[:, :p, :p] = self._of_contacts(passed, theta)
+        stiffness[:, :p, :p] = self._of_contacts(passed, theta) - self._mean
         if not len(others):
             return stiffness, None
         stiffness[:, p:, p:] = _varying(self.system.K, others, theta)
         damping = np.zeros_like(stiffness)
         damping[:, p:, p:] = _varying(self.system.D, others, theta)
         return stiffness, damping
+
+    @cached_property
+    def _mean(self) -> np.ndarray:
+        """Mean (r, r) of the contacts' part: what is constant needs no small steps."""
+        angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
+        both = np.meshgrid(angles, angles)
+        return self._of_contacts(both[0].ravel(), both[1].ravel()).mean(axis=0)
 
     def _of_contacts(self, psi: np.ndarray, theta: np.ndarray) -> np.ndarray:
         """Return ``−Cᵀ(k₀ − k)C`` by the rings' motions in their axes, (t, r, r)."""

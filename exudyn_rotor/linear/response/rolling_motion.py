@@ -17,7 +17,8 @@ from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
-from exudyn_rotor.linear.response.contact_balance import ContactBalance, Rest, unknowns
+from exudyn_rotor.linear.response.contact_balance import ContactBalance, unknowns
+from exudyn_rotor.linear.response.contact_rest import Rest
 from exudyn_rotor.linear.response.contact_stability import growth
 from exudyn_rotor.linear.response.places import Place, place
 
@@ -83,6 +84,11 @@ class RollingProblem:
         loads[0] = loads.get(0, 0.0) + speed**2 * self.unbalance
         space = self.model.space(1, speed).prepared([speed])
         rest = Rest(space, speed, self.passes * speed, self.seats, loads)
+        if not rest.presses():
+            raise ValueError(
+                f"loads, unbalances: press no element at {speed:g} rad/s: all loads are along the "
+                "axis; give one across it, or an unbalance and speeds above zero"
+            )
         of = partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
         mean = self._mean_place(of((0, 0)), tolerance)
         for start in _starts(of, near, mean, tolerance):
@@ -91,6 +97,10 @@ class RollingProblem:
             except UnconvergedError as failed:
                 lost = failed
                 continue
+            if not balance.holds(q):
+                raise UnconvergedError(
+                    "in its clearance no element touches, and the rotor may stand anywhere there"
+                )
             linear_error = np.nan
             if mean is not None:
                 linear = balance.linear(balance.padded(mean, (0, 0)))

@@ -28,7 +28,7 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
-from exudyn_rotor.linear.response.contact_balance import Harmonics
+from exudyn_rotor.linear.response.contact_rest import Harmonics
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
     HarmonicForce,
@@ -49,7 +49,7 @@ from exudyn_rotor.threads import one_thread
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
-_ROUND = 1e-12  # share of the largest harmonic
+_ROUND = 1e-12  # share of gravity, and of the largest harmonic
 
 
 def rolling_bearing_response(
@@ -173,7 +173,8 @@ def rolling_bearing_response(
     warn_of_left_out_stiffening(model, values.max())
     observed = places(model, checked_places(at))
     across = target.axis.plane.T @ gravity
-    weight = [BaseAcceleration(-across)] if np.any(across) else []
+    crosswise = np.abs(across).max() > _ROUND * np.abs(gravity).max()
+    weight = [BaseAcceleration(-across)] if crosswise else []
     static = total([*weight, *loads], model) if weight or loads else {}
     unbalance = np.zeros(model.size)
     if unbalances or (own and not model.is_balanced):

@@ -51,8 +51,8 @@ class RollingBearingResponse(RunStart):
     errors : ndarray, shape (s,)
         Size of the harmonics left out, relative to the motion.
     exponents : ndarray, shape (s,)
-        Largest exponent of small motions beside the steady one [1/s]: below zero they decay; NaN
-        where it is not known.
+        Largest exponent of small motions beside the steady one [1/s]: below zero they decay, and
+        far below, within a ball pass, at least as fast; NaN where it is not known.
     exponent_errors : ndarray, shape (s,)
         Its error [1/s]; infinite where it is not known.
     coordinate_orders : ndarray of int, shape (c, 2)

@@ -321,8 +321,8 @@ BEARINGS = [
         "linear/response/contact_balance.py",
         "test_rolling_bearing_response.py",
         ("spring k₀ left in", "+ springs * q", "+ 0.5 * springs * q"),
-        ("constant load of a seat doubled", "(2.0 if k else 1.0) * g", "2.0 * g"),
-        ("contacts pull the foundation along", "sign * pair, np.zeros(4)", "pair, np.zeros(4)"),
+        ("a clearance holds", "- H @ mean, -2) > _FREE", "- H @ mean, -2) > -1.0"),
+        ("harmonics left out on springs k₀", "- H @ slopes, q)", "- 0.0 * H @ slopes, q)"),
         (
             "uneven rotor answers in another harmonic",
             "index[k, n + p], col",
@@ -330,8 +330,20 @@ BEARINGS = [
         ),
     ),
     *mutations(
+        "linear/response/contact_rest.py",
+        "test_rolling_bearing_response.py",
+        ("constant load of a seat doubled", "(2.0 if k else 1.0) * g", "2.0 * g"),
+        ("every load presses", "return bool(moved[:, :2].max() >", "return bool(moved.max() >"),
+        ("contacts pull the foundation along", "sign * pair, np.zeros(4)", "pair, np.zeros(4)"),
+    ),
+    *mutations(
         "linear/response/contact_stability.py",
         "test_rolling_stability.py",
+        (
+            "mean contacts twice",
+            "self._of_contacts(passed, theta) - self._mean",
+            "self._of_contacts(passed, theta)",
+        ),
         ("contacts harden what they hold", "2 * j + 2] = -block", "2 * j + 2] = block"),
         ("bearings of a rotor stand", "else turned", "else still"),
         ("outer rings go with the inner ones", "[sign * (still", "[(still"),
