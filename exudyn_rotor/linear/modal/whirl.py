@@ -46,6 +46,7 @@ DIAMETER_SHARE = 0.7
 _STATIC = 1e-7
 # share of the mean wave number that turns one way in one motion of a pair
 _CIRCULAR = 0.8
+_DEPENDENT = 1e-3  # of the largest: what copies of a vector span beyond it
 _SAMPLES = 8000  # nodes; of fewer, energies of waves depend on how the mesh numbers them
 _MANY = 100_000  # entries of vectors
 
@@ -120,8 +121,12 @@ class WhirlContent:
         """
         shape = vectors.shape
         span, lengths, _ = np.linalg.svd(vectors.reshape(-1, shape[2]), full_matrices=False)
-        if lengths[-1] < 1e-3 * lengths[0]:  # copies of a defective eigenvalue: one vector only
-            return vectors
+        rank = np.count_nonzero(lengths >= _DEPENDENT * lengths[0])
+        if rank < shape[2]:  # copies of a defective eigenvalue
+            if shape[2] % rank:
+                return vectors
+            once = self.polarised(span[:, :rank].reshape(*shape[:2], rank), orders)
+            return np.tile(once, shape[2] // rank)
         chosen = self._chosen(span.reshape(shape))
         moved = self.waves @ chosen[:, None]
         seen = np.add.outer(orders, self.orders)

@@ -78,7 +78,7 @@ class Companion:
             raise ValueError(f"the mass matrix is not positive definite ({error})") from error
         inverse = la.solve_triangular(lower, np.eye(len(M)), lower=True)
         symmetric = 0.5 * (K + _transposed(K))
-        noise = _rounding(symmetric, inverse.T, rounding)
+        noise = rounding_of(symmetric, inverse.T, rounding)
         stiffness = _congruent(symmetric, inverse.T, 1)
         if not np.all(np.isfinite(stiffness)):
             raise ValueError("the system matrices have entries that are not finite")
@@ -103,7 +103,7 @@ class Companion:
             raise ValueError("the system matrices have entries that are not finite")
         # in one matrix with K₊
         stored = np.where(np.any(circulatory, axis=(-2, -1)), noise, 0.0) / (4.0 * size)
-        noises = np.stack([noise, _rounding(D, inverse.T, rounding), stored])
+        noises = np.stack([noise, rounding_of(D, inverse.T, rounding), stored])
         return cls(A, axes, sizes, noises, scale, rounding, *eig(A))
 
     @cached_property
@@ -202,7 +202,7 @@ def _transposed(X: np.ndarray) -> np.ndarray:
     return X.swapaxes(-1, -2)
 
 
-def _rounding(X: np.ndarray, axes: np.ndarray, relative: float) -> np.ndarray:
+def rounding_of(X: np.ndarray, axes: np.ndarray, relative: float) -> np.ndarray:
     """Return by how much rounding of the entries changes ``AᵀXA``, Frobenius norm."""
     size = np.abs(axes)
     changed = np.linalg.norm(size.T @ np.abs(X) @ size, axis=(-2, -1))

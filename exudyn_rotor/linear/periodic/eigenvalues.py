@@ -69,6 +69,8 @@ def quadratic_modes(
     ValueError
         If the mass matrix is not positive definite, or the eigenvalues are not finite.
     """
+    if not len(M):
+        return [_no_modes()] * len(D)
     companion, size = Companion.of(M, D, K, rounding), len(M)
     found, states = companion.modes()
     errors, bounds = companion.errors
@@ -94,6 +96,8 @@ def all_quadratic_modes(
     The systems share their mass matrix. Without `shapes` vectors may err by rounding.
     """
     M, D, K = systems.M[0], systems.D, systems.K
+    if not len(M):
+        return [_no_modes()] * len(D)
     companion, size = Companion.of(M, D, K, systems.rounding), len(M)
     found, states = companion.modes()
     errors, bounds = companion.errors
@@ -103,6 +107,11 @@ def all_quadratic_modes(
         everyone = np.broadcast_to(np.arange(2 * size), values.shape)
         _iterate_doubtful(found, everyone, values, vectors, M, D, K)
     return list(zip(values, vectors, resolution_of(found), bounds, strict=True))
+
+
+def _no_modes() -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
+    """Return what :func:`quadratic_modes` does of no coordinates."""
+    return np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0)
 
 
 def _iterate_doubtful(

@@ -16,7 +16,14 @@ from functools import partial
 import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, gone, one_of_each_family
+from exudyn_rotor.linear.periodic.floquet_modes import (
+    FloquetModes,
+    as_modes,
+    beside_free,
+    gone,
+    one_of_each_family,
+)
+from exudyn_rotor.linear.periodic.free_directions import FreeDirections, parted
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import solve_hill
@@ -72,6 +79,15 @@ def motions(
     check_eigen(system, method)
     if system.stands_still and method != "floquet":
         return constant_motions(ConstantSystems.of([system]), shapes)[0]
+    apart = FreeDirections.of(system)
+    if apart is None:
+        return _periodic_motions(system, method, tolerance)
+    found = _periodic_motions(system.projected(apart.others), method, tolerance)
+    return beside_free(found, apart, 2)
+
+
+def _periodic_motions(system: PeriodicSystem, method: str, tolerance: float) -> FloquetModes:
+    """Return what :func:`motions` does of a periodic system that something resists."""
     unconverged = None
     if method != "floquet":
         try:
@@ -95,10 +111,11 @@ def motions(
 
 def constant_motions(systems: ConstantSystems, shapes: bool = True) -> list[FloquetModes]:
     """Return what :func:`motions` does of systems that do not change in time."""
-    return [
-        FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
-        for values, vectors, resolution, bounds in all_quadratic_modes(systems, shapes)
-    ]
+    found: dict[int, FloquetModes] = {}
+    for rows, few, apart in parted(systems):
+        solved = all_quadratic_modes(few, shapes)
+        found |= zip(rows.tolist(), as_modes(solved, apart, 2), strict=True)
+    return [found[row] for row in range(len(systems.D))]
 
 
 def descending(values: np.ndarray) -> np.ndarray:

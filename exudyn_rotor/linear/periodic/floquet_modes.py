@@ -8,6 +8,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -21,6 +22,7 @@ from exudyn_rotor.linear.periodic.eigenvalues import (
     repeated,
 )
 from exudyn_rotor.linear.periodic.families import one_of_each_pair
+from exudyn_rotor.linear.periodic.free_directions import FreeDirections, parted
 from exudyn_rotor.linear.periodic.fundamental import propagated
 from exudyn_rotor.linear.periodic.hill import solve_hill
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
@@ -91,6 +93,14 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
+    apart = FreeDirections.of(system)
+    if apart is None:
+        return _floquet_modes(system, tolerance)
+    return beside_free(_floquet_modes(system.projected(apart.others), tolerance), apart, 1)
+
+
+def _floquet_modes(system: PeriodicSystem, tolerance: float) -> FloquetModes:
+    """Return what :func:`floquet_modes` does of a periodic system that something resists."""
     try:
         found = _by_hill(system, tolerance)
     except UnconvergedError as unconverged:
@@ -129,12 +139,32 @@ def constant_modes(systems: ConstantSystems, once: bool = False) -> list[Floquet
 
     `once` is that of :func:`.eigenvalues.less_damped`.
     """
-    return [
-        FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
-        for values, vectors, resolution, bounds in quadratic_modes(
-            systems.M[0], systems.D, systems.K, systems.rounding, once
-        )
-    ]
+    found: dict[int, FloquetModes] = {}
+    for rows, few, apart in parted(systems):
+        solved = quadratic_modes(few.M[0], few.D, few.K, few.rounding, once)
+        found |= zip(rows.tolist(), as_modes(solved, apart, 1), strict=True)
+    return [found[row] for row in range(len(systems.D))]
+
+
+def as_modes(
+    solved: Sequence[tuple], apart: FreeDirections | None, copies: int
+) -> Iterator[FloquetModes]:
+    """Yield what eigenvalue problems gave, with `copies` of the free directions they lack."""
+    for values, vectors, resolution, bounds in solved:
+        modes = FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
+        yield modes if apart is None else beside_free(modes, apart, copies)
+
+
+def beside_free(modes: FloquetModes, apart: FreeDirections, copies: int) -> FloquetModes:
+    """Return motions of all other directions together with `copies` of the free ones."""
+    given, count = apart.others @ modes.vectors, copies * apart.free.shape[1]
+    vectors = np.zeros((*given.shape[:2], count + given.shape[2]), dtype=complex)
+    vectors[list(modes.orders).index(0), :, :count] = np.tile(apart.free, copies)
+    vectors[:, :, count:] = given / np.linalg.norm(given, axis=(0, 1))
+    values = np.append(np.zeros(count), modes.values)
+    bounds = None if modes.bounds is None else np.append(np.zeros(count), modes.bounds)
+    joined = FloquetModes(values, vectors, modes.orders, modes.resolution, bounds)
+    return joined.columns(np.lexsort((values.real, np.abs(values.imag))))
 
 
 def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | None:

@@ -53,6 +53,27 @@ LINEAR_PERIODIC = [
         ("both of an equal pair count", "        if not once:", "        if True:"),
     ),
     *mutations(
+        "linear/periodic/free_directions.py",
+        "test_free_directions.py",
+        (
+            "damping does not resist",
+            "(K[first], D[first])",
+            "(K[first],)",
+        ),
+        (
+            "forces on one side alone count",
+            "return (X,) if np.array_equal(abs(X), abs(X.T)) else (X, X.T)",
+            "return (X,)",
+        ),
+        ("other motions have a share of the free ones", "shares = -la.solve", "shares = la.solve"),
+        (
+            "all systems have the free directions of the first",
+            "left = np.sort(left[alike]), left[~alike]",
+            "left = np.sort(left), left[:0]",
+        ),
+        ("harmonics of the stiffness do not resist", "        if n > 0:", "        if n > 9:"),
+    ),
+    *mutations(
         "linear/periodic/floquet_modes.py",
         "test_hill.py::test_a_rotor_that_spins_the_other_way_has_the_same_exponents",
         (
