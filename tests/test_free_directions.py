@@ -5,7 +5,14 @@ import pytest
 from exponent_methods import constant_exponents
 from point_rotors import SKEW_AXIS, ring_rotor
 
-from exudyn_rotor import SolidRotor, Support, campbell, stability, stability_threshold
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    campbell,
+    linear_model,
+    stability,
+    stability_threshold,
+)
 from exudyn_rotor.linear.modal.whirl import WHIRLS
 from exudyn_rotor.linear.periodic import floquet_modes as floquet
 from exudyn_rotor.linear.periodic.exponents import motions
@@ -153,3 +160,23 @@ def test_modes_are_of_unit_length_and_orthogonal_to_free_ones():
     free = modes.values == 0.0
     coupling = modes.central[:, free].T @ M @ modes.central[:, ~free]
     assert np.abs(coupling).max() < 1e-13 * np.linalg.cond(M) * np.abs(M).max()
+
+
+@pytest.mark.parametrize("axis", [[1.0, 2.0, 2.0], [0.3, -0.7, 0.2], [0.1, 0.2, 0.7]])
+def test_a_single_point_mass_has_no_spin(axis):
+    """It is off its own centre by rounding alone: a Jeffcott rotor of one point.
+
+    On uneven springs its exponents at rest are ``λ² + λd/m + k/m = 0``, at any speed.
+    """
+    axis, mass = np.array(axis) / np.linalg.norm(axis), 0.3
+    rotor = SolidRotor.from_matrices(
+        mass * np.eye(3), np.zeros((3, 3)), [0.13 * axis], axis, check_units=False
+    ).with_interface("mass", [0])
+    supports = [Support("mass", np.diag([1e4, 1.5e4]) * mass, 2.0 * mass)]
+    assert linear_model(rotor, supports=supports).free_motions == ("translation along axis",)
+    found = stability(rotor, [70.0], supports=supports)
+    assert found.exponents.shape == (1, 6)
+    np.testing.assert_allclose(found.growth, 0.0)
+    np.testing.assert_allclose(found.exponents[0, 2:].real, -1.0, rtol=1e-9)
+    seen = campbell(rotor, [70.0], supports=supports).frequencies_inertial[0]
+    np.testing.assert_allclose(np.sort(seen), [0.0, *np.sqrt([1e4 - 1.0, 1.5e4 - 1.0])], rtol=1e-9)

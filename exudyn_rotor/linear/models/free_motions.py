@@ -39,7 +39,9 @@ def free_motions_of_solid(
     """Name those of a solid rotor; see :func:`free_motions_of_reduced`."""
     columns = rigid_columns(rotor.nodes, rotor.axis, rotor.center_of_mass)
     mass = np.einsum("ck,ck->k", columns, rotor.mass @ columns)
-    moving = mass > 1e-12 * rotor.total_mass * np.ptp(rotor.nodes, axis=0).max() ** 2
+    # beyond rounding, where all nodes are in one point
+    least = max(1e-6 * np.ptp(rotor.nodes, axis=0).max(), 1e-12 * np.abs(rotor.nodes).max())
+    moving = mass > rotor.total_mass * least**2
     moving[:3] = True
     columns = columns[:, moving] / np.sqrt(mass[moving])
     turn = np.kron(np.eye(2), axes_of(rotor.axis).T)

@@ -36,6 +36,7 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 
 # of the largest rigid motion: nodes on one line are not displaced by a rotation about it
 _NO_MOTION = 1e-6
+_ROUNDING = 1e-12  # of nodes, relative to their distance from the origin
 # arm off the axis, squared and in radii of gyration, from which springs that turn hold the spin
 _ARM = 1e-4
 # the same of springs that stand still, from their centre: bearings are off it by the mesh alone
@@ -56,6 +57,8 @@ def seeds(rotor: SolidRotor) -> tuple[np.ndarray, np.ndarray]:
     spin = np.array([kind is ModeKind.SPIN for kind in RIGID_KINDS])
     turning = spin | np.array([kind.is_tilt for kind in RIGID_KINDS])
     moves = lengths > _NO_MOTION * np.where(turning, lengths[turning].max(), lengths.max())
+    # nodes that are all in one point are displaced by no rotation, but for rounding
+    moves &= lengths > _ROUNDING * np.abs(rotor.nodes).max() * np.sqrt(rotor.total_mass)
     return rigid[:, spin & moves], rigid[:, ~spin & moves]
 
 
