@@ -143,6 +143,7 @@ def test_motions_follow_into_truncations_too_large_to_be_solved(monkeypatch):
     system = weakly_periodic(0)
     exact = motions(system, "hill", 1e-11)
     unknowns = 2 * len(exact.orders) * system.size
+    monkeypatch.setattr(hill, "_MORE_OF_FEW", 1.0)
     monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.6 * unknowns))
     assert np.array_equal(motions(system, "hill", 1e-11).values, exact.values)
     monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.4 * unknowns))
@@ -253,3 +254,17 @@ def test_a_multiplier_that_rounding_makes_zero_is_known_from_above(monkeypatch):
     # what the matrix errs by, relative to its norm, is 1e-9: the multiplier may be 1e21
     assert (values + bounds)[1].real >= 21.0 * np.log(10.0) / np.pi
     assert np.isfinite(bounds[1])
+
+
+@pytest.mark.parametrize(
+    ("size", "order", "larger"), [(126, 2, 3), (126, 3, 4), (186, 2, 3), (30, 8, 12)]
+)
+def test_models_with_many_modes_have_four_steps_of_harmonics(size, order, larger):
+    """Two steps refused a rotor and a foundation of 60 modes each at 20 Hz."""
+    system = PeriodicSystem(1.0, {0: np.eye(size)}, {0: np.eye(size)}, {0: np.eye(size)})
+    uneven = replace(system, K=system.K | {n: 0.1 * np.eye(size) for n in (-1, 1)})
+    assert hill._next(uneven, order, 1.0, 1e-8) == larger
+    followed = hill._next(uneven, 4, 1.0, 1e-8, 2)
+    assert followed == 6
+    with pytest.raises(UnconvergedError, match="harmonics up to"):
+        hill._next(uneven, 100, 1.0, 1e-8, 2)

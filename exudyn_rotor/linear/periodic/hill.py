@@ -27,6 +27,9 @@ from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Unconve
 from exudyn_rotor.linear.periodic.truncation import HillSolution, Truncation
 
 MOST_UNKNOWNS = 1600  # in first-order form, beyond the first two harmonics
+# times as many up to this many steps of harmonics, which models of 100 to 200 coordinates need: by
+# Floquet's method their fast motions take longer still
+_MORE_OF_FEW, _FEW = 2.25, 4
 _FOLLOWED = 2  # times as many where motions follow, which costs solutions of linear equations alone
 # error of λ, as a share of its distance from the next copy, from which a motion is followed
 _NEAR = 1e-2
@@ -65,8 +68,8 @@ def solve_hill(
     Raises
     ------
     UnconvergedError
-        If that takes more than 1600 unknowns, or 3200 where motions follow, and further harmonics
-        than two steps.
+        If that takes more than 1600 unknowns and further harmonics than two steps, or 3600 up to
+        four; where motions follow, twice as many unknowns and harmonics.
     """
     order, error = system.step, np.inf
     truncation = Truncation.halfway(system) if halfway else None
@@ -100,11 +103,12 @@ def _chosen(
 
 
 def _next(
-    system: PeriodicSystem, order: int, error: float, tolerance: float, most: int | None = None
+    system: PeriodicSystem, order: int, error: float, tolerance: float, times: int = 1
 ) -> int:
-    """Return the highest harmonic of the next truncation, of MOST_UNKNOWNS or `most`."""
-    step, most = system.step, MOST_UNKNOWNS if most is None else most
+    """Return the highest harmonic of the next truncation; limits are so many `times` as large."""
+    step = system.step
     larger = order + step * max(1, order // (2 * step))
+    most = times * MOST_UNKNOWNS * (_MORE_OF_FEW if larger <= times * _FEW * step else 1.0)
     if larger == 2 * step or 2 * len(system.harmonics(larger)) * system.size <= most:
         return larger
     raise UnconvergedError(
@@ -120,8 +124,7 @@ def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) ->
     # its estimate does not see the further harmonics that the first ones left out bring along
     limit = (_FIRST if motions.orders[-1] == system.step else 1.0) * tolerance
     while motions.error > limit:
-        last, most = int(motions.orders[-1]), _FOLLOWED * MOST_UNKNOWNS
-        order = _next(system, last, motions.error, tolerance, most)
+        order = _next(system, int(motions.orders[-1]), motions.error, tolerance, _FOLLOWED)
         lacking = np.flatnonzero(motions.errors > min(limit, _ALMOST * tolerance))
         larger = _in_larger(system, motions, lacking, system.harmonics(order))
         if larger is None or not _differ(larger, lacking, system.base):
