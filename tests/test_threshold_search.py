@@ -124,3 +124,26 @@ def test_unstable_values_of_two_ranges_are_not_of_one():
     search._part(0.0, 1.0)
     limits = [value for value, _ in search.changes(1e-9)]
     assert limits == pytest.approx([0.3 - 1e-6, 0.3 + 1e-6, 0.8 - 1e-6, 0.8 + 1e-6], abs=2e-9)
+
+
+class Crossing(GrowthOver):
+    """Undamped motions whose frequencies all meet, some at every value; counts its calls."""
+
+    def __init__(self, count: int) -> None:
+        self.slopes, self.calls = np.linspace(-1.0, 1.0, count) ** 3, 0
+
+    def growth(self, value: float) -> Growth:
+        self.calls += 1
+        frequencies = 3.0 + self.slopes * (value - 0.5) + 0.1 * np.cos(9.0 * self.slopes) ** 2
+        return Growth(1j * frequencies - 1e-9, np.full(len(self.slopes), 1e-12), 0.0, ())
+
+
+def test_motions_that_meet_are_followed_as_long_as_that_is_worth_it(monkeypatch):
+    """A shaft with one bending mode of two took a minute for the error of one limit."""
+    finer = Crossing(60)
+    monkeypatch.setattr(thresholds, "Finer", lambda _: finer)
+    search = Search(finer, 1.0)
+    search.at(0.0), search.at(1.0)
+    finer.calls = 0
+    assert np.isnan(thresholds._searched_again(search, 0.5, True))
+    assert thresholds._MOST <= finer.calls < 3 * thresholds._MOST

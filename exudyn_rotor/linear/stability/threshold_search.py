@@ -53,6 +53,7 @@ class Search:
     span: float
     known: dict[float, Growth] = field(default_factory=dict)
     rates: dict[float, np.ndarray] = field(default_factory=dict)
+    most: float = np.inf  # values at which motions that meet are followed
 
     def at(self, value: float) -> Growth:
         if value not in self.known:
@@ -141,7 +142,8 @@ class Search:
                 continue
             piece = _Piece.between(self, low, high)
             for start, pair in piece.crossings():
-                self._meet(start, pair, low, high)
+                if len(self.known) < self.most:
+                    self._meet(start, pair, low, high)
             for branch in piece.peaks():
                 self._climb(piece, branch)
             self._part(low, high)
@@ -165,7 +167,7 @@ class Search:
         """
         for _ in range(_CROSSING_STEPS):
             growth = self.at(float(value))
-            if growth.excess > 0.0:
+            if growth.excess > 0.0 or len(self.known) >= self.most:
                 return
             columns = _nearest_columns(growth.values, pair, growth.base)
             rates, pair = self.rate(float(value), self._step)[columns], growth.values[columns]

@@ -33,6 +33,7 @@ _NEAR, _TIMES = 5e-3, 10.0
 _REACH, _STEPS, _POINTS = 0.05, 6, 9
 # of such a step: to which the distance is found
 _SHARE = 0.02
+_MOST = 100  # values looked at with the shapes that the basis lacks
 
 
 def stability_threshold(
@@ -232,7 +233,8 @@ def _searched_again(search: Search, value: float, onset: bool) -> float:
     The growth of motions that meet changes with the root of the parameter: it has no slope there.
     The verdict at the limit tells on which side the other lies.
     """
-    finer, reach = Search(Finer(search.made), search.span), _REACH * search.span
+    # without damping all motions are followed, fast ones that the basis lacks, too
+    finer, reach = Search(Finer(search.made), search.span, most=_MOST), _REACH * search.span
     low, high = min(search.known), max(search.known)
     side = -1.0 if finer.unstable(value) == onset else 1.0
     for distance in reach * 4.0 ** np.arange(1.0 - _STEPS, 1.0):
