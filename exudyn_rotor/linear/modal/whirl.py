@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
@@ -46,7 +47,8 @@ DIAMETER_SHARE = 0.7
 _STATIC = 1e-7
 # share of the mean wave number that turns one way in one motion of a pair
 _CIRCULAR = 0.8
-_DEPENDENT = 1e-3  # of the largest: what copies of a vector span beyond it
+# 1 − cosine of vectors that are one, and share of the largest that others span beyond the rest
+_SAME, _DEPENDENT = 1e-12, 1e-3
 _SAMPLES = 8000  # nodes; of fewer, energies of waves depend on how the mesh numbers them
 _MANY = 100_000  # entries of vectors
 
@@ -119,14 +121,16 @@ class WhirlContent:
         mean wave number seen from outside extremal: circular motion instead of motion in two
         planes.
         """
-        shape = vectors.shape
-        span, lengths, _ = np.linalg.svd(vectors.reshape(-1, shape[2]), full_matrices=False)
-        rank = np.count_nonzero(lengths >= _DEPENDENT * lengths[0])
-        if rank < shape[2]:  # copies of a defective eigenvalue
-            if shape[2] % rank:
-                return vectors
-            once = self.polarised(span[:, :rank].reshape(*shape[:2], rank), orders)
-            return np.tile(once, shape[2] // rank)
+        shape, flat = vectors.shape, vectors.reshape(-1, vectors.shape[2])
+        alike = np.abs(flat.conj().T @ flat) >= (1.0 - _SAME) * np.sum(np.abs(flat) ** 2, axis=0)
+        first, place = np.unique(np.argmax(alike, axis=0), return_inverse=True)
+        if first.size < shape[2]:  # as the two copies of a free motion
+            once = self.polarised(vectors[:, :, first], orders)
+            nearest = np.abs(flat[:, first].conj().T @ once.reshape(len(flat), -1))
+            return once[:, :, linear_sum_assignment(-nearest)[1][place]]
+        span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
+        if lengths.size < shape[2] or lengths[-1] < _DEPENDENT * lengths[0]:
+            return vectors  # copies of a defective eigenvalue
         chosen = self._chosen(span.reshape(shape))
         moved = self.waves @ chosen[:, None]
         seen = np.add.outer(orders, self.orders)
