@@ -175,13 +175,17 @@ class TangentFilm:
     Attributes
     ----------
     bearing : JournalBearing
-    state : FilmState or None
-        At the place of the last tangent; None where that is outside the film.
+    stiff : bool
+        Whether the force changes by the tangent; without, it stays that of the place.
+    seen : list of tuple or None
+        Place (2,) [m] and force (2,) [N] wherever it has been held; None outside the film.
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
         self.bearing, self._film, self._gap = bearing, bearing.film, bearing._gap
-        self.state: FilmState | None = None
+        self.stiff = True
+        self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
+        self._state: FilmState | None = None
         self._whole = FilmLaw(bearing.film, torque=True)
         self._gradient: np.ndarray | None = None
         self._held = False
@@ -189,33 +193,40 @@ class TangentFilm:
     def hold(self, held: bool) -> None:
         """Hold the force by the tangent from the next place on, or let it go."""
         self._held, self._gradient = held, None
-        if held:
-            self.state = None
 
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
         """Return the force as :attr:`Bearing.law`."""
-        motion = np.array([x, y, vx, vy])
-        if self._held and self._gradient is None:
-            self._held = hypot(x, y) <= self._film.clearance - self._film.thinnest
-            if self._held:
-                self.state = self._film._state(motion[:2], motion[2:], speed)
-                self._gradient = np.hstack(tangent_of(self.state))
-        if self._gradient is None:
-            self._check_rest(vx, vy, speed)
-            return self._whole(x, y, vx, vy, angle, speed)[:2]
-        state = self.state
-        change = self._gradient @ (motion - np.append(state.position, state.velocity))
-        fx, fy = (state.force - change).tolist()
-        return fx, fy
+        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
 
     def law_with_torque(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float, float]:
-        """Return force and torque as :attr:`Bearing.law_with_torque`; the torque has no tangent."""
-        torque = self._whole(x, y, vx, vy, angle, speed)[2]
-        return *self.law(x, y, vx, vy, angle, speed), torque
+        """Return force and torque as :attr:`Bearing.law_with_torque`; the torque has no tangent.
+
+        So in linear equations of a scene, as in those of a rotor on supports, friction does not
+        change with the motion.
+        """
+        motion = np.array([x, y, vx, vy])
+        if self._held and self._gradient is None:
+            self._hold_at(motion, speed)
+        if self._gradient is None:
+            self._check_rest(vx, vy, speed)
+            return self._whole(x, y, vx, vy, angle, speed)
+        state = self._state
+        change = self._gradient @ (motion - np.append(state.position, state.velocity))
+        fx, fy = (state.force - change).tolist()
+        return fx, fy, -state.torque
+
+    def _hold_at(self, motion: np.ndarray, speed: float) -> None:
+        """Take the tangent at a place and velocity (4,), if the film is resolved there."""
+        self._held = hypot(*motion[:2]) <= self._whole._to_the_edge(*motion[:2].tolist())
+        if self._held:
+            self._state = self._film._state(motion[:2], motion[2:], speed)
+            tangent = tangent_of(self._state) if self.stiff else np.zeros((2, 2, 2))
+            self._gradient = np.hstack(tangent)
+        self.seen.append((motion[:2], self._state.force) if self._held else None)
 
     def _check_rest(self, vx: float, vy: float, speed: float) -> None:
         """Refuse the motion of a film with a memory."""

@@ -20,7 +20,6 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
@@ -45,6 +44,7 @@ from exudyn_rotor.multibody.supports.support_connectors import held_cages
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 
+Journal = Sequence[tuple[np.ndarray, np.ndarray] | None]
 ABOUT = ("steady", "equilibrium", "given")
 
 
@@ -183,18 +183,19 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         """
         with self._probing(checks.number(speed, "speed", "rad/s")) as probe:
             system = equations_about(self, probe)
-            films = [film.state for film in probe.films if film.bearing.remembers]
-        self._film_states[float(speed)] = films
+            self._journals[float(speed)] = [film.seen for film in probe.remembering]
         return system
 
     @cached_property
-    def _film_states(self) -> dict[float, list[FilmState | None]]:
-        """Films that conserve mass, in the equilibria that are known."""
+    def _journals(self) -> dict[float, list[Journal]]:
         return {}
 
-    def film_states(self, speed: float) -> list[FilmState | None]:
-        """Return the :attr:`remembering` films where :meth:`at` found them at a speed [rad/s]."""
-        return self._film_states[float(speed)]
+    def journals(self, speed: float) -> list[Journal]:
+        """Return how :meth:`at` found the journals of :attr:`remembering` films.
+
+        Place [m] and force [N] along (n1, n2) at the angles of a revolution, None outside the film.
+        """
+        return self._journals[float(speed)]
 
     @property
     def remembering(self) -> list[SceneSupport]:

@@ -62,6 +62,22 @@ class Probe:
         """Motion [m] along which the forces are straight enough for their derivatives."""
         return min(self.step, _STEPS[-1]) if self.films else self.step
 
+    @property
+    def remembering(self) -> list[TangentFilm]:
+        """Films that conserve mass."""
+        return [film for film in self.films if film.bearing.remembers]
+
+    @contextmanager
+    def without_tangents(self) -> Iterator[None]:
+        """Let films that conserve mass have the same force at all states, and note it."""
+        for film in self.remembering:
+            film.stiff, film.seen = False, []
+        try:
+            yield
+        finally:
+            for film in self.remembering:
+                film.stiff = True
+
     @contextmanager
     def tangents(self) -> Iterator[None]:
         """Let films go on by their tangents from the next state on."""

@@ -30,6 +30,7 @@ from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
+_LEFT_OUT = 3  # harmonics fewer than samples
 _REST_SAMPLES = 7  # an odd number: the harmonics are exact at all of them
 _MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
 _ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
@@ -40,6 +41,7 @@ _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
 _LEAST_SHARE = 2e-3  # of a step
+_MOTION = 1e-7  # tolerance of a motion about which films have coefficients of another kind
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
 _PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
 _ROUNDING = 1e-13  # rad, of an angle after some revolutions
@@ -61,8 +63,22 @@ class Scene(Protocol):
 
 
 def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
-    """Return the equations about the steady motion; raises as :func:`steady_motion`."""
-    return steady_motion(scene, probe, None)[0]
+    """Return the equations about the steady motion; raises as :func:`steady_motion`.
+
+    Films that conserve mass have a force in them, but no stiffness and no damping:
+    :mod:`.remembering_scene` adds what they have, which depends on the frequency.
+    """
+    if not probe.remembering:
+        return steady_motion(scene, probe, None)[0]
+    _, orders, found = steady_motion(scene, probe, _MOTION)
+    samples = len(orders) + _LEFT_OUT
+    while samples <= _MOST_SAMPLES:
+        with probe.without_tangents():
+            system, resolved = _Search(scene, probe, samples, _MOTION, True).equations(found)
+        if resolved:
+            return system
+        samples *= 2
+    raise _unresolved(probe.speed)
 
 
 def steady_motion(
@@ -90,8 +106,12 @@ def steady_motion(
         if system is not None:
             return system, search.orders, found
         samples *= 2
-    raise UnconvergedError(
-        f"linear scene at {probe.speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
+    raise _unresolved(probe.speed)
+
+
+def _unresolved(speed: float) -> UnconvergedError:
+    return UnconvergedError(
+        f"linear scene at {speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
         "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
         "moves from node to node? about='equilibrium' leaves the rotor's own unbalance out, as "
         "linear_model(rotor, supports=…) does; a damped run from rest shows the motion"
@@ -178,7 +198,8 @@ class _Search:
 
     @cached_property
     def orders(self) -> np.ndarray:
-        return np.arange(-self.samples // 2 + 2, self.samples // 2 - 1)
+        most = (self.samples - _LEFT_OUT) // 2
+        return np.arange(-most, most + 1)
 
     @cached_property
     def waves(self) -> np.ndarray:
@@ -195,6 +216,10 @@ class _Search:
         It begins with those of fewer samples.
         """
         return self._newton(self._start(start), 0.0, _MOST_ITERATIONS)
+
+    def equations(self, found: np.ndarray) -> tuple[PeriodicSystem, bool]:
+        """Return the equations about a motion by its harmonics, and whether the angles do."""
+        return self._system(self._points(self._start(found)))
 
     def followed(self, most: int = _MOST_STRIDES) -> tuple[PeriodicSystem | None, np.ndarray]:
         """Return as :meth:`found`, beginning with the equilibria at rest where there are any.

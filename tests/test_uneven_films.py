@@ -1,0 +1,104 @@
+"""Films that conserve mass under a rotor of an uneven mesh: scenes and lists of supports agree."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from models import disc_rotor
+from void_films import CLEARANCE, SKEW, TO_X, bearings, oil, rotor, scene
+from void_films import SPEED as RIGID_SPEED
+
+from exudyn_rotor import Foundation, JournalBearing, Mount, Support, bearing_loads, linear_model
+from exudyn_rotor.bearings.journal_bearing import TangentFilm
+from exudyn_rotor.linear.models.scene import remembering_scene
+from exudyn_rotor.linear.periodic.exponents import exponents
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+
+SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
+CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]
+BLOCK = Foundation.rigid(
+    80.0,
+    [4.0, 5.0, 1.0],
+    [0.0, -0.2, 0.2],
+    [Mount(corner, 4e6, 2e3) for corner in CORNERS],
+    {"left": [0.0, 0.0, 0.0], "right": [0.0, 0.0, 0.5]},
+)
+SEAL = Support("right", 0.0, ([0.0, 400.0], [[[500.0, 90.0], [-90.0, 800.0]], 900.0 * np.eye(2)]))
+CASES = {
+    "backwards and skew": ({}, {"rotation": SKEW, "speed": -SPEED}),
+    "eccentric": ({"heavy": 0.02}, {"rotation": SKEW}),
+    "foundation, table": ({"more": [SEAL]}, {"foundation": BLOCK}),
+    "free spin, x": ({}, {"rotation": TO_X, "free": True}),
+    "two lobes": ({"groove": [0.0, np.pi], "preload": 0.5}, {}),
+}
+
+
+def given(heavy=0.0, more=(), rotation=None, free=False, speed=SPEED, foundation=None, **film):
+    """Return the scene and the list of a disc on a shaft, each as a linear model.
+
+    Its coarse mesh is uneven enough that the shaft bends by its weight unlike in two directions.
+    """
+    rotor = disc_rotor(safety=1.0)
+    if heavy:
+        rotor = rotor.add_point_mass([0.15, 0.0, 0.2], heavy)
+    reduced, turn = rotor.reduce(2), np.eye(3) if rotation is None else rotation
+    oiled = replace(oil(**{"nodes": 48, **film}), radius=0.02, length=0.02)
+    loads = zip(BLOCK.points, bearing_loads(reduced, list(BLOCK.points), HEAVY), strict=True)
+    supports = [JournalBearing(interface=name, film=oiled, load=load) for name, load in loads]
+    supports += more
+    spin = {"initial_speed": speed} if free else {"spin": speed, "translation": "none"}
+    mbs, body, _ = scene(reduced, supports, turn @ HEAVY, foundation, rotation=rotation, **spin)
+    in_list = linear_model(reduced, supports=supports, foundation=foundation)
+    return linear_model(mbs, body=body, about="equilibrium"), in_list
+
+
+def apart(first, second, speed):
+    """Return the largest distance of exponents, but for multiples of iΩ, relative to the speed.
+
+    Of motions that do not decay much within a turn: elsewhere the states tell the film's Z(s) to
+    1e-3 only, and rounding decides 1e-7 of it.
+    """
+    found, expected = exponents(first.at(speed)), exponents(second.at(speed))
+    slow = (expected.real > -0.3 * abs(speed)) & (np.abs(expected.real) > 1e-6 * abs(speed))
+    turns = 1j * speed * np.arange(-2, 3)[:, None]
+    both = np.r_[found, found.conj()]
+    distances = [np.abs(both - s + turns).min() for s in expected[slow]]
+    assert len(distances) > 1
+    return max(distances) / abs(speed)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_scenes_are_linearised_as_lists(name):
+    """Journals move by ε = 4e-4 to 3e-3 of the clearance; their mean place is off by ε²."""
+    film, placed = CASES[name]
+    in_scene, in_list = given(**film, **placed)
+    speed = placed.get("speed", SPEED)
+    assert apart(in_scene, in_list, speed) < 1e-6
+    bearing, journal = in_scene.scene.remembering[0].support, in_scene.scene.journals(speed)[0]
+    assert np.ptp([place for place, _ in journal], axis=0).max() > 4e-4 * CLEARANCE
+    rests = remembering_scene.at_rest(bearing, journal, speed).position
+    np.testing.assert_allclose(rests, bearing.equilibrium(speed), rtol=0.0, atol=1e-8 * CLEARANCE)
+
+
+def test_a_journal_that_moves_is_linearised_about_rest_as_long_as_it_moves_little():
+    in_list = linear_model(rotor(), supports=bearings(rotor()))
+    for eccentric, moves in ((1e-4, False), (1e-2, True)):
+        reduced = rotor(eccentric)
+        mbs, body, _ = scene(reduced, bearings(reduced), spin=RIGID_SPEED)
+        model = linear_model(mbs, body=body)
+        if moves:
+            with pytest.raises(UnconvergedError, match="is linearised about a journal at rest"):
+                model.at(RIGID_SPEED)
+        else:
+            assert apart(model, in_list, RIGID_SPEED) < 1e-6
+
+
+def test_friction_of_a_film_is_held_with_its_force():
+    bearing = JournalBearing(interface="left", film=oil(cavitation="reynolds"))
+    film, place = TangentFilm(bearing), 0.5 * CLEARANCE
+    film.hold(True)
+    torque = film.law_with_torque(place, 0.0, 0.0, 0.0, 0.0, SPEED)[2]
+    assert torque == -bearing.film.state([place, 0.0], [0.0, 0.0], SPEED).torque
+    x_force, _, moved = film.law_with_torque(1.01 * place, 0.0, 0.0, 0.0, 0.0, SPEED)
+    assert moved == torque
+    assert x_force != film.law(place, 0.0, 0.0, 0.0, 0.0, SPEED)[0]
