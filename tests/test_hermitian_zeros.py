@@ -5,6 +5,7 @@ import pytest
 import scipy.linalg as la
 
 from exudyn_rotor.linear.modal.hermitian_zeros import zeros_of_eigenvalues
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 # a pair in one bracket, a repeated one, one that is touched twice, one above the range
 ROOTS = np.array([12.345, 12.346, 40.0, 40.0, 77.7, 120.0])
@@ -47,3 +48,18 @@ def test_a_motion_that_is_free_up_to_some_speed_is_no_free_one():
     speeds = np.array([speed for speed, _ in zeros_of_eigenvalues(matrix, 100.0)])
     for expected in (30.0, 70.0):
         assert np.abs(speeds - expected).min() < 1e-9
+
+
+def thin_below_forty(speed: float) -> np.ndarray:
+    """Return a matrix with zeros at 30 and 60, where a film is not too thin."""
+    if speed < 40.3:
+        raise UnconvergedError("too thin")
+    return np.diag([30.0 - speed, 60.0 - speed]).astype(complex)
+
+
+def test_speeds_without_equations_are_told():
+    with pytest.warns(UserWarning, match=r"up to 40 rad/s none are looked for.*: too thin"):
+        found = zeros_of_eigenvalues(thin_below_forty, 100.0)
+    np.testing.assert_allclose([speed for speed, _ in found], [60.0], rtol=1e-12)
+    with pytest.raises(UnconvergedError, match="too thin"):
+        zeros_of_eigenvalues(thin_below_forty, 40.0)

@@ -12,6 +12,7 @@ from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import STEEL, block_beam, disc_fem
 from point_rotors import ring_rotor
+from test_hermitian_zeros import thin_below_forty, zeros_of_eigenvalues
 
 import exudyn_rotor
 from exudyn_rotor import (
@@ -262,9 +263,10 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
+    "linear/modal/hermitian_zeros.py:_free_and_negative": (
+        lambda _: zeros_of_eigenvalues(thin_below_forty, 100.0), UserWarning, "are looked for"),
     "prestress/static_solution.py:_in_equilibrium": (
-        stress_out_of_balance, UserWarning, "not in equilibrium",
-    ),
+        stress_out_of_balance, UserWarning, "not in equilibrium"),
     "prestress/static_solution.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress",
     ),
@@ -338,17 +340,14 @@ PLACES = {
         torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt",
     ),
     "advice/run_check.py:check_run": (
-        run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds",
-    ),
+        run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds"),
     "linear/response/steady_state.py:steady_state": (
-        steady_motion_on_a_stop_that_opens, UserWarning, "of the motion to higher harmonics",
-    ),
+        steady_motion_on_a_stop_that_opens, UserWarning, "of the motion to higher harmonics"),
 }  # fmt: skip
 # places that several kinds of bodies reach
 TRIGGERS = PLACES | {
     "multibody/rotor/scene_body.py:check_connections, full": (
-        full_body_asked_for_connections, ConnectionWarning, "does not tilt",
-    ),
+        full_body_asked_for_connections, ConnectionWarning, "does not tilt"),
 }  # fmt: skip
 
 

@@ -7,6 +7,7 @@ numbers, in ascending order, change their sign. How many are negative tells an `
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
@@ -16,6 +17,9 @@ import numpy as np
 import scipy.linalg as la
 from scipy.linalg.lapack import zhetrf
 from scipy.optimize import brentq
+
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 _BRACKETS = 200
 _SAME = 1e-7
@@ -29,10 +33,12 @@ def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.n
 
     The zeros of the sorted eigenvalues are bracketed at 200 speeds. What is a free motion at
     every speed, like a spin or an axial motion that nothing holds, is left out first: the sign of
-    its eigenvalue is rounding.
+    its eigenvalue is rounding. Speeds end above the highest one at which there are no equations, as
+    films are too thin there.
     """
     grid = np.linspace(limit / _BRACKETS, limit, _BRACKETS)
     free, negative = _free_and_negative(matrix, grid)
+    grid = grid[len(grid) - len(negative) :]
 
     def at(speed: float) -> np.ndarray:
         return _held(matrix(speed), free)
@@ -78,7 +84,19 @@ def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, li
     free = np.eye(len(matrix(grid[-1])), dtype=complex)
     negative: list[int] = []
     while len(negative) < len(grid):
-        H = matrix(grid[len(grid) - 1 - len(negative)])
+        speed = grid[len(grid) - 1 - len(negative)]
+        try:
+            H = matrix(speed)
+        except UnconvergedError as error:
+            if not negative:
+                raise
+            warnings.warn(
+                f"critical speeds: up to {speed:g} rad/s none are looked for, as there is no "
+                f"equilibrium: {error}",
+                UserWarning,
+                stacklevel=user_level(),
+            )
+            break
         left = H @ free
         limit = 10.0 * len(H) * np.finfo(float).eps * np.linalg.norm(H)
         if np.linalg.norm(left) > limit:

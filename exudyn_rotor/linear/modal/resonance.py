@@ -30,7 +30,7 @@ from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.trains.standing_space import StandingSpace
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.threads import one_thread
 
 # share of a mode's energy that must turn with the excitation
@@ -120,7 +120,7 @@ def _resonances(
     tolerance: float,
 ) -> list[Resonance]:
     """Return all critical speeds of dense equations, ascending."""
-    step = equations.at(0.0).step
+    step = equations.step(limit)
     critical = []
     if step == 0:
         for n in waves:
@@ -232,12 +232,23 @@ class _Equations:
             self.known[speed] = self.space.at(speed)
         return self.known[speed]
 
+    def step(self, limit: float | None) -> int:
+        """Return how many harmonics apart the equations couple motions; 0 for none."""
+        try:
+            return self.at(0.0).step
+        except UnconvergedError:  # films carry nothing at rest
+            return self.at(_needed(limit, "a scene")).step
+
     def vary(self, stiffness: _Stiffness, limit: float | None) -> bool:
         """Return whether anything but the spin itself depends on the speed."""
         if self.supports_vary is not None:
             return self.supports_vary
         limit = _needed(limit, "a scene")
-        at_rest, half, full = (stiffness(speed) for speed in (0.0, 0.5 * limit, limit))
+        try:
+            at_rest = stiffness(0.0)
+        except UnconvergedError:  # films carry nothing at rest
+            return True
+        half, full = stiffness(0.5 * limit), stiffness(limit)
         expected = 0.75 * at_rest + 0.25 * full
         return np.abs(half - expected).max() > _QUADRATIC * np.abs(at_rest).max()
 

@@ -13,6 +13,7 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
@@ -31,6 +32,11 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
         Spin speed [rad/s].
     orders : ndarray of int, shape (h,)
         With −1, 0 and 1 among them.
+
+    Raises
+    ------
+    UnconvergedError
+        Where a bearing has no equilibrium under its load.
     """
     harmonics = np.zeros((len(orders), scene.size), dtype=complex)
     places = _places(scene.body, speed)
@@ -80,7 +86,11 @@ def _places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
         if np.any(load) and isinstance(bearing, RollingBearing):
             places[bearing.interface] = bearing.equilibrium(speed, load, cage)
         elif np.any(load) and speed != 0.0:
-            places[bearing.interface] = bearing.equilibrium(speed, load)
+            try:
+                places[bearing.interface] = bearing.equilibrium(speed, load)
+            except (ValueError, ArithmeticError) as error:
+                where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
+                raise UnconvergedError(f"{where}: {error}") from error
     return {name: place for name, place in places.items() if np.any(place)}
 
 

@@ -45,6 +45,7 @@ from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 
 Journal = Sequence[tuple[np.ndarray, np.ndarray] | None]
+_ANGLES = 12  # of a revolution, for the mean mass
 ABOUT = ("steady", "equilibrium", "given")
 
 
@@ -121,10 +122,11 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
         turning = [*range(self.modal.stop), *self.pairs.ravel()]
         return np.flatnonzero(~np.any(self.N[turning], axis=0))
 
-    @property
+    @cached_property
     def mass_matrix(self) -> np.ndarray:
-        """Mean mass matrix at rest, shape (k, k)."""
-        return self.at(0.0).M[0]
+        """Mean mass matrix of the given state, shape (k, k); films need no equilibrium for it."""
+        with self._probing(0.0) as probe:
+            return probe.mean_mass(_ANGLES)
 
     @cached_property
     def unit_unbalance(self) -> np.ndarray:

@@ -106,6 +106,15 @@ class Probe:
         mass[np.ix_(self.rotor, self.rotor)] = 0.0
         return mass
 
+    def mean_mass(self, count: int) -> np.ndarray:
+        """Return the mass matrix (k, k) without deviations, its mean over so many angles."""
+        still, total = np.zeros(len(self.scene.free)), 0.0
+        for theta in 2.0 * np.pi * np.arange(count) / count:
+            self._set(theta, still, still)
+            T = self.scene.turn(theta)[0]
+            total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
+        return total / count
+
     def rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
