@@ -25,12 +25,12 @@ from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import LITTLE, JournalBearing
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.extended_model import ExtendedModel
 from exudyn_rotor.linear.models.links import add, join
 from exudyn_rotor.linear.models.points import with_pairs
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
 from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates
 from exudyn_rotor.linear.models.scene.linear_scene import Journal, LinearScene
-from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import (
     PeriodicSystem,
     Terms,
@@ -43,7 +43,7 @@ MOST_MOTION = 1e-2  # of the clearance: what it leaves out is of the order of it
 
 
 @dataclass(frozen=True, eq=False)
-class RememberingScene(InAllCoordinates):
+class RememberingScene(ExtendedModel):
     """A scene with films that conserve mass; see :class:`LinearModel`.
 
     Attributes
@@ -55,7 +55,6 @@ class RememberingScene(InAllCoordinates):
         Whether voids are coordinates; without, films have the stiffness of unbalance.
     """
 
-    gives_all: ClassVar[bool] = True
     is_full: ClassVar[bool] = False
     mesh: ClassVar[None] = None
     base_loads: ClassVar[None] = None
@@ -72,11 +71,6 @@ class RememberingScene(InAllCoordinates):
     def of(cls, scene: LinearScene) -> LinearScene | RememberingScene:
         """Return a scene with what its films remember; itself where none does."""
         return cls(scene, scene) if scene.remembering else scene
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates."""
-        return self.plain.size + self._more
 
     @property
     def _more(self) -> int:
@@ -98,19 +92,9 @@ class RememberingScene(InAllCoordinates):
         return self.plain.standing
 
     @property
-    def is_balanced(self) -> bool:
-        """True where the rotor has no unbalance at all."""
-        return self.plain.is_balanced
-
-    @property
     def has_structural_damping(self) -> bool:
         """True where steady motions have structural damping, which other analyses leave out."""
         return self.scene.has_structural_damping
-
-    @property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², shape (k,), rotor frame."""
-        return self._wide(self.plain.unit_unbalance)
 
     @property
     def mass_matrix(self) -> np.ndarray:
@@ -190,10 +174,6 @@ class RememberingScene(InAllCoordinates):
                     motion[-n] = motion.get(-n, 0.0) - R @ base
             found.append(motion)
         return found
-
-    def _wide(self, rows: np.ndarray) -> np.ndarray:
-        """Return rows (…, k) of the scene with zeros for the films' coordinates."""
-        return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, self._more)])
 
 
 def at_rest(bearing: JournalBearing, journal: Journal, speed: float) -> FilmState:
