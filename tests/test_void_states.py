@@ -29,6 +29,7 @@ from exudyn_rotor import (
     Mount,
     RotorTrain,
     Support,
+    TiltingPadBearing,
     Unbalance,
     base_response,
     campbell,
@@ -238,6 +239,17 @@ def test_trains_processes_and_speeds_give_the_same():
     modes = campbell(reduced, speeds, supports=supports, accuracy=None)
     slow = np.argmin(np.abs(modes.frequencies_inertial[1] - 290.0))
     assert modes.growth[1, slow] == pytest.approx(alone.growth_of("lateral")[1], rel=1e-6)
+
+
+def test_own_coordinates_are_named_as_what_they_are():
+    reduced = rotor()
+    gaps = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])
+    load = bearings(reduced)[0].load
+    film = oil(gaps, "reynolds", preload=0.5, nodes=60)
+    pads = TiltingPadBearing(interface="left", film=film, load=load, pad_inertia=1e-3)
+    names = linear_model(reduced, supports=[pads, bearings(reduced)[1]]).beside
+    assert names[0] == "voids 1 at right, 1"
+    assert names[6:] == tuple(f"pads 2 at left, {pad}" for pad in range(1, 6))
 
 
 def test_refused():

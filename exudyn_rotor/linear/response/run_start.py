@@ -20,7 +20,7 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.rotor.own_coordinates import names_of_controllers
+from exudyn_rotor.linear.models.rotor.own_coordinates import WORDS, names_of_own
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
@@ -38,6 +38,7 @@ from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
+_OWN = MagneticBearing, JournalBearing, TiltingPadBearing  # in the order of WORDS
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
 _SAME_MOTION = 1e-6  # share of the largest motion of an interface that is rounding
 
@@ -54,7 +55,7 @@ class RunStart(Result):
     basis : {'rotor', 'scene'}, optional
         Whether these are of the reduced rotor's basis or of a scene.
     beside : tuple of str, optional
-        Names of those after the reduced rotor's: of a foundation and of controllers.
+        Names of those after the reduced rotor's: of a foundation, controllers, voids and pads.
     """
 
     coordinates: np.ndarray | None = numbers(
@@ -143,8 +144,8 @@ class RunStart(Result):
             if names != self.beside:
                 raise ValueError(
                     f"body: beside rotor {body.name!r} the scene has {len(names)} coordinates of a "
-                    f"foundation and of controllers, the response {len(self.beside)}; give both "
-                    "the same supports, in the same order, and the same foundation"
+                    f"foundation, controllers, voids and pads, the response {len(self.beside)}; "
+                    "give both the same supports, in the same order, and the same foundation"
                 )
             size = source.size + len(names)
             axes = np.kron(np.eye(2), axes_of(source.axis).T)
@@ -183,7 +184,9 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
     """
     foundation = _foundation(body)
     own = _with_own(body)
-    names = names_of_controllers((one.support.interface, size) for one, _, size in own)
+    names = names_of_own(
+        (WORDS[_OWN.index(type(one.support))], one.support.interface, size) for one, _, size in own
+    )
     if foundation is None:
         return names, {}
     given, own = foundation.foundation, body.selection.source.size
@@ -217,14 +220,13 @@ def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
 
     In the order of :class:`OwnCoordinates`. What a film remembers is no coordinate of a scene.
     """
-    kinds = MagneticBearing, JournalBearing, TiltingPadBearing
     found = []
     for one in body.supports:
         places = one.own_coordinates(body.mbs)
         remembers = isinstance(one.support, JournalBearing) and one.support.remembers
         if size := COUNT if remembers else len(places):
             found.append((one, places, size))
-    return sorted(found, key=lambda each: kinds.index(type(each[0].support)))
+    return sorted(found, key=lambda each: _OWN.index(type(each[0].support)))
 
 
 def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:

@@ -22,8 +22,9 @@ from exudyn_rotor.linear.models.rotor.own_coordinates import (
     Controlled,
     OwnCoordinates,
     in_order,
-    names_of_controllers,
+    names_of_own,
     places,
+    word_of,
 )
 from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
@@ -89,9 +90,10 @@ class ControlledRotor(ExtendedRotor):
 
     @property
     def beside(self) -> tuple[str, ...]:
-        """Names of the coordinates of a foundation, then of controllers."""
+        """Names of the coordinates of a foundation, then of controllers, voids and pads."""
         given = self.plain.beside if isinstance(self.plain, RotorOnFoundation) else ()
-        return given + names_of_controllers((one.interface, one.size) for one in self.own.supports)
+        own = ((word_of(one), one.interface, one.size) for one in self.own.supports)
+        return given + names_of_own(own)
 
     @property
     def interfaces(self) -> tuple[str, ...]:

@@ -33,6 +33,8 @@ from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.theory.rotating_axes import axial_skew, into_rotor_frame
 
 Entry = TypeVar("Entry")
+_KINDS = ControlledSupport, FilmSupport, PadSupport  # in the order of their coordinates
+WORDS = "controller", "voids", "pads"
 Sums = tuple[dict[int, np.ndarray], dict[int, np.ndarray], dict[int, np.ndarray]]
 
 
@@ -153,14 +155,18 @@ def in_order(
     supports: Iterable[Entry], support_of: Callable[[Entry], Controlled] = lambda one: one
 ) -> list[Entry]:
     """Return supports, or what holds them, in the order of their coordinates."""
-    kinds = ControlledSupport, FilmSupport, PadSupport
-    return sorted(supports, key=lambda one: kinds.index(type(support_of(one))))
+    return sorted(supports, key=lambda one: _KINDS.index(type(support_of(one))))
 
 
-def names_of_controllers(controllers: Iterable[tuple[str, int]]) -> tuple[str, ...]:
-    """Return the names of coordinates of controllers, given their interfaces and sizes."""
+def word_of(one: Controlled) -> str:
+    """Return what the coordinates of a support are those of, one of :data:`WORDS`."""
+    return WORDS[_KINDS.index(type(one))]
+
+
+def names_of_own(supports: Iterable[tuple[str, str, int]]) -> tuple[str, ...]:
+    """Return the names of own coordinates, given their words, interfaces and sizes."""
     return tuple(
-        f"controller {index} at {interface}, {number}"
-        for index, (interface, size) in enumerate(controllers, 1)
+        f"{word} {index} at {interface}, {number}"
+        for index, (word, interface, size) in enumerate(supports, 1)
         for number in range(1, size + 1)
     )
