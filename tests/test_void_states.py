@@ -241,6 +241,30 @@ def test_trains_processes_and_speeds_give_the_same():
     assert modes.growth[1, slow] == pytest.approx(alone.growth_of("lateral")[1], rel=1e-6)
 
 
+def test_motions_of_voids_take_no_place_of_a_shafts():
+    """Four motions of a rigid rotor on its films, in a list, a train and a scene.
+
+    Six of the voids are as slow, or slower, and have 97 % and more of their energy in them.
+    """
+    reduced = rotor()
+    supports = bearings(reduced)
+    train = RotorTrain({"one": reduced}, {"one": 1.0}, {"one": supports}, [])
+    mbs, body, _ = scene(reduced, supports, spin=SPEED)
+    in_scene = linear_model(mbs, body=body, about="equilibrium")
+    whole = campbell(reduced, [SPEED], supports=supports, accuracy=None)
+    slow = (whole.frequencies_inertial[0] > 1.0) & (whole.growth[0] > -150.0)
+    expected = np.sort(whole.growth[0, slow])
+    assert len(expected) == 4
+    for target, given, free in (
+        (reduced, {"supports": supports}, 4),
+        (train, {}, 2),
+        (in_scene, {}, 2),
+    ):
+        few = campbell(target, [SPEED], modes=free + 4, accuracy=None, **given)
+        moving = few.frequencies_inertial[0] > 1.0
+        np.testing.assert_allclose(np.sort(few.growth[0, moving]), expected, rtol=1e-5)
+
+
 def test_own_coordinates_are_named_as_what_they_are():
     reduced = rotor()
     gaps = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])

@@ -34,6 +34,7 @@ from exudyn_rotor.threads import meanwhile, one_thread
 
 _FULL_MODES = 10
 _SLOW = 1.0  # rad/s
+_MOSTLY = 0.9  # share of a motion's energy
 _SAME = 1e-9  # relative distance of frequencies in the inertial frame that is none
 
 
@@ -73,9 +74,9 @@ def campbell(
         The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
-        speed, followed from there, overdamped ones last. All by default, 10 of a large SolidRotor;
-        that is solved for as many more at every speed as move at up to the highest of their
-        frequencies with one nodal diameter at most.
+        speed, followed from there, overdamped ones and those of voids in films last. All by
+        default, 10 of a large SolidRotor; that is solved for as many more at every speed as move at
+        up to the highest of their frequencies with one nodal diameter at most.
     frame : {'inertial', 'rotor'}
         In which modes are chosen, stand in order in the result, and are drawn.
     stiffening : {'auto', 'none', 'tilt', 'full'}
@@ -166,7 +167,7 @@ def campbell(
         basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
     tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
-    solved, tracks = _lowest(solved, tracks, count, seen)
+    solved, tracks = _lowest(solved, tracks, count, seen, model)
     inertial = np.array([entry.inertial for entry in solved])
     growth = np.array([entry.modes.values.real for entry in solved])
     chosen = judged(inertial, growth, values, modes is not None)
@@ -295,24 +296,34 @@ def _splits(
 
 
 def _lowest(
-    solved: list[_Solved], tracks: Tracks, count: int, seen: bool
+    solved: list[_Solved], tracks: Tracks, count: int, seen: bool, model: LinearModel
 ) -> tuple[list[_Solved], Tracks]:
     """Keep the modes that have the lowest frequencies at the first speed.
 
-    Of overdamped ones only where there are no others left.
+    Of overdamped ones, and of those of voids in films, only where there are no others left.
     """
     if count >= tracks.columns.shape[1]:
         return solved, tracks
     first = solved[0].columns(tracks.columns[0])
     modes = first.modes
-    overdamped = (first.inertial == 0.0) & _decays(modes)
+    last = (first.inertial == 0.0) & _decays(modes) | _of_voids(modes, model)
     frequencies = first.inertial if seen else modes.values.imag
-    chosen = np.sort(np.lexsort((frequencies, overdamped))[:count])
+    chosen = np.sort(np.lexsort((frequencies, last))[:count])
     used = tracks.columns[:, chosen]
     ascending = np.sort(used, axis=1)
     places = [np.searchsorted(*rows) for rows in zip(ascending, used, strict=True)]
     fewer = [entry.columns(row) for entry, row in zip(solved, ascending, strict=True)]
     return fewer, Tracks(np.array(places), tracks.continued[:, chosen])
+
+
+def _of_voids(modes: FloquetModes, model: LinearModel) -> np.ndarray:
+    """Return which motions have nearly all kinetic energy in what films remember, shape (k,)."""
+    if not model.voids.size:
+        return np.zeros(len(modes.values), dtype=bool)
+    x, M = modes.vectors, model.mass_matrix
+    moved = np.sum(np.abs(x[:, model.voids]) ** 2, axis=0)
+    own = M.diagonal()[model.voids] @ moved
+    return own > _MOSTLY * np.einsum("hck,cd,hdk->k", x.conj(), M, x).real
 
 
 def _collected(

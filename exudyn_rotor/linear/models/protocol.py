@@ -138,6 +138,8 @@ class LinearModel(Protocol):
         Coordinates in inertial axes, of what stands still beside the rotor.
     standing_interfaces : tuple of str
         Interfaces of that, whose motion is in inertial axes.
+    voids : ndarray of int
+        Coordinates of what films that conserve mass remember.
     mesh : Mesh or None
         Nodes that can be loaded and looked at.
     free_motions : tuple of str
@@ -184,6 +186,8 @@ class LinearModel(Protocol):
     def standing(self) -> np.ndarray: ...
     @property
     def standing_interfaces(self) -> tuple[str, ...]: ...
+    @property
+    def voids(self) -> np.ndarray: ...
     @property
     def mesh(self) -> Mesh | None: ...
     @property

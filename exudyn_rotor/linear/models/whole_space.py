@@ -138,6 +138,11 @@ class WholeSpace:
 class InAllCoordinates:
     """Base of models that are solved in all coordinates."""
 
+    @property
+    def voids(self) -> np.ndarray:
+        """Coordinates of what films remember; none here."""
+        return np.zeros(0, dtype=int)
+
     def constant_at(self, speeds: Sequence[float]) -> ConstantSystems | None:
         """Return None: the equations are made one by one."""
         return None

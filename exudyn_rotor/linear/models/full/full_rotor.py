@@ -28,6 +28,7 @@ class FullRotor(FullEquations):
     """
 
     gives_all: ClassVar[bool] = False
+    voids: ClassVar[np.ndarray] = np.zeros(0, dtype=int)
     is_full: ClassVar[bool] = True
 
     @property

@@ -106,6 +106,11 @@ class ControlledRotor(ExtendedRotor):
         return np.r_[self.plain.standing, self.plain.size + self.own.turning : self.size]
 
     @property
+    def voids(self) -> np.ndarray:
+        """Coordinates of what films remember."""
+        return self.plain.size + self.own.voids
+
+    @property
     def standing_interfaces(self) -> tuple[str, ...]:
         """Names of the foundation's points."""
         return self.plain.standing_interfaces

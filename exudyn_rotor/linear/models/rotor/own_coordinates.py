@@ -72,6 +72,13 @@ class OwnCoordinates:
         return sum(one.size for one in self.supports if not isinstance(one, PadSupport))
 
     @property
+    def voids(self) -> np.ndarray:
+        """Which coordinates are those of voids."""
+        films = [i for i, one in enumerate(self.supports) if isinstance(one, FilmSupport)]
+        rows = (np.arange(self.size)[self.rows(index)] for index in films)
+        return np.concatenate([np.zeros(0, dtype=int), *rows])
+
+    @property
     def varies(self) -> bool:
         """Whether films are among them, which depend on the speed."""
         return not all(isinstance(one, ControlledSupport) for one in self.supports)

@@ -77,6 +77,11 @@ class RememberingScene(ExtendedModel):
         return COUNT * len(self.scene.remembering) * self.with_states
 
     @property
+    def voids(self) -> np.ndarray:
+        """Coordinates of what films remember."""
+        return np.arange(self.plain.size, self.size)
+
+    @property
     def stiffening(self) -> str:
         """Level of centrifugal stiffening."""
         return self.scene.stiffening

@@ -138,6 +138,11 @@ class LinearTrain(InAllCoordinates):
         return np.arange(self.size - self.own.size + self.own.turning, self.size)
 
     @property
+    def voids(self) -> np.ndarray:
+        """Coordinates of what films remember."""
+        return self.size - self.own.size + self.own.voids
+
+    @property
     def interfaces(self) -> tuple[str, ...]:
         """Names of all interfaces, as 'rotor:interface'."""
         return tuple(
