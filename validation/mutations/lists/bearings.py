@@ -137,8 +137,8 @@ BEARINGS = [
         ("foundation moves against the film", "- R @ base", "+ R @ base"),
         (
             "films about one angle of a revolution",
-            "mean = places.mean(axis=0)",
-            "mean = places[-1]",
+            "forces.mean(axis=0)",
+            "forces[-1]",
         ),
         ("films about the mean place", "in range(_STEPS)", "in range(0)"),
         ("journals that move as if at rest", "if moved > MOST_MOTION", "if False"),
