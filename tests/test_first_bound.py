@@ -16,6 +16,7 @@ from exudyn_rotor.linear.periodic.first_bound import (
     _remainder,
     _share,
     first_bound,
+    largest_share,
     left_to_rest,
 )
 from exudyn_rotor.linear.periodic.harmonics import shifted
@@ -170,6 +171,14 @@ def test_exponents_that_are_one_are_not_parted():
     harmonics, radii = np.full((1, 1, 1), 1e-12), np.full((1, 1), 1e-3)
     for apart, left in ((1e-11, True), (1e-3, False)):
         assert left_to_rest(harmonics, np.full((1, 1, 1), apart), radii) == left
+
+
+def test_motions_that_are_not_coupled_have_a_weight():
+    """The weight of each motion divides; that of one beside a larger root is rounding."""
+    coupled = [[3.2, 0.0, 0.0], [0.0, 1.5, 0.23], [0.0, 0.28, 0.51]]
+    share, weights = largest_share(1e-15 * np.array(coupled), np.full(3, 3.7e-9))
+    assert share == pytest.approx(3.2e-15 / 3.7e-9)
+    assert weights.min() > 0.0
 
 
 def test_a_change_of_coordinates_without_an_inverse_tells_nothing():

@@ -47,7 +47,9 @@ def largest_share(f: np.ndarray, radii: np.ndarray) -> tuple[float, np.ndarray]:
     )
     roots, vectors = np.linalg.eig(relative + _LEAST * relative.max(initial=_LEAST))
     largest = np.argmax(roots.real)
-    return float(roots[largest].real), scales[0] * np.abs(vectors[:, largest])
+    # rounding leaves nothing of motions that are not coupled to those of this root
+    sizes = np.maximum(np.abs(vectors[:, largest]), _LEAST)
+    return float(roots[largest].real), scales[0] * sizes
 
 
 def left_to_rest(harmonics: np.ndarray, divisors: np.ndarray, radii: np.ndarray) -> np.ndarray:
