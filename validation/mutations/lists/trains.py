@@ -29,6 +29,13 @@ TRAINS = [
         ("damping of turned coordinates reversed", "-w * speed * X @ G", "w * speed * X @ G"),
     ),
     *mutations(
+        "linear/models/trains/uneven_space.py",
+        "test_uneven_trains.py",
+        ("what the mean leaves out is no error", "left_out**2 *", "0.0 *"),
+        ("growth of an asymmetric rotor as an error", "left_out**2 *", "left_out *"),
+        ("growth counts by itself in no rotor", "np.minimum(change, error)", "error"),
+    ),
+    *mutations(
         "linear/models/links.py",
         _DISCS,
         ("links without reaction", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, -1.0], [0.0, 0.0]]"),

@@ -39,6 +39,7 @@ from exudyn_rotor.linear.models.trains.train_elements import (
 )
 from exudyn_rotor.linear.models.trains.turned_rotor import TurnedRotor
 from exudyn_rotor.linear.models.trains.turning import Turning
+from exudyn_rotor.linear.models.trains.uneven_space import UnevenSpace, evened
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.driven import without_spin
@@ -108,6 +109,12 @@ class LinearTrain(InAllCoordinates):
                 return None
         elements = tuple(replace(element, frame=0.0) for element in self.elements)
         return replace(self, parts=parts, elements=elements, own=replace(self.own, frame=0.0))
+
+    @cached_property
+    def all_even(self) -> tuple[LinearTrain, float]:
+        """The equations with all rotors even, and the unevenness that these here leave out."""
+        parts, left_out = evened(self.parts, self.elements)
+        return replace(self, parts=parts), left_out
 
     @cached_property
     def held(self) -> LinearTrain:
@@ -374,11 +381,12 @@ class LinearTrain(InAllCoordinates):
         momenta = self._free_spins
         # coordinates that fix the free spins, as far apart as can be
         _, _, pivots = la.qr(momenta.T, pivoting=True)
-        options = {"can_be_sent": True, "driven": tuple(pivots[: momenta.shape[1]].tolist())}
+        options = {"driven": tuple(pivots[: momenta.shape[1]].tolist())}
         if held and momenta.shape[1]:
-            options = {"can_be_sent": True, "others": la.null_space(momenta.T)}
+            options = {"others": la.null_space(momenta.T)}
+        options |= {"can_be_sent": True, "train": self}
         if self._standing is None:
-            return WholeSpace(self, **options)
+            return UnevenSpace(self, **options)
         still = self.own.size - self.own.turning
         turnings = [part.turning for part in self._standing.parts.values()]
         turnings.append(Turning.beside(self.own.turning // 2, still))

@@ -14,15 +14,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.linear.models.trains.turning import Turning
+from exudyn_rotor.linear.models.trains.uneven_space import UnevenSpace
 from exudyn_rotor.linear.models.waves import HIGHEST
-from exudyn_rotor.linear.models.whole_space import Equations, WholeSpace
+from exudyn_rotor.linear.models.whole_space import Equations
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes, constant_modes
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StandingSpace(WholeSpace):
+class StandingSpace(UnevenSpace):
     """All coordinates of several rotors; modes from inertial axes where only these are constant.
 
     Attributes

@@ -11,7 +11,7 @@ each matrix X of the rotor in ``exp(−Gα)ᵀ X exp(−Gα)``, which is constan
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class TurnedRotor:
     ratio : float
         r, its speed over Ω.
     turning : Turning or None
-        None for the ratio 1.
+        None for the ratio 1 as it is, see :meth:`evened`.
     unevenness : float
         Share of its matrices, in slow motions, that is not axisymmetric; 0 for the ratio 1.
     is_even : bool
@@ -69,6 +69,12 @@ class TurnedRotor:
         uneven = _unevenness(alone, turning, places)
         return cls(name, alone, ratio, turning, uneven, uneven <= largest, frame)
 
+    def evened(self, places: Sequence[str]) -> TurnedRotor:
+        """Return the rotor as an axisymmetric one, also for the ratio 1."""
+        turning = Turning.of(self.alone)
+        uneven = _unevenness(self.alone, turning, places)
+        return replace(self, turning=turning, unevenness=uneven, is_even=True)
+
     @property
     def size(self) -> int:
         """Number of coordinates k."""
@@ -87,7 +93,7 @@ class TurnedRotor:
         return {name: self._form(X) for name, X in own.items() if X is not None}
 
     def _form(self, X: np.ndarray) -> dict[int, np.ndarray]:
-        if self.drift == 0.0:
+        if self.turning is None:
             return {0: X}
         return self._in_theta(self.turning.form(X))
 
@@ -133,7 +139,7 @@ class TurnedRotor:
         return self._turned(self.alone.interface_motion(interface))
 
     def _turned(self, U: np.ndarray) -> Terms:
-        return {0: U} if self.drift == 0.0 else self._in_theta(self.turning.motion(U))
+        return {0: U} if self.turning is None else self._in_theta(self.turning.motion(U))
 
     @cached_property
     def base_loads(self) -> np.ndarray:

@@ -1,0 +1,74 @@
+"""Growth that the mesh of one rotor of a train feigns while the meshes of others are left out.
+
+Rotors of ratio 1 keep what differs around their axis, others count as axisymmetric up to an
+unevenness u. That leaves an error of the order of u² of rates: growth within it which even rotors
+do not have is no instability, and seen over the speed of another rotor it is another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from exudyn_rotor.linear.models.links import Element
+from exudyn_rotor.linear.models.trains.train_elements import places_of
+from exudyn_rotor.linear.models.trains.turned_rotor import TurnedRotor
+from exudyn_rotor.linear.models.whole_space import Equations, WholeSpace
+from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+
+
+class Train(Protocol):
+    """Equations of rotors, of which some are uneven."""
+
+    @property
+    def all_even(self) -> tuple[Equations, float]:
+        """The equations with all rotors even, and the unevenness that these here leave out."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class UnevenSpace(WholeSpace):
+    """All coordinates of several rotors; growth counts above what is left out.
+
+    Attributes
+    ----------
+    train : Train
+    """
+
+    train: Train
+
+    def motions(
+        self, speed: float, method: str, tolerance: float, shapes: bool = True
+    ) -> tuple[FloquetModes, PeriodicSystem]:
+        """Return all exponents with their motions, and the equations."""
+        found, system = super().motions(speed, method, tolerance, shapes)
+        growing = found.values.real > found.bounds
+        if not np.any(growing):
+            return found, system
+        equations, left_out = self.train.all_even
+        if left_out == 0.0:
+            return found, system
+        even = equations.at(speed)
+        even = even if self.others is None else even.projected(self.others)
+        values = motions(even, method, tolerance, False).values
+        changes = fold(found.values[:, None] - values, abs(system.base))
+        change = np.abs(changes[linear_sum_assignment(np.abs(changes))].real)
+        error = left_out**2 * (np.abs(found.values) + abs(speed))
+        feigned = np.where(growing, np.minimum(change, error), 0.0)
+        return replace(found, bounds=found.bounds + feigned), system
+
+
+def evened(
+    parts: Mapping[str, TurnedRotor], elements: Sequence[Element]
+) -> tuple[dict[str, TurnedRotor], float]:
+    """Return rotors, those of ratio 1 even, too, and the unevenness that others leave out."""
+    even = {
+        name: part.evened(places_of(name, elements)) if part.drift == 0.0 else part
+        for name, part in parts.items()
+    }
+    return even, max((part.unevenness for part in parts.values() if part.is_even), default=0.0)
