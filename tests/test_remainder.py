@@ -44,15 +44,23 @@ def test_exponents_of_motions_that_swell_within_a_turn(a, stiffness):
     apart = np.abs(fold(found.values[:, None] - exact, system.base))
     assert np.all(apart.min(axis=1) <= 2.0 * found.bounds + 1e-8)
     if a >= 20.0:
-        with pytest.raises(UnconvergedError, match="may be off by"):
+        with pytest.raises(UnconvergedError, match=r"may be off by.*, or method='floquet'"):
             motions(system, "hill")
     else:
         assert np.array_equal(motions(system, "hill").values, found.values)
 
 
 def test_modes_that_are_not_determined_are_refused():
-    with pytest.raises(UnconvergedError, match="may be off by"):
+    """What calls for them has no `method`; exponents alone are found, as above."""
+    with pytest.raises(UnconvergedError, match=r"may be off by.*, or stability\(…\)") as refused:
         floquet_modes(swelling(20.0, 40.0))
+    assert "method" not in str(refused.value).replace("Hill's method", "")
+
+
+def test_where_no_method_gets_through_none_is_named(monkeypatch):
+    monkeypatch.setattr("exudyn_rotor.linear.periodic.fundamental.MOST_STEPS", 8)
+    with pytest.raises(UnconvergedError, match=r"within a turn; use a larger speed \(or 0\)$"):
+        motions(swelling(20.0, 40.0))
 
 
 def far_from_resonance(speed: float) -> PeriodicSystem:

@@ -98,7 +98,7 @@ def _periodic_motions(system: PeriodicSystem, method: str, tolerance: float) -> 
             rest = found.orders, found.resolution, found.bounds
             return FloquetModes(found.values, found.shapes, *rest)
         if method == "hill":
-            raise unconverged
+            raise UnconvergedError(f"{unconverged}, or method='floquet'")
     try:
         values, states, bounds = floquet_motions(system, tolerance)
     except UnconvergedError:

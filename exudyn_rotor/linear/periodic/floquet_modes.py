@@ -107,7 +107,9 @@ def _floquet_modes(system: PeriodicSystem, tolerance: float) -> FloquetModes:
         try:
             found = _checked(system, propagated(system, tolerance), tolerance)
         except UnconvergedError:
-            raise unconverged from None  # it says what to do
+            raise UnconvergedError(
+                f"{unconverged}, or stability(…), which may know exponents without their motions"
+            ) from None
     found = found.columns(_for_all(system, found))
     shapes = _with_free_motions(system, found)
     return FloquetModes(found.values, shapes, found.orders, found.resolution, found.bounds)

@@ -88,7 +88,7 @@ def checked(
         raise UnconvergedError(
             f"Hill's method at {system.speed:g} rad/s: exponents may be off by "
             f"{_MORE * rest.share:.1e} times what is told: motions change by too many powers of "
-            "ten within a turn; use method='floquet', or a larger speed (or 0)"
+            "ten within a turn; use a larger speed (or 0)"
         )
     errors = np.zeros(len(gone))
     errors[kept] = rest.errors
