@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from models import STEEL, block_beam
 from point_rotors import SKEW_AXIS, random_arrays, random_rotor
 
-from exudyn_rotor import SolidRotor, campbell, free_modes
+from exudyn_rotor import SolidRotor, Support, campbell, free_modes
 from exudyn_rotor.linear.modal import whirl
 
 HERTZ = 2.0 * np.pi
@@ -138,3 +138,16 @@ def test_what_does_not_depend_on_the_speed_is_computed_once(monkeypatch):
     rotor = random_rotor(22).reduce(4)
     campbell(rotor, np.linspace(0.0, 30.0, 7), stiffening="none", accuracy=None)
     assert len(calls) == 1
+
+
+@pytest.mark.parametrize("across", [(4e5, 4e5), (4e5, 3e5)])
+def test_damping_ratios_of_undamped_motions_are_zero(across):
+    """Rounding of real parts is no damping, neither by constant equations nor by Hill's."""
+    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], "z")
+    point = point.with_interface("mass", [0])
+    for damping, ratio in ((0.0, 0.0), (0.1, 0.05 / np.sqrt(4e5))):
+        supports = [Support("mass", np.diag([*across, 4e5]), damping * np.eye(3))]
+        result = campbell(point, [0.0, 50.0 * HERTZ, 400.0], supports=supports, frame="rotor")
+        stiff = np.isclose(result.frequencies_inertial, np.sqrt(4e5))
+        np.testing.assert_allclose(result.damping_ratio[stiff], ratio, rtol=1e-4, atol=0.0)
+        assert np.any(result.log_decrement) == (damping > 0.0)

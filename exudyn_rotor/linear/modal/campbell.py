@@ -253,7 +253,12 @@ def _classified(
 
 def _decays(modes: FloquetModes) -> np.ndarray:
     """Return which motions decay by more than rounding can feign, shape (k,)."""
-    return modes.values.real < -(modes.resolution if modes.bounds is None else modes.bounds)
+    return modes.values.real < -_rounding(modes)
+
+
+def _rounding(modes: FloquetModes) -> np.ndarray | float:
+    """Return what rounding can feign in real parts, shape (k,) or one for all."""
+    return modes.resolution if modes.bounds is None else modes.bounds
 
 
 def _ranks(frequencies: np.ndarray) -> np.ndarray:
@@ -341,7 +346,8 @@ def _collected(
     neutral = (inertial == 0.0) & (np.abs(eigenvalues.real) <= resolution)
     neutral &= ~np.array([_decays(entry) for entry in modes])
     growth = np.where(neutral, 0.0, eigenvalues.real)
-    ratio, decrement = damping_of(growth, inertial)
+    told = [np.abs(entry.values.real) > _rounding(entry) for entry in modes]
+    ratio, decrement = damping_of(np.where(told, growth, 0.0), inertial)
     return Campbell(
         speeds=speeds,
         frequencies_rotor=eigenvalues.imag,

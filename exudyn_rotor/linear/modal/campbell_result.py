@@ -45,7 +45,8 @@ class Campbell(Result):
     frequencies_inertial : ndarray, shape (s, k)
         Frequency of the mode's strongest wave seen from outside, ``|ν + nΩ|`` [rad/s].
     damping_ratio, log_decrement : ndarray, shape (s, k)
-        ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω.
+        ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω; 0 where Re λ is
+        rounding.
     whirl_codes : ndarray of int, shape (s, k)
         Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; see :attr:`whirl`.
     nodal_diameters : ndarray of int, shape (s, k)
