@@ -164,6 +164,8 @@ def _several(given: Any) -> bool:
 def _items(given: Any, where: str) -> list[Any]:
     """Return the objects of a sequence, and of sequences and arrays of axes in it."""
     if _several(given):
+        if not len(given):
+            raise ValueError(f"{where}: there are none; give {_HOW}")
         return [item for one in list(given) for item in _items(one, where)]
     _check(given, where)
     return [given]

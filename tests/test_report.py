@@ -210,6 +210,9 @@ def test_wrong_input_leaves_the_old_file(written, tmp_path):
     ):
         with pytest.raises(TypeError, match=message):
             written(contents)
+    for empty in ({"a": []}, [[]], {"a": [STORED["StabilityMap"], ()]}):
+        with pytest.raises(ValueError, match=r"contents\[0\].*: there are none"):
+            written(empty)
     with pytest.raises(ValueError, match="contents: there are none"):
         written([])
     with pytest.raises(TypeError, match="raised: needs warnings or texts, got 3"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from asymmetric import DISC, END, SHAFT, asymmetric_shaft
 from exponent_methods import constant_exponents, floquet_exponents, hill_exponents
+from matplotlib import pyplot
 from point_rotors import ring_rotor
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -17,7 +18,7 @@ from exudyn_rotor.linear.periodic.exponents import exponents, motions
 from exudyn_rotor.linear.periodic.fundamental import _magnus, monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.stability.stability import stability
-from exudyn_rotor.linear.stability.stability_map import stability_map
+from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.linear.stability.thresholds import stability_threshold, unstable_ranges
 from exudyn_rotor.results import load_result
@@ -264,6 +265,20 @@ def test_map_over_two_parameters(tmp_path):
     assert result.plot().get_ylabel() == "Ω"
     result.save(tmp_path / "map.npz")
     assert np.array_equal(load_result(tmp_path / "map.npz").growth, result.growth)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 3), (3, 1)])
+def test_a_map_with_one_value_of_a_parameter_is_a_curve(shape):
+    growth = np.array([-0.5, 0.2, 0.4])[: max(shape)].reshape(shape)
+    x, y = ([1.0, 2.0, 3.0][:count] for count in shape)
+    ax = StabilityMap(x, y, growth, growth < 0.0, ("k", "c")).plot()
+    curve, given, fixed = ax.lines[1].get_xydata(), *((y, "k") if shape[1] > 1 else (x, "c"))
+    np.testing.assert_array_equal(curve, np.column_stack([given, growth.ravel()]))
+    assert ax.get_title() == f"{fixed} = 1"
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("c" if fixed == "k" else "k", "growth [1/s]")
+    marked = [line.get_xdata().tolist() for line in ax.lines[2:]]
+    assert marked == [given[1:]] * (len(given) > 1)
+    pyplot.close(ax.figure)
 
 
 @pytest.mark.parametrize("as_system", [True, False])

@@ -103,8 +103,13 @@ class StabilityMap(Result):
         return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the growth as a contour plot, with the limit of stability as a line."""
+        """Draw the growth as a contour plot, with the limit of stability as a line.
+
+        Where one parameter has one value, as a curve over the other one.
+        """
         ax = plotting.axes_or_new(ax)
+        if min(self.growth.shape) == 1:
+            return self._plot_curve(ax)
         growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
         largest = np.abs(growth).max() or 1.0
         levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
@@ -116,6 +121,22 @@ class StabilityMap(Result):
             ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
         ax.set_xlabel(self.labels[0])
         ax.set_ylabel(self.labels[1])
+        return ax
+
+    def _plot_curve(self, ax: Axes) -> Axes:
+        """Draw the growth over one parameter, at the one value of the other."""
+        along = int(len(self.y) > 1)
+        values, fixed = (self.y, self.x) if along else (self.x, self.y)
+        growth, unstable = self.growth.ravel(), ~self.stable.ravel()
+        ax.axhline(0.0, color="0.6", lw=0.8)
+        ax.plot(values, growth, ".-", color=plotting.COLORS[0])
+        if unstable.any():
+            marks = {"color": plotting.COLORS[1], "label": "unstable"}
+            ax.plot(values[unstable], growth[unstable], "x", **marks)
+            ax.legend()
+        ax.set_title(f"{self.labels[1 - along]} = {fixed[0]:g}")
+        ax.set_xlabel(self.labels[along])
+        ax.set_ylabel("growth [1/s]")
         return ax
 
 
