@@ -374,3 +374,5 @@ def test_more_bad_input():
         unstable_ranges(asymmetric_shaft(), [10.0, 20.0], guess=1)
     with pytest.raises(ValueError, match=r"y: needs .* ascending order"):
         stability_map(_jeffcott, [1.0, 2.0], [2.0, 1.0])
+    with pytest.raises(ValueError, match=r"at \(1\.0, -2\.0\): build: the speed .*, got -2\.0$"):
+        stability_map(_jeffcott, [1.0], [-2.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -191,7 +192,7 @@ def stability_map(
     if len(names) != 2:
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
-    points = [(a, b) for a in grid[0] for b in grid[1]]
+    points = list(itertools.product(*(values.tolist() for values in grid)))
     point = partial(_map_point, build=build, given=(method, tolerance, accuracy))
     margins = sweep(point, points, executor=executor, progress=progress, label="stability map")
     growth, excess, errors = np.array(margins).T.reshape(3, len(grid[0]), len(grid[1]))
