@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -191,8 +190,8 @@ def stability_map(
     names = checks.labels(labels, "labels")
     if len(names) != 2:
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
-    grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
-    points = list(itertools.product(*(values.tolist() for values in grid)))
+    grid = [ascending(values, name).tolist() for values, name in ((x, "x"), (y, "y"))]
+    points = [(a, b) for a in grid[0] for b in grid[1]]
     point = partial(_map_point, build=build, given=(method, tolerance, accuracy))
     margins = sweep(point, points, executor=executor, progress=progress, label="stability map")
     growth, excess, errors = np.array(margins).T.reshape(3, len(grid[0]), len(grid[1]))

@@ -245,6 +245,11 @@ LINEAR = [
     ),
     *mutations(
         "linear/modal/campbell.py",
+        "test_campbell.py",
+        ("rounding as damping", "np.where(told, growth, 0.0)", "growth"),
+    ),
+    *mutations(
+        "linear/modal/campbell.py",
         "test_campbell_frames.py test_campbell_full.py",
         (
             "order in the other frame",

@@ -39,7 +39,7 @@ from exudyn_rotor.linear.models.trains.train_elements import (
 )
 from exudyn_rotor.linear.models.trains.turned_rotor import TurnedRotor
 from exudyn_rotor.linear.models.trains.turning import Turning
-from exudyn_rotor.linear.models.trains.uneven_space import UnevenSpace, evened
+from exudyn_rotor.linear.models.trains.uneven_space import UnevenSpace
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.reduction.driven import without_spin
@@ -112,8 +112,9 @@ class LinearTrain(InAllCoordinates):
 
     @cached_property
     def all_even(self) -> tuple[LinearTrain, float]:
-        """The equations with all rotors even, and the unevenness that these here leave out."""
-        parts, left_out = evened(self.parts, self.elements)
+        """The equations with rotors of ratio 1 even, and what unevenness is left out of others."""
+        parts = {name: part.evened() for name, part in self.parts.items()}
+        left_out = max(part.is_even * part.unevenness for part in self.parts.values())
         return replace(self, parts=parts), left_out
 
     @cached_property

@@ -69,11 +69,9 @@ class TurnedRotor:
         uneven = _unevenness(alone, turning, places)
         return cls(name, alone, ratio, turning, uneven, uneven <= largest, frame)
 
-    def evened(self, places: Sequence[str]) -> TurnedRotor:
-        """Return the rotor as an axisymmetric one, also for the ratio 1."""
-        turning = Turning.of(self.alone)
-        uneven = _unevenness(self.alone, turning, places)
-        return replace(self, turning=turning, unevenness=uneven, is_even=True)
+    def evened(self) -> TurnedRotor:
+        """Return the rotor, one of ratio 1 as an axisymmetric one."""
+        return self if self.turning else replace(self, turning=Turning.of(self.alone))
 
     @property
     def size(self) -> int:

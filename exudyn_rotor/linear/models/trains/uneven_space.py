@@ -7,16 +7,12 @@ do not have is no instability, and seen over the speed of another rotor it is an
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.models.links import Element
-from exudyn_rotor.linear.models.trains.train_elements import places_of
-from exudyn_rotor.linear.models.trains.turned_rotor import TurnedRotor
 from exudyn_rotor.linear.models.whole_space import Equations, WholeSpace
 from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
@@ -28,7 +24,7 @@ class Train(Protocol):
 
     @property
     def all_even(self) -> tuple[Equations, float]:
-        """The equations with all rotors even, and the unevenness that these here leave out."""
+        """The equations with rotors of ratio 1 even, and what unevenness is left out of others."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -61,14 +57,3 @@ class UnevenSpace(WholeSpace):
         error = left_out**2 * (np.abs(found.values) + abs(speed))
         feigned = np.where(growing, np.minimum(change, error), 0.0)
         return replace(found, bounds=found.bounds + feigned), system
-
-
-def evened(
-    parts: Mapping[str, TurnedRotor], elements: Sequence[Element]
-) -> tuple[dict[str, TurnedRotor], float]:
-    """Return rotors, those of ratio 1 even, too, and the unevenness that others leave out."""
-    even = {
-        name: part.evened(places_of(name, elements)) if part.drift == 0.0 else part
-        for name, part in parts.items()
-    }
-    return even, max((part.unevenness for part in parts.values() if part.is_even), default=0.0)
