@@ -31,7 +31,11 @@ from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
-from exudyn_rotor.multibody.supports.turning_base import carrying_marker, on_turning_base
+from exudyn_rotor.multibody.supports.turning_base import (
+    carrying_marker,
+    in_axes_at_rest,
+    on_turning_base,
+)
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
@@ -169,10 +173,11 @@ def _bearing_function(
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
-    if body.formulation.has_spin:
+    if body.formulation.has_spin and not isinstance(bearing, TangentFilm):
         law = on_turning_base(law, body.mbs, base, axes)
     if brakes:
-        return _BRAKING, _braking_function(law, spin, begin, least, note)
+        function = _braking_function(law, spin, begin, least, note)
+        return _BRAKING, in_axes_at_rest(function, base, axes)
     (a, d), (b, e), (c, f) = axes[:, :2].tolist()
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
@@ -190,7 +195,7 @@ def _bearing_function(
 def _braking_function(
     law: LawWithTorque, spin: SpinReader, begin: Beginning, least: float, note: Note
 ) -> Callable:
-    """Return force and torque, in the axes of the connector's base.
+    """Return force and torque along (n1, n2, e).
 
     Beyond the square `least` of the least clearance it calls `note`.
     """

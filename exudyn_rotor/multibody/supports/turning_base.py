@@ -1,9 +1,13 @@
-"""Laws of bearings on a base that turns about the spin axis.
+"""Laws of bearings on a base that turns.
 
 A law holds in axes of the bore. One that turns about the axis at the rate w sees the rotor turn at
 Ω − w, and move by ``v − w e × u``, with the displacement u and the velocity v of the journal
 against it: a film drags by what the two turn against each other. The angle of the bore is small and
 left out. With a prescribed spin, which feels no friction, so is w, as in linear analyses.
+
+Forces act along the axes at rest, also where the base tilts. With a static force F₀ and a tilt φ
+this leaves out ``φ × F₀``, as foundations leave out what their weight does in a deflection: beside
+the bearing's stiffness K at a lever l it is F₀/(K l), the journal's displacement over the lever.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ import exudyn
 import numpy as np
 
 _ANGULAR_VELOCITY = exudyn.OutputVariableType.AngularVelocity
+_ROTATION = exudyn.OutputVariableType.RotationMatrix
 
 
 def carrying_marker(
@@ -39,3 +44,25 @@ def on_turning_base(
         return law(x, y, vx + w * y, vy - w * x, angle, speed - w)
 
     return turned
+
+
+def in_axes_at_rest(
+    function: Callable, base: exudyn.MarkerIndex | None, axes: np.ndarray
+) -> Callable:
+    """Return a user function of a ``RigidBodySpringDamper`` whose axes do not turn with the base.
+
+    Exudyn takes displacement, velocity, force and torque along axes of the base's marker; the
+    function has them along `axes` (n1, n2, e) as columns.
+    """
+    if base is None:
+        return function
+
+    def force(
+        mbs: exudyn.MainSystem, t: float, item: int, u: list, angles: list, v: list, *more: object
+    ) -> list[float]:
+        turn = axes.T @ np.reshape(mbs.GetMarkerOutput(base, _ROTATION), (3, 3))
+        u, v = (turn @ u).tolist(), (turn @ v).tolist()
+        loads = np.reshape(function(mbs, t, item, u, angles, v, *more), (2, 3))
+        return (loads @ turn).ravel().tolist()
+
+    return force
