@@ -113,7 +113,7 @@ class PadSupport:
     films : tuple of Support
         Of every pad.
     static_stiffness : Coefficient
-        Of all, slowly, the tilts eliminated [N/m].
+        Of all in the whirl, the tilts eliminated, with which critical speeds are found [N/m].
     """
 
     interface: str

@@ -61,7 +61,8 @@ class TiltingPadBearing(Bearing):
     pivot : float, optional
         Place of the pivots over the arc of a pad, from its start; 0.5 is the middle.
     whirl_ratio : float, optional
-        Frequency of the whirl over the spin speed, 1 for unbalance, of pads without inertia.
+        Frequency of the whirl over the spin speed, 1 for unbalance: of pads without inertia, and in
+        critical speeds.
     pad_inertia : float, optional
         Of each pad about its pivot, along the axis [kg m²]. Light pads follow the journal at once:
         the smaller it is, the less it matters.
@@ -122,6 +123,11 @@ class TiltingPadBearing(Bearing):
         """Directions t at the pivots along (n1, n2), shape (pads, 2)."""
         pivots = np.array([pad.start + self.pivot * pad.arc for pad in self.film.pads])
         return direction(pivots + 0.5 * np.pi)
+
+    @property
+    def pad_mass(self) -> float:
+        """``I/R²`` of (1) [kg], 0 of pads without inertia."""
+        return (self.pad_inertia or 0.0) / self.film.radius**2
 
     @property
     def pad_bearings(self) -> list[JournalBearing]:
@@ -185,7 +191,7 @@ class TiltingPadBearing(Bearing):
             Support(self.interface, *(_OfPads(self, index, pad) for index in (0, 1)))
             for pad in range(count)
         ]
-        masses = np.full(count, self.pad_inertia / self.film.radius**2)
+        masses = np.full(count, self.pad_mass)
         static = _OfPads(self, 0)
         return PadSupport(self.interface, masses, self.tangents, tuple(films), static)
 
@@ -278,20 +284,23 @@ class _Pads:
         """Stiffness and damping of each film, (2, 2); None for absent pads."""
         return [None if state is None else state.coefficients() for state in self.states]
 
-    def impedance(self, whirl: float) -> np.ndarray:
-        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2)."""
+    def impedance(self, whirl: float, mass: float = 0.0) -> np.ndarray:
+        """Return Z_b of (2) at a frequency [rad/s], shape (2, 2); of pads with a mass I/R² [kg].
+
+        By (1) the mass takes ``mass whirl²`` from ``tᵀZ t``.
+        """
         total = np.zeros((2, 2), dtype=complex)
         for coefficients, t in zip(self.coefficients, self.tangents, strict=True):
             if coefficients is not None:
                 K, C = coefficients
                 Z = K + 1j * whirl * C
-                total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t)
+                total += Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * whirl**2)
         return total
 
 
 @dataclass(frozen=True, eq=False)
 class _OfPads(Linearised):
-    """Stiffness (`index` 0) or damping of one pad's film; slow stiffness of all without `pad`."""
+    """Stiffness (`index` 0) or damping of one pad's film; of all in the whirl without `pad`."""
 
     pad: int | None = None
 
@@ -309,7 +318,8 @@ class _OfPads(Linearised):
                 "pad_inertia"
             )
         if self.pad is None:
-            return state.impedance(0.0).real
+            whirl = self.bearing.whirl_ratio * abs(speed)
+            return state.impedance(whirl, self.bearing.pad_mass).real
         return state.coefficients[self.pad][self.index]
 
 
