@@ -7,7 +7,8 @@ from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
-from exudyn_rotor import SolidRotor, campbell
+from exudyn_rotor import OilFilm, SolidRotor, campbell, grooved_pads
+from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
@@ -234,3 +235,20 @@ def test_scene_has_the_critical_speeds_of_its_rotor():
     scene = critical_speeds(mbs, body=body, **given)
     assert len(rotor.speeds) >= 4
     np.testing.assert_allclose(scene.speeds, rotor.speeds, rtol=1e-5)
+
+
+def test_speeds_at_which_films_are_too_thin_are_left_out():
+    """Lists end there as scenes do; the stiffness of another speed would jump."""
+    pads = grooved_pads(1e-4, [0.0, np.pi], 0.3)
+    film = OilFilm(0.02, 0.02, 0.02, pads, "none", nodes=24, axial_nodes=0)
+    rotor = scene_rotor()
+
+    def found(load, limit):
+        journal = JournalBearing(interface="left", film=film, load=[0.0, -load])
+        springs = [Support(name, 1e7) for name in rotor.interfaces]
+        return critical_speeds(rotor, supports=[journal, *springs], max_speed=limit, accuracy=None)
+
+    with pytest.warns(UserWarning, match=r"rad/s none are looked for, as there is no equilibrium"):
+        found(300.0, 1000.0)
+    with pytest.raises(ValueError, match="presses the film below"):
+        found(1e5, 1000.0)

@@ -179,6 +179,29 @@ def test_light_pads_follow_at_once():
     np.testing.assert_allclose(total, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
 
 
+def test_critical_speeds_on_light_pads_are_those_without_inertia():
+    """By the stiffness in the whirl, of which a pad's mass m changes m Ω² beside tᵀZt."""
+    rotor, (pads, _), _ = on_pads()
+    given = {"film": pads.film, "load": [0.0, -500.0]}
+    found = []
+    for inertia in (None, 1e-9 * RADIUS**2):
+        pads = [TiltingPadBearing(interface=n, pad_inertia=inertia, **given) for n in ENDS]
+        model = linear_model(rotor, supports=pads).undamped()
+        found.append([model.supports[0].matrices(s)[0][:2, :2] for s in (SPEED, 2.0 * SPEED)])
+    np.testing.assert_allclose(*found, rtol=0.0, atol=1e-8 * np.abs(found).max())
+
+
+def test_stiffness_in_the_whirl_has_the_mass_of_pads():
+    heavy = on_pads(inertia=INERTIA)[1][0].linearised()
+    total = 0.0
+    for film, t, mass in zip(heavy.films, heavy.tangents, heavy.masses, strict=True):
+        K, C = (X[:2, :2] for X in film.matrices(SPEED))
+        Z = K + 1j * SPEED * C
+        total = total + Z - np.outer(Z @ t, t @ Z) / (t @ Z @ t - mass * SPEED**2)
+    found = heavy.static_stiffness(SPEED)
+    np.testing.assert_allclose(found, total.real, rtol=0.0, atol=1e-12 * np.abs(total).max())
+
+
 def run(mbs, end_time, step):
     settings = recommended_settings(end_time, step)
     settings.timeIntegration.verboseMode = 0

@@ -80,6 +80,14 @@ def test_scenes_are_linearised_as_lists(name):
     np.testing.assert_allclose(rests, bearing.equilibrium(speed), rtol=0.0, atol=1e-8 * CLEARANCE)
 
 
+@pytest.mark.parametrize("rotation", [None, SKEW], ids=["z", "skew"])
+@pytest.mark.parametrize("cavitation", ["none", "reynolds", "mass-conserving"])
+def test_films_on_a_base_are_linearised_alike_with_a_free_spin(cavitation, rotation):
+    """The static force keeps its direction where the base tilts."""
+    models = given(free=True, foundation=BLOCK, cavitation=cavitation, rotation=rotation)
+    assert apart(*models, SPEED) < 1e-6
+
+
 def test_a_journal_that_moves_is_linearised_about_rest_as_long_as_it_moves_little():
     in_list = linear_model(rotor(), supports=bearings(rotor()))
     for eccentric, moves in ((1e-4, False), (1e-2, True)):

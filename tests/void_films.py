@@ -63,7 +63,11 @@ def bearings(reduced, gravity=GRAVITY, **options):
 def scene(reduced, supports, gravity=GRAVITY, foundation=None, **options):
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, reduced, gravity=gravity, **options)
-    base = None if foundation is None else add_foundation(mbs, foundation)
+    base = (
+        None
+        if foundation is None
+        else add_foundation(mbs, foundation, rotation=options.get("rotation"))
+    )
     added = add_supports(body, supports, base)
     sensors = [
         mbs.AddSensor(

@@ -20,6 +20,10 @@ Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
+class NoEquilibriumError(ValueError):
+    """A bearing under load has no equilibrium at a speed, as films at rest."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LoadedBearing(ABC):
     """A bearing across the axis that holds its journal in an equilibrium under a static load.
@@ -163,7 +167,18 @@ class Linearised:
         return self.bearing.coefficients(speed)[self.index]
 
     def check_range(self, speed: float) -> None:
-        """Refuse a speed at which the bearing has no equilibrium, by a ValueError."""
+        """Refuse a speed at which the bearing has no equilibrium.
+
+        Raises
+        ------
+        NoEquilibriumError
+        """
+        try:
+            self._check(speed)
+        except (ValueError, ArithmeticError) as error:
+            raise NoEquilibriumError(str(error)) from error
+
+    def _check(self, speed: float) -> None:
         self.bearing.equilibrium(speed)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -171,14 +170,24 @@ class Support:
 def _symmetric(value: Coefficient) -> Coefficient:
     """Return a coefficient without its skew part."""
     if callable(value):
-        return partial(_symmetric_value, value)
+        return _SymmetricPart(value)
     if isinstance(value, tuple):
         return value[0], _symmetric_matrix(value[1])
     return _symmetric_matrix(value)
 
 
-def _symmetric_value(function: Callable[[float], ArrayLike], speed: float) -> float | np.ndarray:
-    return _symmetric_matrix(np.asarray(function(speed), dtype=float))
+@dataclass(frozen=True, eq=False)
+class _SymmetricPart:
+    """Symmetric part of a coefficient by the speed; of a bearing's, where that is."""
+
+    function: Callable[[float], ArrayLike]
+
+    def __call__(self, speed: float) -> float | np.ndarray:
+        return _symmetric_matrix(np.asarray(self.function(speed), dtype=float))
+
+    def check_range(self, speed: float) -> None:
+        if hasattr(self.function, "check_range"):
+            self.function.check_range(speed)
 
 
 def _symmetric_matrix(values: float | np.ndarray) -> float | np.ndarray:

@@ -304,8 +304,7 @@ class _OfPads(Linearised):
 
     pad: int | None = None
 
-    def check_range(self, speed: float) -> None:
-        """Refuse a speed at which there is no equilibrium, or none of a pad, by a ValueError."""
+    def _check(self, speed: float) -> None:
         self._value(speed)
 
     def _value(self, speed: float) -> np.ndarray:

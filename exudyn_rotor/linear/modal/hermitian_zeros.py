@@ -18,9 +18,11 @@ import scipy.linalg as la
 from scipy.linalg.lapack import zhetrf
 from scipy.optimize import brentq
 
+from exudyn_rotor.bearings.bearing import NoEquilibriumError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
+NO_EQUATIONS = UnconvergedError, NoEquilibriumError  # of a scene, and of a list of supports
 _BRACKETS = 200
 _SAME = 1e-7
 _BLOCK = 64  # of LAPACK's work, in columns
@@ -87,7 +89,7 @@ def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, li
         speed = grid[len(grid) - 1 - len(negative)]
         try:
             H = matrix(speed)
-        except UnconvergedError as error:
+        except NO_EQUATIONS as error:
             if not negative:
                 raise
             warnings.warn(

@@ -23,14 +23,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.modal.hermitian_zeros import same_speed, zeros_of_eigenvalues
+from exudyn_rotor.linear.modal.hermitian_zeros import (
+    NO_EQUATIONS,
+    same_speed,
+    zeros_of_eigenvalues,
+)
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.critical_shift import CriticalMotion
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.trains.standing_space import StandingSpace
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.threads import one_thread
 
 # share of a mode's energy that must turn with the excitation
@@ -45,6 +49,7 @@ _QUADRATIC = 1e-6
 # two critical speeds this close are looked at as a pair
 PAIR = 1e-2
 _MOST_ROUNDS = 20
+_VARIES = "a system that varies with the speed"
 _MODES = 10  # that the subspace of a full rotor begins with
 
 
@@ -187,7 +192,7 @@ def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -
     stiffness = _Stiffness(equations, multiples)
     if equations.vary(stiffness, limit):
         pairs = zeros_of_eigenvalues(
-            stiffness, _needed(limit, "a system that varies with the speed")
+            stiffness, _needed(limit, _VARIES)
         )
     else:
         at_rest = stiffness(0.0)
@@ -236,8 +241,9 @@ class _Equations:
         """Return how many harmonics apart the equations couple motions; 0 for none."""
         try:
             return self.at(0.0).step
-        except UnconvergedError:  # films carry nothing at rest
-            return self.at(_needed(limit, "a scene")).step
+        except NO_EQUATIONS:  # films carry nothing at rest
+            what = "a scene" if self.supports_vary is None else _VARIES
+            return self.at(_needed(limit, what)).step
 
     def vary(self, stiffness: _Stiffness, limit: float | None) -> bool:
         """Return whether anything but the spin itself depends on the speed."""
@@ -246,7 +252,7 @@ class _Equations:
         limit = _needed(limit, "a scene")
         try:
             at_rest = stiffness(0.0)
-        except UnconvergedError:  # films carry nothing at rest
+        except NO_EQUATIONS:  # films carry nothing at rest
             return True
         half, full = stiffness(0.5 * limit), stiffness(limit)
         expected = 0.75 * at_rest + 0.25 * full

@@ -129,6 +129,18 @@ ENERGY = [
         ("journal moves by minus the bore", "vx + w * y", "vx - w * y"),
     ),
     *mutations(
+        "multibody/supports/turning_base.py",
+        "test_uneven_films.py",
+        ("forces tilt twice with the base", "(loads @ turn)", "(loads @ turn.T)"),
+        ("forces tilt with the base", "(loads @ turn).r", "loads.r"),
+    ),
+    *mutations(
+        "bearings/tilting_pad.py",
+        "test_tilting_pad.py",
+        ("pads heavier than light", "- mass * whirl**2", "+ mass * whirl**2"),
+        ("critical speeds on slow pads", "self.bearing.whirl_ratio * abs(speed)", "0.0"),
+    ),
+    *mutations(
         "multibody/supports/tilting_pads.py",
         "test_friction_on_bases.py",
         ("pads brake by the ground", "turns = body.form", "turns = False and body.form"),
