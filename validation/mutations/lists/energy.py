@@ -137,8 +137,8 @@ ENERGY = [
     *mutations(
         "bearings/tilting_pad.py",
         "test_tilting_pad.py",
-        ("pads heavier than light", "- mass * whirl**2", "+ mass * whirl**2"),
-        ("critical speeds on slow pads", "self.bearing.whirl_ratio * abs(speed)", "0.0"),
+        ("mass of pads as a spring", "- mass * whirl**2", "+ mass * whirl**2"),
+        ("critical speeds of slow pads", "self.bearing.whirl_ratio * abs(speed)", "0.0"),
     ),
     *mutations(
         "multibody/supports/tilting_pads.py",
