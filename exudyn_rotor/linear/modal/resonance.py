@@ -191,9 +191,7 @@ def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -
     """Return every speed with a singular dynamic stiffness, with the motion."""
     stiffness = _Stiffness(equations, multiples)
     if equations.vary(stiffness, limit):
-        pairs = zeros_of_eigenvalues(
-            stiffness, _needed(limit, _VARIES)
-        )
+        pairs = zeros_of_eigenvalues(stiffness, _needed(limit, _VARIES))
     else:
         at_rest = stiffness(0.0)
         scale = equations.scale(at_rest, limit)
