@@ -1,5 +1,8 @@
 """Factors by Pardiso, where it is installed, and modes by wide blocks with any factor."""
 
+import os
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -8,6 +11,7 @@ import scipy.sparse as sp
 from netgen.occ import Cylinder, OCCGeometry, Pnt, X
 from ngsolve import Mesh
 
+import exudyn_rotor
 from exudyn_rotor import SolidRotor, free_modes
 from exudyn_rotor.solvers import choice, factor, pardiso
 from exudyn_rotor.solvers.factor import NotPositiveDefiniteError, SparseCholesky
@@ -55,6 +59,34 @@ def test_pardiso_solves_many_right_hand_sides():
     assert made.solve(matrix @ known) == pytest.approx(known, abs=1e-11)
     assert made.solve(matrix @ known[:, 0]) == pytest.approx(known[:, 0], abs=1e-11)
     assert made.solve(np.zeros((matrix.shape[0], 0))).shape == (matrix.shape[0], 0)
+
+
+IDLE = """
+import sys
+import time
+import types
+import numpy as np
+import scipy.sparse as sp
+
+sys.modules["exudyn_rotor"] = package = types.ModuleType("exudyn_rotor")
+package.__path__ = sys.argv[1:]  # a few modules alone, as the whole package takes seconds
+from exudyn_rotor.solvers.factor import SparseCholesky
+
+one, unit = sp.diags_array([-1, 2.1, -1], offsets=[-1, 0, 1], shape=(150, 150)), sp.eye_array(150)
+SparseCholesky(sp.csr_array(sp.kron(one, unit) + sp.kron(unit, one))).solve(np.ones((22500, 4)))
+start = time.process_time()
+time.sleep(0.15)
+print(time.process_time() - start)
+"""
+
+
+def test_no_thread_of_pardiso_waits_in_a_loop():
+    """By default each keeps a core busy for 200 ms after its work."""
+    pytest.importorskip("pypardiso")
+    call = [sys.executable, "-c", IDLE, *exudyn_rotor.__path__]
+    threads = os.environ | {"MKL_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}
+    done = subprocess.run(call, env=threads, capture_output=True, text=True, timeout=60, check=True)
+    assert float(done.stdout) < 0.02
 
 
 def test_pardiso_refuses_negative_pivots():

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
 from importlib.util import find_spec
 
 import numpy as np
 import scipy.sparse as sp
+from threadpoolctl import ThreadpoolController
 
 from exudyn_rotor.solvers.memory import TooLittleMemoryError, available_memory
 
@@ -23,6 +27,7 @@ _PARAMETERS = {1: 1, 2: 3, 10: 0, 19: -1}
 # of operations
 _PEAK, _KEPT, _FACTOR, _OPERATIONS = 15, 16, 17, 19
 _ORDER, _FACTORISE, _SOLVE = 11, 22, 33
+_IDLE = 1  # milliseconds that a thread waits for more work without sleep
 _NO_MEMORY = (-2, -9)  # numbers of errors
 _ORDERING = 25.0  # bytes of the ordering and the triangle for every entry of the matrix
 
@@ -103,7 +108,8 @@ class Ordered:
 
         self._solver.set_phase(phase)
         try:
-            return self._solver._call_pardiso(self._upper, right)
+            with _idle_threads_sleep():
+                return self._solver._call_pardiso(self._upper, right)
         except PyPardisoError as error:
             if error.value in _NO_MEMORY:
                 raise TooLittleMemoryError(
@@ -111,6 +117,33 @@ class Ordered:
                     "coarser mesh"
                 ) from error
             raise PivotError(str(error)) from error
+
+
+@cache
+def _openmp() -> list[ctypes.CDLL]:
+    """Return Intel's OpenMP library, whose threads MKL uses; none where MKL has other threads."""
+    from pypardiso import ps
+
+    ps.libmkl.mkl_get_max_threads()  # loads it
+    loaded = ThreadpoolController().lib_controllers
+    return [each.dynlib for each in loaded if hasattr(each.dynlib, "kmp_set_blocktime")]
+
+
+@contextmanager
+def _idle_threads_sleep() -> Iterator[None]:
+    """Let threads of MKL sleep soon after their work.
+
+    Else each keeps a core busy for 200 ms, where it waits for more, and what comes next does not
+    have this core. Source: Intel oneAPI compiler reference, ``KMP_BLOCKTIME``.
+    """
+    before = [(each, each.kmp_get_blocktime()) for each in _openmp()]
+    for library, _ in before:
+        library.kmp_set_blocktime(_IDLE)
+    try:
+        yield
+    finally:
+        for library, time in before:
+            library.kmp_set_blocktime(time)
 
 
 def _upper(matrix: sp.csr_array) -> sp.csr_matrix:
