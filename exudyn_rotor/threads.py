@@ -111,7 +111,8 @@ def shared(
             work()
         finally:
             for each in helping:
-                each.result()
+                if not each.cancel():  # one that has not begun may wait for this thread
+                    each.result()
     return results
 
 

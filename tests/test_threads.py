@@ -134,6 +134,43 @@ def test_eigenproblems_of_properties_leave_the_turn_to_others():
     assert done.stdout == "[[1.0, 1.0], [1.0, 1.0]]\n"
 
 
+WITHIN = """
+import os
+import sys
+import threading
+import types
+import numpy as np
+
+sys.modules["exudyn_rotor"] = package = types.ModuleType("exudyn_rotor")
+package.__path__ = sys.argv[1:]
+from threadpoolctl import ThreadpoolController
+from exudyn_rotor.threads import eig, in_turns, shared
+
+os.cpu_count = lambda: 1
+main, has_turn = threading.get_ident(), threading.Event()
+np.linalg.eig = lambda matrix: has_turn.wait()
+
+
+def done(number):
+    if threading.get_ident() == main:
+        has_turn.set()
+        return shared(abs, [number, number])[0]
+    eig(np.eye(2))
+    return number
+
+
+with ThreadpoolController().limit(limits=2, user_api="blas"):
+    print(in_turns(done, range(4)))
+"""
+
+
+def test_shared_work_within_a_turn_does_not_wait_for_a_thread_that_waits_for_the_turn():
+    """The one helper does, and would begin with the work within only after that."""
+    call = [sys.executable, "-c", WITHIN, *exudyn_rotor.__path__]
+    done = subprocess.run(call, capture_output=True, text=True, timeout=10.0, check=True)
+    assert done.stdout == "[0, 1, 2, 3]\n"
+
+
 @pytest.mark.usefixtures("two_threads")
 def test_properties_are_computed_once_without_a_lock():
     """Two threads at one object get the same value."""
