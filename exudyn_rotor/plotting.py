@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from os import PathLike
 
@@ -21,6 +22,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.storage import write_bytes
 
 # colours that stay apart in grey and for colour-blind readers (Okabe and Ito)
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -42,10 +44,17 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes
 
 
 def save(drawn: Axes | Figure, path: str | PathLike) -> None:
-    """Write the figure of some axes as PNG, or a figure."""
+    """Write the figure of some axes, or a figure; a name without an ending gets '.png'.
+
+    A file of that name is replaced only by a complete one.
+    """
     checks.instance(drawn, "drawn", (Axes, Figure))
     made = drawn if isinstance(drawn, Figure) else drawn.figure
-    made.savefig(checks.path(path), dpi=140)
+    target, content = checks.path(path), io.BytesIO()
+    if not target.suffix:
+        target = target.with_suffix(".png")
+    made.savefig(content, format=target.suffix[1:], dpi=140)
+    write_bytes(target, content.getvalue())
 
 
 def plot_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:

@@ -201,10 +201,12 @@ def _target(path: str | PathLike) -> Path:
     target = Path(os.path.realpath(given))
     if target.is_symlink():
         raise OSError(f"path: {str(given)!r} is a link that leads to itself")
-    if target.is_dir():
-        raise IsADirectoryError(f"path: needs the name of a file, {str(given)!r} is a folder")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"path: the folder {str(target.parent)!r} does not exist; make it")
+    if target.is_dir() or os.fspath(path).endswith(("/", os.sep)):  # which Path leaves out
+        raise IsADirectoryError(f"path: needs the name of a file, {os.fspath(path)!r} is a folder")
+    # realpath takes 'none/../a.npz' for 'a.npz', which no system does
+    for folder in (Path.cwd() / given.parent, target.parent):
+        if not folder.is_dir():
+            raise FileNotFoundError(f"path: the folder {str(folder)!r} does not exist; make it")
     if target.exists():
         if not target.is_file():
             raise OSError(f"path: needs the name of a file, {str(given)!r} is a device")

@@ -2,11 +2,15 @@
 
 import os
 import stat
+import threading
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
 from small_results import STORED
 
+from exudyn_rotor import plotting
 from exudyn_rotor.storage import read_arrays, write_arrays
 from validation import savers
 
@@ -15,7 +19,9 @@ from validation import savers
     ("path", "kind", "message"),
     [
         ("none/a.npz", FileNotFoundError, r"path: the folder '.*none' does not exist"),
+        ("none/../a.npz", FileNotFoundError, r"path: the folder '.*none/\.\.' does not exist"),
         (".", IsADirectoryError, "path: needs the name of a file"),
+        ("none/", IsADirectoryError, "path: needs the name of a file, 'none/' is a folder"),
         (3, TypeError, "path: needs the path of a file"),
         ("", ValueError, "path: needs the path of a file"),
         ("loop", OSError, "path: 'loop' is a link that leads to itself"),
@@ -100,9 +106,50 @@ def test_interrupted_saves_leave_the_old_file_and_no_draft(step, tmp_path, monke
     assert os.listdir(tmp_path) == ["a.npz"]
 
 
+def test_pictures_replace_old_ones_when_they_are_complete(tmp_path, monkeypatch):
+    made = pyplot.figure()
+    for name, start in (("a", b"\x89PNG"), ("a.SVG", b"<?xml")):
+        plotting.save(made, tmp_path / name)
+        assert next(tmp_path.glob(f"{name}*")).read_bytes().startswith(start)
+    before = (tmp_path / "a.png").read_bytes()
+    whole = Figure.savefig
+
+    def half(drawn, target, **options):
+        whole(drawn, target, **options)
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(Figure, "savefig", half)
+    pyplot.plot([0.0, 1.0])
+    with pytest.raises(OSError, match="no space"):
+        plotting.save(made, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == ["a.SVG", "a.png"]
+
+
 def test_killed_savers_and_a_reader_lose_nothing(tmp_path):
     pairs = savers.killed_pairs(tmp_path, 2)
     assert (pairs.lost, pairs.unreadable) == (0, 0)
     reader = savers.beside_a_reader(tmp_path, 1.0)
     assert (reader.lost, reader.unreadable) == (0, 0)
     assert min(pairs.saves, reader.saves, reader.loads) >= 3
+
+
+def test_savers_in_threads_beside_readers_lose_nothing(tmp_path):
+    path, failed = tmp_path / "a.npz", []
+    write_arrays(path, savers.KIND, savers.content(9, 0))
+
+    def work(saver):
+        try:
+            for count in range(3):
+                write_arrays(path, savers.KIND, savers.content(saver, count))
+                savers.check(path)
+        except Exception as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=work, args=(saver,)) for saver in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed
+    assert os.listdir(tmp_path) == ["a.npz"]

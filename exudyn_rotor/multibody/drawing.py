@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
-from os import PathLike, fspath
+from os import PathLike
 
 import exudyn
 from exudyn import interactive
+from matplotlib import pyplot
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.storage import write_bytes
 
 _LARGEST = 32768  # pixels along an edge
 
@@ -29,7 +32,7 @@ def draw_scene(
     ----------
     SC : exudyn.SystemContainer
     path : path-like
-        PNG file to write.
+        PNG file to write; one of that name is replaced only by a complete one.
     deformation_scale : float
         Factor on the local displacements of flexible bodies.
     contour : exudyn.OutputVariableType, optional
@@ -59,6 +62,7 @@ def draw_scene(
     settings.contour.outputVariable = contour or exudyn.OutputVariableType._None
     settings.contour.outputVariableComponent = -1
     settings.nodes.show = False
-    interactive.ShowImage(
-        SC, size=width_and_height, modelRotation=view, show=False, fileName=fspath(target)
-    )
+    image = interactive.ShowImage(SC, size=width_and_height, modelRotation=view, show=False)
+    content = io.BytesIO()
+    pyplot.imsave(content, image, format="png")
+    write_bytes(target, content.getvalue())
