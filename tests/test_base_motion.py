@@ -258,7 +258,10 @@ def test_a_record_from_a_file(tmp_path):
     np.testing.assert_allclose(found.at([0.25, 2.0])[:, 0], [0.15 * 9.80665, 0.0])
     (tmp_path / "spaces.txt").write_text("0 1 2 3\n1 1 2 3\n", encoding="utf-8")
     assert BaseRecord.from_csv(tmp_path / "spaces.txt", "gal").peak == pytest.approx(0.14**0.5 / 10)
+    (tmp_path / "excel.csv").write_text("0;1;2;3\n1;4;5;6\n2;7;8;9\n", encoding="utf-8-sig")
+    assert BaseRecord.from_csv(tmp_path / "excel.csv", "m/s²").at([0.0])[0, 0] == 1.0
     for text, match in (
+        ("0,1,a,3\n1,1,2,3\n2,1,2,3\n", "line 1: could not"),
         ("0,1,2\n1,1,2\n", "line 1: needs time and three"),
         ("0,1,2,3\n1,a,2,3\n", "line 2: could not"),
         ("t,x,y,z\n", "times: needs two or more"),

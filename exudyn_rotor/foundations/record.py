@@ -75,7 +75,8 @@ class BaseRecord:
     def from_csv(cls, path: str | PathLike, unit: str) -> BaseRecord:
         """Read lines of time [s] and three accelerations, parted by comma, semicolon or space.
 
-        Lines that begin with ``#``, and one line of names at the beginning, are left out.
+        Lines that begin with ``#``, and one line of names at the beginning, are left out; names do
+        not begin with a number.
 
         Parameters
         ----------
@@ -84,7 +85,7 @@ class BaseRecord:
             Of the accelerations.
         """
         factor = UNITS[checks.choice(unit, "unit", UNITS)]
-        with open(checks.path(path), encoding="utf-8") as file:
+        with open(checks.path(path), encoding="utf-8-sig") as file:  # Excel marks UTF-8
             lines = [line.split("#")[0].replace(";", ",") for line in file]
         filled = [(n, line) for n, line in enumerate(lines, 1) if line.strip()]
         rows = []
@@ -93,7 +94,7 @@ class BaseRecord:
             try:
                 rows.append([float(word) for word in words])
             except ValueError as error:
-                if index > 0:
+                if index > 0 or _is_number(words[0]):
                     raise ValueError(f"{path}, line {number}: {error}") from error
                 continue
             if len(rows[-1]) != 4:
@@ -162,6 +163,14 @@ class BaseRecord:
         velocity = v[index] + s * a[index] + s**2 / 2.0 * slope
         place = u[index] + s * v[index] + s**2 / 2.0 * a[index] + s**3 / 6.0 * slope
         return velocity, place + past * velocity
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _at(record: BaseRecord, time: np.ndarray) -> np.ndarray:
