@@ -93,7 +93,10 @@ def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     extent = np.ptp(nodes, axis=0)
     size = f"{total_mass:.3g} kg in a box of {' × '.join(f'{side:.3g}' for side in extent)} m"
     if total_mass > LARGEST_MASS:
-        raise ValueError(f"units: {size} cannot be a rotor; lengths in mm? {_ADVICE}")
+        raise ValueError(
+            f"units: {size} cannot be a rotor; lengths in mm, as Netgen reads all STEP files? "
+            f"shape.Scale(Pnt(0, 0, 0), 1e-3) has metres; {_ADVICE}"
+        )
     if total_mass > USUAL_MASS:
         warnings.warn(
             f"units: {size}: few rotors are that heavy; lengths in mm? Arrays are in m, kg, s; "
