@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from models import disc_rotor
 from point_rotors import ring_rotor
 
-from exudyn_rotor import SolidRotor, Support
+from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, unbalance_response
+from exudyn_rotor.advice import mode_choice
 from exudyn_rotor.advice.candidate import candidate
 from exudyn_rotor.advice.mode_choice import critical, resonances
 from exudyn_rotor.advice.request import Request
@@ -75,3 +77,29 @@ def test_change_by_the_full_level_without_supports(speed):
     change = np.sqrt(1.0 + (speed / 100.0) ** 2) - 1.0
     assert not level.known
     assert level.full == pytest.approx(change, rel=0.5 * (speed / 100.0) ** 2)
+
+
+@pytest.mark.parametrize("stiffness", [1e7, 1e8])
+def test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that(stiffness):
+    """An eccentric rotor at 300 rad/s against its full model.
+
+    The load, the last, is at rest in the rotor frame. It grows by 0.05 Ω there, which adds 5 % to
+    the stiffness of supports by their damping.
+    """
+    solid = disc_rotor().center_interfaces().add_point_mass([0.15, 0, 0.215], 0.05)
+    reduced, speed = solid.reduce(craig_bampton_modes(solid, 12, coupling="RBE3")), 300.0
+    springs = stiffness * np.eye(3)
+    supports = [Support(name, springs, springs / speed) for name in ("left", "right")]
+    given = candidate(reduced, None, supports, None, None)
+    request, plan = Request.of(speed, None, 1e-3), [(speed, [0.0])]
+    found, attached = (
+        mode_choice._responses(one, request, plan).complete[0][:, -1]
+        for one in (given, given.attached)
+    )
+    full, ours = (
+        unbalance_response(r, [speed], supports=supports, accuracy=None).motion[..., :3].ravel()
+        for r in (solid, reduced)
+    )
+    error = np.linalg.norm(ours - full) / np.linalg.norm(full)
+    missing = np.linalg.norm(found - attached) / np.linalg.norm(attached)
+    assert missing == pytest.approx(error, rel=0.1)

@@ -52,6 +52,8 @@ class Candidate:
         Load of a unit acceleration along (n1, n2, e).
     attached : Candidate or None
         The same with attachment modes; None where that is not known, as in a scene.
+    held : tuple of int
+        Coordinates of `source` without a steady motion: the spin, where nothing holds it.
     """
 
     source: LinearRotor | LinearScene
@@ -65,6 +67,7 @@ class Candidate:
     interfaces: tuple[str, ...]
     translations: np.ndarray
     attached: Candidate | None = None
+    held: tuple[int, ...] = ()
     _systems: dict[float, PeriodicSystem] = field(default_factory=dict, repr=False)
 
     @property
@@ -164,7 +167,20 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
         interfaces=_named(interfaces, tuple(reduced.interfaces)),
         translations=axes_of(reduced.axis).T @ source.invariants.S,
         attached=attached,
+        held=_free_spin(reduced, source),
     )
+
+
+def _free_spin(reduced: ReducedRotor, source: LinearRotor) -> tuple[int, ...]:
+    """Return where the spin stands if nothing holds it: it has no steady motion.
+
+    Loads that grow slowly would turn an eccentric rotor, and its interfaces with it, by far more
+    than they move them.
+    """
+    alone = getattr(source, "plain", source)
+    if alone.free_spin is None or ModeKind.SPIN not in reduced.rigid_kinds:
+        return ()
+    return (reduced.rigid_kinds.index(ModeKind.SPIN),)
 
 
 def _acts_along(support: Support) -> bool:

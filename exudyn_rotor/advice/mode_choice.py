@@ -192,6 +192,7 @@ def _coordinates(given: Candidate, size: int, count: int) -> tuple[np.ndarray, n
     starts = size * np.arange(count)
     places = given.places[:, None] + starts
     used = np.arange(size * count) if given.supported else np.sort(places.ravel())
+    used = used[~np.isin(used % size, given.held)]
     return used, np.searchsorted(used, places)
 
 

@@ -138,6 +138,11 @@ ADVICE = [
     ),
     *mutations(
         "advice/mode_choice.py",
+        "test_advice_linear.py::test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that",
+        ("free spin not held", "used[~np.isin(used % size, given.held)]", "used"),
+    ),
+    *mutations(
+        "advice/mode_choice.py",
         "test_advice.py::test_share_of_flexibility_is_that_of_the_modes",
         (
             "modes left out are doubled",
