@@ -177,8 +177,7 @@ def _free_spin(reduced: ReducedRotor, source: LinearRotor) -> tuple[int, ...]:
     Loads that grow slowly would turn an eccentric rotor, and its interfaces with it, by far more
     than they move them.
     """
-    alone = getattr(source, "plain", source)
-    if alone.free_spin is None or ModeKind.SPIN not in reduced.rigid_kinds:
+    if source.free_spin is None or ModeKind.SPIN not in reduced.rigid_kinds:
         return ()
     return (reduced.rigid_kinds.index(ModeKind.SPIN),)
 
