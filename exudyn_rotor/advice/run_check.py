@@ -109,7 +109,8 @@ def check_run(
 
     ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
     the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
-    what a resonance makes of the modes' error, and how missing modes ring after a sudden start.
+    what a resonance makes of the modes' error, how forces of stiff supports change with it, how
+    missing modes ring after a sudden start, and how damping delays the static stress of a fast one.
 
     ===================  =======  ==================================================================
     name                 limit    meaning
