@@ -68,7 +68,7 @@ def test_limit_without_damping_at_rest_is_named(damping):
 
 @pytest.mark.parametrize("distance", [0.0, 1e-12, -1e-9, 1e-7])
 def test_motions_on_uneven_supports_keep_their_names(distance):
-    """Periodic equations: each mass moves at √(k/m) of one direction, to and fro."""
+    """Periodic equations: each mass moves at √(k/m) of one direction, forward and back."""
     supports = [Support(end, np.diag([2e4, 3e4])) for end in ENDS]
     speed = 100.0 * (1.0 + distance)
     diagram = campbell(rod(SKEW_AXIS), [speed], supports=supports)
