@@ -7,6 +7,7 @@ from validation.mutations.lists.energy import ENERGY
 from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
+from validation.mutations.lists.linear_exponents import LINEAR_EXPONENTS
 from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
 from validation.mutations.lists.linear_stability import LINEAR_STABILITY
@@ -36,6 +37,7 @@ ALL = (
     *ENERGY,
     *LINEAR_MODELS,
     *LINEAR_PERIODIC,
+    *LINEAR_EXPONENTS,
     *LINEAR,
     *LINEAR_STABILITY,
     *TRAINS,
