@@ -18,12 +18,11 @@ import numpy as np
 from exudyn_rotor.linear.periodic.eigenvalues import all_quadratic_modes, resolved
 from exudyn_rotor.linear.periodic.floquet_modes import (
     FloquetModes,
-    as_modes,
-    beside_free,
+    apart_from_free,
+    constant_apart_from_free,
     gone,
     one_of_each_family,
 )
-from exudyn_rotor.linear.periodic.free_directions import FreeDirections, parted
 from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import solve_hill
@@ -79,11 +78,8 @@ def motions(
     check_eigen(system, method)
     if system.stands_still and method != "floquet":
         return constant_motions(ConstantSystems.of([system]), shapes)[0]
-    apart = FreeDirections.of(system)
-    if apart is None:
-        return _periodic_motions(system, method, tolerance)
-    found = _periodic_motions(system.projected(apart.others), method, tolerance)
-    return beside_free(found, apart, 2)
+    solve = partial(_periodic_motions, method=method, tolerance=tolerance)
+    return apart_from_free(system, solve, 2)
 
 
 def _periodic_motions(system: PeriodicSystem, method: str, tolerance: float) -> FloquetModes:
@@ -111,11 +107,8 @@ def _periodic_motions(system: PeriodicSystem, method: str, tolerance: float) -> 
 
 def constant_motions(systems: ConstantSystems, shapes: bool = True) -> list[FloquetModes]:
     """Return what :func:`motions` does of systems that do not change in time."""
-    found: dict[int, FloquetModes] = {}
-    for rows, few, apart in parted(systems):
-        solved = all_quadratic_modes(few, shapes)
-        found |= zip(rows.tolist(), as_modes(solved, apart, 2), strict=True)
-    return [found[row] for row in range(len(systems.D))]
+    solve = partial(all_quadratic_modes, shapes=shapes)
+    return constant_apart_from_free(systems, solve, 2)
 
 
 def descending(values: np.ndarray) -> np.ndarray:

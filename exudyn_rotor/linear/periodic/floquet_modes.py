@@ -8,7 +8,7 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -93,10 +93,7 @@ def floquet_modes(system: PeriodicSystem, *, tolerance: float = 1e-8) -> Floquet
     """
     if system.stands_still:
         return constant_modes(ConstantSystems.of([system]))[0]
-    apart = FreeDirections.of(system)
-    if apart is None:
-        return _floquet_modes(system, tolerance)
-    return beside_free(_floquet_modes(system.projected(apart.others), tolerance), apart, 1)
+    return apart_from_free(system, partial(_floquet_modes, tolerance=tolerance), 1)
 
 
 def _floquet_modes(system: PeriodicSystem, tolerance: float) -> FloquetModes:
@@ -141,23 +138,37 @@ def constant_modes(systems: ConstantSystems, once: bool = False) -> list[Floquet
 
     `once` is that of :func:`.eigenvalues.less_damped`.
     """
+    return constant_apart_from_free(
+        systems, lambda few: quadratic_modes(few.M[0], few.D, few.K, few.rounding, once), 1
+    )
+
+
+def apart_from_free(
+    system: PeriodicSystem, solve: Callable[[PeriodicSystem], FloquetModes], copies: int
+) -> FloquetModes:
+    """Return what `solve` finds of a system without its free directions, and `copies` of these."""
+    apart = FreeDirections.of(system)
+    if apart is None:
+        return solve(system)
+    return _beside_free(solve(system.projected(apart.others)), apart, copies)
+
+
+def constant_apart_from_free(
+    systems: ConstantSystems, solve: Callable[[ConstantSystems], Sequence[tuple]], copies: int
+) -> list[FloquetModes]:
+    """Return as :func:`apart_from_free` of systems that do not change in time.
+
+    `solve` returns what eigenvalue problems give of several of them.
+    """
     found: dict[int, FloquetModes] = {}
     for rows, few, apart in parted(systems):
-        solved = quadratic_modes(few.M[0], few.D, few.K, few.rounding, once)
-        found |= zip(rows.tolist(), as_modes(solved, apart, 1), strict=True)
+        for row, (values, vectors, *rest) in zip(rows.tolist(), solve(few), strict=True):
+            modes = FloquetModes(values, vectors[None], np.array([0]), *rest)
+            found[row] = modes if apart is None else _beside_free(modes, apart, copies)
     return [found[row] for row in range(len(systems.D))]
 
 
-def as_modes(
-    solved: Sequence[tuple], apart: FreeDirections | None, copies: int
-) -> Iterator[FloquetModes]:
-    """Yield what eigenvalue problems gave, with `copies` of the free directions they lack."""
-    for values, vectors, resolution, bounds in solved:
-        modes = FloquetModes(values, vectors[None], np.array([0]), resolution, bounds)
-        yield modes if apart is None else beside_free(modes, apart, copies)
-
-
-def beside_free(modes: FloquetModes, apart: FreeDirections, copies: int) -> FloquetModes:
+def _beside_free(modes: FloquetModes, apart: FreeDirections, copies: int) -> FloquetModes:
     """Return motions of all other directions together with `copies` of the free ones."""
     given, count = apart.others @ modes.vectors, copies * apart.free.shape[1]
     vectors = np.zeros((*given.shape[:2], count + given.shape[2]), dtype=complex)
