@@ -9,7 +9,7 @@ from void_films import CLEARANCE, SKEW, TO_X, bearings, oil, rotor, scene
 from void_films import SPEED as RIGID_SPEED
 
 from exudyn_rotor import Foundation, JournalBearing, Mount, Support, bearing_loads, linear_model
-from exudyn_rotor.bearings.journal_bearing import TangentFilm
+from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.linear.models.scene import remembering_scene
 from exudyn_rotor.linear.periodic.exponents import exponents
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError

@@ -18,7 +18,6 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.support import Support
 
 _STEP = 1e-4  # of the clearance: of the tangent by which a film too thin goes on
-_REST = 1e-6  # of c Ω: the velocity of a journal at rest
 LITTLE, _GRAVITY = 1e-2, 9.81  # of the mass that the film carries: what counts for its states
 _AT_ONCE = 1e-7  # s/rad: what counts as the shortest step of time, times the step of the grid
 
@@ -164,91 +163,6 @@ class _OfVoids:
 
     def __call__(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         return self.bearing._state(speed, None).void_states.matrices(self.mass)
-
-
-class TangentFilm:
-    """Force of a journal bearing that goes on by its tangent, once held, from the next place.
-
-    The tangent is :func:`tangent_of`: differences would cross the places at which the film's edge
-    moves to the next node.
-
-    Attributes
-    ----------
-    bearing : JournalBearing
-    stiff : bool
-        Whether the force changes by the tangent; without, it stays that of the place.
-    seen : list of tuple or None
-        Place (2,) [m] and force (2,) [N] wherever it has been held; None outside the film.
-    """
-
-    def __init__(self, bearing: JournalBearing) -> None:
-        self.bearing, self._film, self._gap = bearing, bearing.film, bearing._gap
-        self.stiff = True
-        self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
-        self._state: FilmState | None = None
-        self._whole = FilmLaw(bearing.film, torque=True)
-        self._gradient: np.ndarray | None = None
-        self._held = False
-
-    def hold(self, held: bool) -> None:
-        """Hold the force by the tangent from the next place on, or let it go."""
-        self._held, self._gradient = held, None
-
-    def law(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float]:
-        """Return the force as :attr:`Bearing.law`."""
-        return self.law_with_torque(x, y, vx, vy, angle, speed)[:2]
-
-    def law_with_torque(
-        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
-    ) -> tuple[float, float, float]:
-        """Return force and torque as :attr:`Bearing.law_with_torque`; the torque has no tangent.
-
-        So in linear equations of a scene, as in those of a rotor on supports, friction does not
-        change with the motion.
-        """
-        motion = np.array([x, y, vx, vy])
-        if self._held and self._gradient is None:
-            self._hold_at(motion, speed)
-        if self._gradient is None:
-            self._check_rest(vx, vy, speed)
-            return self._whole(x, y, vx, vy, angle, speed)
-        state = self._state
-        change = self._gradient @ (motion - np.append(state.position, state.velocity))
-        fx, fy = (state.force - change).tolist()
-        return fx, fy, -state.torque
-
-    def _hold_at(self, motion: np.ndarray, speed: float) -> None:
-        """Take the tangent at a place and velocity (4,), if the film is resolved there."""
-        self._held = hypot(*motion[:2]) <= self._whole._to_the_edge(*motion[:2].tolist())
-        if self._held:
-            self._state = self._film._state(motion[:2], motion[2:], speed)
-            tangent = tangent_of(self._state) if self.stiff else np.zeros((2, 2, 2))
-            self._gradient = np.hstack(tangent)
-        self.seen.append((motion[:2], self._state.force) if self._held else None)
-
-    def _check_rest(self, vx: float, vy: float, speed: float) -> None:
-        """Refuse the motion of a film with a memory."""
-        if self.bearing.remembers and hypot(vx, vy) > _REST * self._film.clearance * abs(speed):
-            raise ValueError(
-                f"bearing at {self.bearing.interface!r}: a film with cavitation="
-                "'mass-conserving' has no force by place and velocity alone, so that a moving "
-                "journal is found by a run only; leave the unbalance out (linear_model(…, "
-                "about='equilibrium')), or begin a run with the steady_state of the same scene "
-                "with cavitation='reynolds'"
-            )
-
-
-def tangent_of(state: FilmState) -> tuple[np.ndarray, np.ndarray]:
-    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
-
-    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
-    where they look for an equilibrium.
-    """
-    if state.film.cavitation == "mass-conserving":
-        return state.slow_stiffness, state.slow_damping
-    return state.coefficients()
 
 
 class FilmLaw:

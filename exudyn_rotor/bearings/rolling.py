@@ -10,7 +10,8 @@ element with both rings together carry
 
     Q_j = k max(0, x cos φ_j + y sin φ_j − c)^n,                                           (2)
 
-n = 3/2 for balls, 10/9 for rollers. The sum varies with every element that passes the load: at the
+n = 3/2 for balls, 10/9 for rollers. A clearance below zero is an interference, which presses all
+elements without a load (preload). The sum varies with every element that passes the load: at the
 frequency Z κ Ω (varying compliance). Elements that roll without loss take from the spin, by the
 torque
 
@@ -60,20 +61,21 @@ class RollingBearing(Bearing):
     stiffness : float
         k of (2), of both contacts of an element together [N/m^n].
     clearance : float, optional
-        Radial clearance c [m].
+        Radial clearance c [m]; below zero an interference, by which all elements are preloaded.
     elements : {'balls', 'rollers'}, optional
     contact_angle : float, optional
         [rad].
     damping : float, optional
         Of the inner ring in all directions across the axis [N s/m].
     load : array_like, shape (2,), optional
-        Static load on the inner ring along (n1, n2) [N], which linear analyses need.
+        Static load on the inner ring along (n1, n2) [N], which linear analyses need; none by
+        default where the elements are preloaded.
 
     Raises
     ------
     TypeError, ValueError
-        For sizes that are not above zero, a negative clearance or damping, elements as large as
-        the pitch circle, or more than fit on it.
+        For sizes that are not above zero, negative damping, an interference as large as the
+        elements, elements as large as the pitch circle, or more than fit on it.
 
     Examples
     --------
@@ -102,7 +104,8 @@ class RollingBearing(Bearing):
         checks.count(self.count, "count", least=3)
         sizes = {"pitch_radius": "m", "element_radius": "m", "stiffness": "N/m^n"}
         checks.keep_numbers(self, sizes, above=0.0)
-        checks.keep_numbers(self, {"clearance": "m", "damping": "N s/m"}, least=0.0)
+        checks.keep_numbers(self, {"clearance": "m"}, above=-self.element_radius)
+        checks.keep_numbers(self, {"damping": "N s/m"}, least=0.0)
         checks.choice(self.elements, "elements", _EXPONENTS)
         checks.keep_numbers(self, {"contact_angle": "rad"}, least=0.0, below=pi / 2)
         if self.element_radius >= self.pitch_radius * sin(pi / self.count):
@@ -110,6 +113,10 @@ class RollingBearing(Bearing):
                 f"element_radius: {self.count} elements of {self.element_radius:g} m do not fit "
                 f"on a pitch circle of {self.pitch_radius:g} m"
             )
+
+    @property
+    def _unloaded(self) -> bool:
+        return self.clearance < 0.0
 
     @property
     def cage_ratio(self) -> float:
@@ -183,18 +190,21 @@ class RollingBearing(Bearing):
         Raises
         ------
         TypeError, ValueError
-            For bad input, a missing load, and no load, for which a ring with clearance has no
-            equilibrium.
+            For bad input, a missing load, and no load, for which a ring has an equilibrium in
+            preloaded elements alone.
         """
         checks.number(speed, "speed", "rad/s")
         checks.number(angle, "angle", "rad")
         load = self._static_load(load)
         weight = hypot(*load)
+        if weight == 0.0 and self.clearance < 0.0:
+            return np.zeros(2)
         if weight == 0.0:
             raise ValueError("load: needs a force other than 0: without one no element carries")
         depth = float(depth_under(self, weight))
         # there one element carries, wherever they stand
-        place = (self.clearance / cos(pi / self.count) + 1.5 * depth) * load / weight
+        far = max(self.clearance, 0.0) / cos(pi / self.count) + 1.5 * depth
+        place = far * load / weight
         soft = _SOFT * weight / depth * np.eye(2)  # against a single element's free direction
 
         def lacking(place: np.ndarray) -> np.ndarray:
@@ -210,8 +220,9 @@ class RollingBearing(Bearing):
             place = place + step_share(slope) * step
             if np.abs(step).max() < _CONVERGED * depth:
                 break
-        # what a place knows of the depth of contact, with a wide clearance and a small load
-        rounding = 10.0 * np.finfo(float).eps * np.abs(place).max() * np.abs(tangent).max()
+        # of the depth of contact, with a small load and a wide clearance or a large preload
+        size = np.abs(place).max() + abs(self.clearance)
+        rounding = 10.0 * np.finfo(float).eps * size * np.abs(tangent).max()
         if np.abs(lacking(place)).max() > 1e-9 * weight + rounding:
             raise ValueError(
                 f"load: bearing at {self.interface!r}: no equilibrium found under {weight:g} N"

@@ -37,8 +37,9 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
+_HELD = 1e-6  # of its stiffness: what goes where no pad holds the journal
 _CLOSE = 1e-9  # of the load: it stops there
-_TILTS = 24  # tried, between those at which an edge touches
+_TILTS = 26  # tried, between those at which an edge is as thin as the grid resolves
 _SMALL = 1e-9  # of the largest moment, or of a force: none
 _BARELY = 1e-3  # of μ Ω L (R/c)³: the stiffness of a film about to vanish
 _NEAR, _STILL = 8, 1e-12  # steps from the last tilt, and what of the radius counts as none
@@ -173,6 +174,15 @@ class TiltingPadBearing(Bearing):
         Z = self._state(speed, load).impedance(whirl)
         return Z.real, Z.imag / whirl
 
+    def film_coefficients(
+        self, speed: float, load: ArrayLike | None = None
+    ) -> list[tuple[np.ndarray, np.ndarray] | None]:
+        """Return stiffness and damping of each pad's film, (2, 2); None for absent pads.
+
+        Parameters and errors are those of :meth:`equilibrium`.
+        """
+        return self._state(speed, load).coefficients
+
     def linearised(self) -> Support | PadSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
 
@@ -216,8 +226,10 @@ class TiltingPadBearing(Bearing):
             best = min(best, np.linalg.norm(left))
             if vain == _VAIN:
                 break
-            move = np.linalg.lstsq(state.impedance(0.0).real, left, rcond=1e-12)[0]
-            state = state.after(move * min(1.0, far / max(np.linalg.norm(move), 1e-300)), load)
+            stiffness = state.impedance(0.0).real
+            held = stiffness + _HELD * max(np.trace(stiffness), size / far) * np.eye(2)
+            move = np.linalg.solve(held, left)
+            state = state.after(move * min(1.0, far / np.linalg.norm(move)), load)
         raise ArithmeticError(
             f"bearing at {self.interface!r}: no equilibrium of the pads found under {size:g} N at "
             f"{speed:g} rad/s: {np.linalg.norm(left) / size:.1e} of the load is left"
@@ -259,17 +271,21 @@ class _Pads:
         return replace(self, place=place, shifts=shifts, states=states)
 
     def after(self, move: np.ndarray, load: np.ndarray) -> _Pads:
-        """Return the pads after a move, shortened until their force comes closer to the load."""
-        left = np.linalg.norm(self.force + load)
+        """Return the pads after a move, shortened until it does not overshoot.
+
+        A pad's force goes through its pivot, and with the tilt of (1) depends on the place along
+        that line alone. So force and load are the slope of a potential, with one minimum where
+        each pad carries the more the closer the journal is.
+        """
+        ahead, found = (self.force + load) @ move, None
         for _ in range(_SHORTER):
             try:
                 found = self.at(self.place + move)
-                if np.linalg.norm(found.force + load) < left:
+                if (found.force + load) @ move > -0.5 * ahead:
                     return found
             except ValueError as error:
                 refused = error
-                found = None
-            move = 0.5 * move
+            move, ahead = 0.5 * move, 0.5 * ahead
         if found is None:
             raise refused
         return found
@@ -333,11 +349,12 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: 
     lever = u @ t
     low = np.max(-room[lever > 0.0] / lever[lever > 0.0], initial=-np.inf)
     high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
+    pressed = ValueError(
+        f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
+        "resolve; give more nodes, or a smaller load"
+    )
     if not low < high:
-        raise ValueError(
-            f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
-            "resolve; give more nodes, or a smaller load"
-        )
+        raise pressed
 
     empty = None
 
@@ -364,11 +381,17 @@ def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: 
     def moment(s: float) -> float:
         return float(t @ at(s).force)
 
-    tried = np.linspace(low, high, _TILTS + 2)[1:-1]
+    # beside that of a film whose edges are equally thick, next to which a light pad is
+    even = float((place - film.pads[0].center) @ t)
+    tried = np.linspace(low, high, _TILTS)
+    tried = np.sort(np.append(tried, even)) if low < even < high else tried
     found = np.array([moment(s) for s in tried])
     small = _SMALL * np.abs(found).max()
     rises = np.flatnonzero((found[:-1] < -small) & (found[1:] > small))
     if not len(rises):
+        thin_end = found[0] if speed > 0.0 else -found[-1]  # where the film narrows the most
+        if thin_end > small:
+            raise pressed
         return np.nan
     found = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
     held = at(found).coefficients()[0]

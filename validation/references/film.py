@@ -259,16 +259,26 @@ def tilting_cases() -> list[tuple[str, TiltingPadBearing, np.ndarray]]:
     return cases
 
 
+def pads_torque(bearing: TiltingPadBearing, speed: float) -> float:
+    """Return the torque over c W of the pads and, beside a single one, of two about the middle."""
+    states = [state for state in bearing._state(speed, None).states if state is not None]
+    oil = bearing.film
+    beside = VISCOSITY * speed * RADIUS**3 * oil.length * oil.pads[0].arc / CLEARANCE
+    idle = 2.0 * beside if len(oil.pads) == 1 else 0.0
+    return (sum(state.torque for state in states) + idle) / (CLEARANCE * LOAD)
+
+
 def tilting() -> list[str]:
     """Return Someya's tilting pads beside ours, whirl at the speed, deviations along the load."""
-    lines = ["tilting pads, load      S      ε: table   here   stiffness   damping"]
+    lines = ["tilting pads, load      S      ε: table   here    torque   stiffness   damping"]
     for title, bearing, table in tilting_cases():
         for s, ratio, *his in table:
             speed = spin(bearing.film, s)
             place = np.linalg.norm(bearing.equilibrium(speed)) / CLEARANCE
             stiffness, damping = bearing.coefficients(speed)
             unit = CLEARANCE / LOAD
-            ours = unit * stiffness[0, 0], unit * speed * damping[0, 0]
+            torque = pads_torque(bearing, speed)
+            ours = torque, unit * stiffness[0, 0], unit * speed * damping[0, 0]
             lines.append(
                 f"{title:16} {s:10.4f} {ratio:8.2f} {place:9.4f}"
                 + "".join(f"{a / b - 1.0:10.1%}" for a, b in zip(ours, his, strict=True))

@@ -12,9 +12,9 @@ mboct-mbdyn-pkg hold it (inst/mbdyn_post_ehd_load_output_01.tst and 02).
 
 Columns: S, ε, attitude [°]; SOMEYA side flow over c R Ω L and torque over c W; stiffness over W/c
 (11, 12, 21, 22; 1 along the load), damping over W/(c Ω). ε and c are those of the pads' clearance,
-ε of SOMEYA_ELLIPTICAL that of the least. SOMEYA_TILTING: S, ε, stiffness, damping along the load.
-BUTENSCHOEN: ε; of a journal that turns, load over μ Ω L D (R/c)², attitude [°] and side flow over
-c R² Ω; of one that moves to the bore and away from it, load over μ (ė/c) L D (R/c)².
+ε of SOMEYA_ELLIPTICAL that of the least. SOMEYA_TILTING: S, ε, torque, stiffness and damping along
+the load. BUTENSCHOEN: ε; of a journal that turns, load over μ Ω L D (R/c)², attitude [°] and side
+flow over c R² Ω; of one that moves to the bore and away from it, load over μ (ė/c) L D (R/c)².
 """
 
 import numpy as np
@@ -154,28 +154,35 @@ BUTENSCHOEN = {
 0.95 6.9248   15.632  0.4687  205.15   0.0351
 """,
 }
-# four tilting pads, the load between two (p. 83) or on one (p. 107), without the rows under light
-# loads, where it matters what pads do that carry nothing
+# four tilting pads, the load between two (p. 83) or on one (p. 107)
 SOMEYA_TILTING = {
     "between": """
-0.756  0.5 1.94 3.33
-0.550  0.6 2.26 3.21
-0.381  0.7 2.65 3.06
-0.259  0.8 3.15 3.01
-0.168  0.9 3.72 2.97
-0.103  1.0 4.47 2.99
-0.0576 1.1 5.63 3.11
-0.0277 1.2 7.83 3.05
+5.76   0.1 54.3 0.901 10.8
+2.67   0.2 27.4 1.22  6.03
+1.59   0.3 17.7 1.46  4.37
+1.05   0.4 12.9 1.68  3.61
+0.756  0.5 10.3 1.94  3.33
+0.550  0.6 8.39 2.26  3.21
+0.381  0.7 6.64 2.65  3.06
+0.259  0.8 5.27 3.15  3.01
+0.168  0.9 4.10 3.72  2.97
+0.103  1.0 3.14 4.47  2.99
+0.0576 1.1 2.34 5.63  3.11
+0.0277 1.2 1.65 7.83  3.05
 """,
     "on": """
-0.507   0.4  2.77 4.93
-0.316   0.5  3.45 4.67
-0.185   0.6  4.43 4.57
-0.0987  0.7  5.83 4.55
-0.0449  0.8  7.99 4.73
-0.0272  0.85 10.3 5.10
-0.0143  0.9  14.5 5.86
-0.00529 0.95 27.5 7.35
+5.96    0.05 79.8  0.524 20.8
+3.25    0.1  44.3  0.868 12.7
+1.42    0.2  20.3  1.67  7.18
+0.795   0.3  12.0  2.25  5.39
+0.507   0.4  8.18  2.77  4.93
+0.316   0.5  5.57  3.45  4.67
+0.185   0.6  3.69  4.43  4.57
+0.0987  0.7  2.36  5.83  4.55
+0.0449  0.8  1.44  7.99  4.73
+0.0272  0.85 1.09  10.3  5.10
+0.0143  0.9  0.780 14.5  5.86
+0.00529 0.95 0.484 27.5  7.35
 """,
 }
 

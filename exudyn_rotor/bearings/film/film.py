@@ -6,6 +6,7 @@ isothermal, laminar, incompressible, without the oil's inertia.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +17,13 @@ from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Equation
 from exudyn_rotor.bearings.film.state import FilmState
 
-_STEPS = 100
-_CLOSE = 1e-9  # of the load: Newton's method stops there
+_STEPS, _VAIN = 100, 3  # of Newton's method, of those in vain
+_CLOSE = 1e-9  # of the load: it stops there
+# places at which it begins: over the clearance, and turned from the most likely side
+_STARTS = [
+    (ratio, np.linalg.matrix_power(np.array([[0.0, -1.0], [1.0, 0.0]]), quarters))
+    for ratio, quarters in ((0.35, 0), *itertools.product((0.5, 0.2), range(4)))
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +108,9 @@ class OilFilm(FilmData):
     def equilibrium(self, speed: float, load: ArrayLike) -> FilmState:
         """Return the film that carries a load, by Newton's method with the film's stiffness.
 
+        It begins on the side where a plain bore carries, and where that fails, all around. Of
+        several equilibria, as films that bear tension may have them, the first found is returned.
+
         Parameters
         ----------
         speed : float
@@ -116,7 +125,8 @@ class OilFilm(FilmData):
             For no load, no speed, and a load under which the film is thinner than the grid
             resolves.
         ArithmeticError
-            If no equilibrium is found.
+            If no equilibrium is found, as under a load that points into the only groove of a film
+            that conserves mass.
         """
         load = checks.vector(load, "load", "N", 2)
         checks.number(speed, "speed", "rad/s")
@@ -127,30 +137,46 @@ class OilFilm(FilmData):
             raise ValueError(
                 "speed: needs a number other than 0 rad/s: at rest a film carries nothing"
             )
-        turn = np.array([[1.0, -np.sign(speed)], [np.sign(speed), 1.0]])
-        state = self._state(0.35 * self.clearance * turn @ load / size, np.zeros(2), speed)
-        for _ in range(_STEPS):
-            unbalanced = state.force + load
-            if np.linalg.norm(unbalanced) < _CLOSE * size:
+        ahead = np.array([[1.0, -np.sign(speed)], [np.sign(speed), 1.0]]) @ load / size
+        left, thin = np.inf, False
+        for ratio, turn in _STARTS:
+            state = self._newton(ratio * self.clearance * turn @ ahead, load, speed)
+            if state is None:
+                thin = True
+                continue
+            left = min(left, float(np.linalg.norm(state.force + load)) / size)
+            if left < _CLOSE:
                 return state
-            state = self._next(state, load)
-            if state.minimum_thickness < self.thinnest:
-                raise ValueError(
-                    f"load: {size:g} N at {speed:g} rad/s presses the film below "
-                    f"{self.thinnest:.3g} m, which {self.nodes} nodes do not resolve; give more "
-                    "nodes, or a smaller load"
-                )
+        if thin:
+            raise ValueError(
+                f"load: {size:g} N at {speed:g} rad/s presses the film below "
+                f"{self.thinnest:.3g} m, which {self.nodes} nodes do not resolve; give more "
+                "nodes, or a smaller load"
+            )
         raise ArithmeticError(
-            f"film: no equilibrium found for the load {load} N at {speed:g} rad/s: "
-            f"{np.linalg.norm(unbalanced) / size:.1e} of it is left after {_STEPS} steps"
+            f"film: no equilibrium found for the load {load} N at {speed:g} rad/s: {left:.1e} of "
+            "it is left; a load that points into a groove may have none"
         )
+
+    def _newton(self, start: np.ndarray, load: np.ndarray, speed: float) -> FilmState | None:
+        """Return where Newton's method ends; None for a film thinner than the grid resolves."""
+        state, vain, size = self._state(start, np.zeros(2), speed), 0, np.linalg.norm(load)
+        for _ in range(_STEPS):
+            unbalanced = np.linalg.norm(state.force + load)
+            if unbalanced < _CLOSE * size or vain == _VAIN:
+                break
+            state = self._next(state, load)
+            if self._heights(state.position).min() < self.thinnest:
+                return None
+            vain += np.linalg.norm(state.force + load) >= unbalanced
+        return state
 
     def _next(self, state: FilmState, load: np.ndarray) -> FilmState:
         """Return the state after one step, shortened until the force comes closer to the load."""
         unbalanced = state.force + load
         move = np.linalg.lstsq(state.slow_stiffness, unbalanced, rcond=1e-12)[0]
-        before = self._heights(state.position)[0]
-        closing = before - self._heights(state.position + move)[0]
+        before = self._heights(state.position)
+        closing = before - self._heights(state.position + move)
         move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
         for _ in range(12):
             # the cells that are empty now: few steps from those of the next place

@@ -1,0 +1,230 @@
+"""Laws of bearings in the linear equations of a scene, as lists of supports have them.
+
+Linear equations have a prescribed spin, and leave out moments of a static force F₀ by small motions
+u: that it turns with what carries the bearing, and that friction on this changes, by about F₀ u.
+A part of them would be no better than none. So a law is held at a place: its torque stays what it
+is there.
+
+Where a mesh is uneven a journal moves a little under the rotor's weight, twice in a revolution.
+Without the rotor's own unbalance films are then taken about rest under their mean force: the motion
+of ε clearances would change exponents by the order of ε².
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
+from exudyn_rotor.bearings.film.state import FilmState
+from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing
+from exudyn_rotor.bearings.short_journal import ShortJournalBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+
+_REST = 1e-6  # of c Ω: the velocity of a journal at rest
+_STILL = 1e-4  # of the clearance: a motion whose square does not matter
+Tangent = tuple[np.ndarray, np.ndarray]
+
+
+class HeldLaw:
+    """Law of a bearing whose torque, once held, stays that of the next place.
+
+    Attributes
+    ----------
+    bearing : Bearing
+    tangent : tuple of ndarray or None
+        Stiffness and damping (2, 2) by which the force, once held, goes on; by default by the law.
+    seen : list of tuple or None
+        Place (2,) [m] and force (2,) [N] wherever it has been held; None outside a film.
+    """
+
+    def __init__(self, bearing: Bearing) -> None:
+        self.bearing, self._gap = bearing, bearing._gap
+        self.tangent: Tangent | None = None
+        self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
+        self._whole = self._law_of(bearing)
+        self._held = False
+        self._point: tuple[np.ndarray, Sequence[float], np.ndarray | None] | None = None
+
+    @staticmethod
+    def _law_of(bearing: Bearing) -> Law | LawWithTorque:
+        return bearing.law_with_torque or bearing.law
+
+    @property
+    def moved(self) -> float:
+        """Largest distance from the mean of places seen inside films [m]."""
+        places = np.array([place for place, _ in filter(None, self.seen)]).reshape(-1, 2)
+        apart = places - np.sum(places, axis=0) / max(len(places), 1)
+        return float(np.linalg.norm(apart, axis=1).max(initial=0.0))
+
+    def hold(self, held: bool) -> None:
+        """Let the law be held at the next place, or not any more."""
+        self._held, self._point = held, None
+
+    def law(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force as :attr:`Bearing.law`."""
+        return self._values(x, y, vx, vy, angle, speed)[:2]
+
+    @property
+    def law_with_torque(self) -> LawWithTorque | None:
+        """As :attr:`Bearing.law_with_torque`."""
+        return None if self.bearing.law_with_torque is None else self._values
+
+    def _values(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        """Return force and, where the bearing has one, torque."""
+        motion = np.array([x, y, vx, vy])
+        if self._held and self._point is None:
+            self._begin(motion, angle, speed)
+        if self._point is None:
+            return self._free(x, y, vx, vy, angle, speed)
+        start, (fx, fy, *torque), gradient = self._point
+        if gradient is None:
+            fx, fy = self._whole(x, y, vx, vy, angle, speed)[:2]
+        else:
+            less_x, less_y = (gradient @ (motion - start)).tolist()
+            fx, fy = fx - less_x, fy - less_y
+        return fx, fy, *torque
+
+    def _free(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        """Return the values where nothing is held."""
+        return self._whole(x, y, vx, vy, angle, speed)
+
+    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
+        """Hold the law at a place and velocity (4,)."""
+        gradient = None if self.tangent is None else np.hstack(self.tangent)
+        self._hold_at(motion, self._whole(*motion.tolist(), angle, speed), gradient)
+
+    def _hold_at(
+        self, motion: np.ndarray, values: Sequence[float], gradient: np.ndarray | None
+    ) -> None:
+        self._point = motion, values, gradient
+        self.seen.append((motion[:2], np.array(values[:2])))
+
+
+class TangentFilm(HeldLaw):
+    """Law of a journal bearing of finite length that, once held, goes on by its tangent.
+
+    The tangent is :func:`tangent_of` by default: differences would cross the places at which the
+    film's edge moves to the next node.
+
+    Attributes
+    ----------
+    bearing, tangent, seen
+        See :class:`HeldLaw`.
+    stiff : bool
+        Whether the force changes by the tangent; without, it stays that of the place.
+    """
+
+    bearing: JournalBearing
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        super().__init__(bearing)
+        self.stiff = True
+
+    @staticmethod
+    def _law_of(bearing: JournalBearing) -> FilmLaw:
+        return FilmLaw(bearing.film, torque=True)
+
+    @property
+    def law_with_torque(self) -> LawWithTorque:
+        """As :attr:`Bearing.law_with_torque`, of films that conserve mass, too."""
+        return self._values
+
+    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
+        """Take the tangent at a place and velocity (4,), if the film is resolved there."""
+        self._held = hypot(*motion[:2]) <= self._whole._to_the_edge(*motion[:2].tolist())
+        if not self._held:
+            self.seen.append(None)
+            return
+        state = self.bearing.film._state(motion[:2], motion[2:], speed)
+        gradient = np.hstack(self.tangent or tangent_of(state))
+        values = *state.force.tolist(), -state.torque
+        self._hold_at(motion, values, gradient if self.stiff else 0.0 * gradient)
+
+    def _free(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        """Return the values where nothing is held; refuse the motion of a film with a memory."""
+        clearance = self.bearing.film.clearance
+        if self.bearing.remembers and hypot(vx, vy) > _REST * clearance * abs(speed):
+            raise ValueError(
+                f"bearing at {self.bearing.interface!r}: a film with cavitation="
+                "'mass-conserving' has no force by place and velocity alone, so that a moving "
+                "journal is found by a run only; leave the unbalance out (linear_model(…, "
+                "about='equilibrium')), or begin a run with the steady_state of the same scene "
+                "with cavitation='reynolds'"
+            )
+        return super()._free(x, y, vx, vy, angle, speed)
+
+
+def tangent_of(state: FilmState) -> Tangent:
+    """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
+
+    Of films that conserve mass those of slow motion: the derivatives of the force that scenes have
+    where they look for an equilibrium.
+    """
+    if state.film.cavitation == "mass-conserving":
+        return state.slow_stiffness, state.slow_damping
+    return state.coefficients()
+
+
+@dataclass(frozen=True, eq=False)
+class HeldBearing:
+    """A bearing in the linear equations of a scene: the law of its film, or of every pad's.
+
+    Attributes
+    ----------
+    bearing : Bearing
+    laws : tuple of HeldLaw
+    """
+
+    bearing: Bearing
+    laws: tuple[HeldLaw, ...]
+
+    @classmethod
+    def of(cls, bearing: Bearing) -> HeldBearing:
+        """Return the laws of a bearing."""
+        pads = isinstance(bearing, TiltingPadBearing)
+        parts = bearing.pad_bearings if pads else [bearing]
+        kinds = (TangentFilm if isinstance(one, JournalBearing) else HeldLaw for one in parts)
+        return cls(bearing, tuple(kind(one) for kind, one in zip(kinds, parts, strict=True)))
+
+    @property
+    def moves(self) -> bool:
+        """Whether films have been seen to move so much that their rest is another place."""
+        if not isinstance(self.bearing, ShortJournalBearing | JournalBearing | TiltingPadBearing):
+            return False
+        if any(point is None for one in self.laws for point in one.seen):
+            return False
+        return any(one.moved > _STILL * one._gap() for one in self.laws)
+
+    def settle(self, speed: float) -> None:
+        """Let films go on as from rest under the mean of the forces seen.
+
+        Raises
+        ------
+        ValueError, ArithmeticError
+            Where there is no equilibrium.
+        """
+        forces = [np.mean([force for _, force in one.seen], axis=0) for one in self.laws]
+        load = -np.sum(forces, axis=0)
+        if isinstance(self.bearing, TiltingPadBearing):
+            tangents = self.bearing.film_coefficients(speed, load)
+        else:
+            tangents = [self.bearing.coefficients(speed, load)]
+        for law, tangent in zip(self.laws, tangents, strict=True):
+            law.tangent = tangent
+
+    def release(self) -> None:
+        """Take back what :meth:`settle` did."""
+        for law in self.laws:
+            law.tangent = None
