@@ -279,6 +279,23 @@ def test_magnets_under_weight_are_stiffer_in_one_direction(controller):
     assert distance(found, without_spin(rigid(), [*supports, AXIAL])) < 1e-6
 
 
+@pytest.mark.parametrize("weight", [95.0, 99.0])
+def test_slopes_are_exact_where_a_magnet_is_all_but_without_current(weight):
+    """No difference of forces crosses the end of its current: errors are those of rounding."""
+    gravity = [0.0, -weight, 0.0]
+    loads = bearing_loads(rigid(), ["left", "right"], gravity)
+    supports = [
+        bearing(name, actuator=MAGNETS, load=load)
+        for name, load in zip(("left", "right"), loads, strict=True)
+    ]
+    carrying = MAGNETS.current_for(np.linalg.norm(loads[0]), 0.0)
+    assert 0.9 < carrying / MAGNETS.bias_current < 1.0
+    mbs, body, _ = on_supports(rigid(), [*supports, AXIAL], spin=SPEED, gravity=gravity)
+    found = linear_model(mbs, body=body).at(SPEED)
+    assert found.order == 2
+    assert distance(found, without_spin(rigid(), [*supports, AXIAL])) < 1e-11
+
+
 # ------------------------------------------------------------------ laws and refusals
 
 

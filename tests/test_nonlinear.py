@@ -71,10 +71,10 @@ def test_linear_analyses_have_the_whole_tangent(thin_blade):
     motions = found.vectors[0][thin_blade.free]
     basis = np.linalg.qr(np.hstack([motions.real, motions.imag]))[0]
     expected = thin_blade.frequencies(thin_blade.linear_preload(speed), speed, basis)[:4]
-    assert found.frequencies_rotor[0] == pytest.approx(expected, rel=1e-6)
+    assert np.sort(found.frequencies_rotor[0]) == pytest.approx(expected, rel=1e-6)
     modes = rotor.reduce(spinning_modes(rotor, 8, [speed]))
     reduced = campbell(modes, [speed], stiffening="full").frequencies_rotor[0, :4]
-    assert reduced == pytest.approx(expected, rel=1e-5)
+    assert np.sort(reduced) == pytest.approx(expected, rel=1e-5)
 
 
 def test_orders_in_the_square_of_the_speed(rows):

@@ -16,7 +16,7 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
-from exudyn_rotor.linear.models.scene.steady_motion import check_period
+from exudyn_rotor.linear.models.scene.scene_checks import check_period
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01

@@ -162,7 +162,7 @@ class Element:
             if len(self.ends) == 1:
                 raise
             (first, _), (second, _) = self.ends
-            raise ValueError(
+            raise type(error)(  # no equilibrium is told from a speed beyond a table
                 f"{error}; it is the speed of {first!r} less that of {second!r}, which the other "
                 "order of the link's ends turns round"
             ) from None

@@ -21,7 +21,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
-from exudyn_rotor.bearings.journal_bearing import TangentFilm
+from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.calls.sparse_solver import check_solver
 from exudyn_rotor.multibody.mark import Mark, mark_of
@@ -79,7 +79,7 @@ def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectInd
 
 
 def noting_outside(
-    mbs: exudyn.MainSystem, bearing: Bearing | TangentFilm
+    mbs: exudyn.MainSystem, bearing: Bearing | HeldLaw
 ) -> Callable[[int, float, float], None]:
     """Return what a connector calls by its number and place beyond the least clearance."""
     noted = _outside(mbs)

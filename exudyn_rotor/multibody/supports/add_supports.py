@@ -61,6 +61,13 @@ class SceneSupport:
             return np.zeros(0, dtype=int)
         return np.asarray(mbs.systemData.GetObjectLTGODE2(self.objects[-1]), dtype=int)
 
+    def carrier_rotations(self, mbs: exudyn.MainSystem) -> np.ndarray:
+        """Return which coordinates of an assembled system turn what carries pads; else none."""
+        if not isinstance(self.support, TiltingPadBearing):
+            return np.zeros(0, dtype=int)
+        pad = mbs.GetMarker(mbs.GetObject(self.objects[0])["markerNumbers"][0])
+        return np.asarray(mbs.systemData.GetObjectLTGODE2(pad["bodyNumber"])[3:6], dtype=int)
+
     @property
     def uses_python(self) -> bool:
         """True when a time step calls Python for it."""

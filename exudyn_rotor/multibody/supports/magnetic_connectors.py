@@ -10,7 +10,8 @@ derivatives, does not find an equilibrium; :func:`exudyn_rotor.steady_state` doe
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import exudyn
 import numpy as np
@@ -20,12 +21,14 @@ from exudyn.itemInterface import (
     VObjectGenericODE2,
 )
 
+from exudyn_rotor.bearings.actuator import Actuator
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker
 
 _KINDS = exudyn.OutputVariableType
+Law = Callable[[float, float], float]
 
 
 def add_magnetic(
@@ -53,9 +56,58 @@ def add_magnetic(
     number = mbs.AddObject(controller)
     magnets = CartesianSpringDamper(
         markerNumbers=[base, point_marker(body, bearing.interface)],
-        springForceUserFunction=_pulled(bearing, seat, node),
+        springForceUserFunction=_pulled(bearing, [bearing.actuator.law] * 2, seat.axes, node),
     )
     return mbs.AddObject(magnets), number
+
+
+class TangentMagnets:
+    """Force of a control axis that goes on by its tangent, once held, from the next state.
+
+    Differences would cross where a magnet is without current: the coordinates of a controller have
+    so little inertia that no step of theirs is short.
+    """
+
+    def __init__(self, actuator: Actuator) -> None:
+        self._actuator, self._held = actuator, False
+        self._tangent: tuple[float, ...] | None = None
+
+    def hold(self, held: bool) -> None:
+        """Hold the force by the tangent from the next state on, or let it go."""
+        self._held, self._tangent = held, None
+
+    def law(self, current: float, place: float) -> float:
+        """Return the force [N] at a current [A] and a place [m]."""
+        if self._held and self._tangent is None:
+            force, slopes = (
+                self._actuator.law(current, place),
+                self._actuator.slopes(current, place),
+            )
+            self._tangent = current, place, force, *slopes
+        if self._tangent is None:
+            return self._actuator.law(current, place)
+        i, x, force, by_current, by_place = self._tangent
+        return force + by_current * (current - i) + by_place * (place - x)
+
+
+@contextmanager
+def tangent_magnets(body: RotorItems) -> Iterator[tuple[TangentMagnets, ...]]:
+    """Give the control axes of all magnetic bearings, whose tangents can be held."""
+    bearings = [one for one in body.supports if isinstance(one.support, MagneticBearing)]
+    pairs = [[TangentMagnets(one.support.actuator) for _ in range(2)] for one in bearings]
+
+    def let(laws: Sequence[Sequence[Law]]) -> None:
+        for one, pair in zip(bearings, laws, strict=True):
+            magnets, controller = one.objects
+            node = body.mbs.GetObject(controller)["nodeNumbers"][0]
+            function = _pulled(one.support, pair, body.standing_axes, node)
+            body.mbs.SetObjectParameter(magnets, "springForceUserFunction", function)
+
+    let([[axis.law for axis in pair] for pair in pairs])
+    try:
+        yield tuple(axis for pair in pairs for axis in pair)
+    finally:
+        let([[one.support.actuator.law] * 2 for one in bearings])
 
 
 def _sensed(
@@ -73,21 +125,23 @@ def _sensed(
     return drive
 
 
-def _pulled(bearing: MagneticBearing, seat: Seat, node: exudyn.NodeIndex) -> Callable:
-    """Return the force law of the magnets, by the controller's coordinates."""
-    own, turn, force_of = (
-        bearing.controller.realisation(),
-        bearing.control_axes,
-        bearing.actuator.law,
-    )
-    axes = turn @ seat.axes[:, :2].T  # rows: the control axes
+def _pulled(
+    bearing: MagneticBearing, laws: Sequence[Law], axes: np.ndarray, node: exudyn.NodeIndex
+) -> Callable:
+    """Return the force of the magnets by the controller's coordinates, with the law of each axis.
+
+    The columns of `axes` are n1, n2, e.
+    """
+    own, turn = bearing.controller.realisation(), bearing.control_axes
+    rows = turn @ axes[:, :2].T  # the control axes
     by_place, by_rate = (np.kron(part, turn) for part in (own.by_place, own.by_rate))
+    first, second = laws
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         read = mbs.GetNodeOutput
         currents = by_place @ read(node, _KINDS.Coordinates)
         currents += by_rate @ read(node, _KINDS.Coordinates_t)
-        a, b = (force_of(-i, x) for i, x in zip(currents, axes @ u, strict=True))
-        return (-a * axes[0] - b * axes[1]).tolist()
+        (i, j), (x, y) = currents, rows @ u
+        return (-first(-i, x) * rows[0] - second(-j, y) * rows[1]).tolist()
 
     return force

@@ -16,8 +16,7 @@ velocity is ``m · (ψ̇ − Ω e × ψ)``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 
 import exudyn
 import numpy as np
@@ -25,17 +24,13 @@ from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
-from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw, TangentFilm
-from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.held_law import HeldLaw
+from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
-from exudyn_rotor.multibody.supports.turning_base import (
-    carrying_marker,
-    in_axes_at_rest,
-    on_turning_base,
-)
+from exudyn_rotor.multibody.supports.turning_base import in_axes_at_rest, on_turning_base
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
@@ -74,7 +69,7 @@ def displacement_connector(
 
 
 def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Callable:
-    spin = _spin_reader(body)
+    spin = spin_reader(body)
     turns = support.frame == "rotor"
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
@@ -98,7 +93,7 @@ def bearing_connector(
     Its torque acts on a spin that is free; a prescribed one does not feel it.
     """
     stands = None if seat.base is None else base
-    name, force = _bearing_function(body, bearing, seat.axes, _spin_reader(body), stands)
+    name, force = bearing_function(body, bearing, seat.axes, spin_reader(body), stands)
     if name == _BRAKING:
         item = RigidBodySpringDamper(
             markerNumbers=[base, rigid_marker(body, bearing.interface)],
@@ -114,52 +109,9 @@ def bearing_connector(
     return number
 
 
-@contextmanager
-def held_cages(body: RotorItems, angle: float) -> Iterator[None]:
-    """Hold the cages of all rolling bearings where they are at the spin angle `angle` [rad]."""
-    turning = _spin_reader(body)
-
-    def held(mbs: exudyn.MainSystem) -> tuple[float, float]:
-        return angle, turning(mbs)[1]
-
-    rolling = [one for one in body.supports if isinstance(one.support, RollingBearing)]
-
-    def let(spin: SpinReader) -> None:
-        for one in rolling:
-            base = carrying_marker(body.mbs, one.objects[0], one.base)
-            function = _bearing_function(body, one.support, body.standing_axes, spin, base)
-            body.mbs.SetObjectParameter(one.objects[0], *function)
-
-    let(held)
-    try:
-        yield
-    finally:
-        let(turning)
-
-
-@contextmanager
-def tangent_films(body: RotorItems) -> Iterator[tuple[TangentFilm, ...]]:
-    """Give the films of all journal bearings of finite length, whose tangents can be held."""
-    journals = [one for one in body.supports if isinstance(one.support, JournalBearing)]
-    films = tuple(TangentFilm(one.support) for one in journals)
-    spin = _spin_reader(body)
-
-    def let(laws: Iterable[Bearing | TangentFilm]) -> None:
-        for one, law in zip(journals, laws, strict=True):
-            base = carrying_marker(body.mbs, one.objects[0], one.base)
-            function = _bearing_function(body, law, body.standing_axes, spin, base)
-            body.mbs.SetObjectParameter(one.objects[0], *function)
-
-    let(films)
-    try:
-        yield films
-    finally:
-        let(one.support for one in journals)
-
-
-def _bearing_function(
+def bearing_function(
     body: RotorItems,
-    bearing: Bearing | TangentFilm,
+    bearing: Bearing | HeldLaw,
     axes: np.ndarray,
     spin: SpinReader,
     base: exudyn.MarkerIndex | None,
@@ -173,7 +125,7 @@ def _bearing_function(
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
-    if body.formulation.has_spin and not isinstance(bearing, TangentFilm):
+    if body.formulation.has_spin and not isinstance(bearing, HeldLaw):
         law = on_turning_base(law, body.mbs, base, axes)
     if brakes:
         function = _braking_function(law, spin, begin, least, note)
@@ -220,7 +172,7 @@ def _beginning(body: RotorItems, law: RememberingLaw, axes: np.ndarray) -> Begin
     Exudyn repeats steps and evaluates forces at trial states; the configuration of the beginning of
     the step alone holds what has been accepted.
     """
-    across, spin, begun = axes[:, :2], _spin_reader(body, _START), []
+    across, spin, begun = axes[:, :2], spin_reader(body, _START), []
 
     def begin(mbs: exudyn.MainSystem, t: float, item: int) -> None:
         time = mbs.systemData.GetTime(_START)
@@ -273,7 +225,7 @@ def tilt_connector(
 
 
 def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable | None) -> Callable:
-    spin = _spin_reader(body)
+    spin = spin_reader(body)
     turns = support.frame == "rotor"
 
     def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
@@ -332,7 +284,7 @@ def _start_speed(body: RotorItems) -> float:
     return body.plan.setup.placement.speed
 
 
-def _spin_reader(
+def spin_reader(
     body: RotorItems, state: exudyn.ConfigurationType = exudyn.ConfigurationType.Current
 ) -> SpinReader:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""

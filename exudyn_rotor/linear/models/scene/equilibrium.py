@@ -19,7 +19,7 @@ UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-o
 FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
 SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
 _ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
-_BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
+BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 10, 60  # after these
 _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in every step
 
@@ -52,7 +52,7 @@ def equilibrium(
         pull = left / metres
         held = np.abs(pull).max() <= UNHELD * scene.mass
         most = np.abs(point.residual / metres).max()
-        if held and iteration > _FEW_ITERATIONS and most <= _BALANCED * scene.mass:
+        if held and iteration > _FEW_ITERATIONS and most <= BALANCED * scene.mass:
             return y
         if not held:
             step = step + reach * pull / np.abs(pull).max() / metres

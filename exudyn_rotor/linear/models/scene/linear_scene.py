@@ -26,10 +26,9 @@ from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, wit
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene.journal_start import across
 from exudyn_rotor.linear.models.scene.probe import Probe, probing
-from exudyn_rotor.linear.models.scene.scene_checks import check_scene
+from exudyn_rotor.linear.models.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.models.scene.steady_motion import (
-    check_period,
     equations_about,
     motion_at_rest,
     steady_motion,
@@ -40,7 +39,6 @@ from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
-from exudyn_rotor.multibody.supports.support_connectors import held_cages
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 
@@ -87,7 +85,8 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             ``'steady'``: for every speed the periodic motion under the scene's loads and the
             rotor's own unbalance is found first, beginning from the current state, e.g. a static
             solution; it matters where bearings are nonlinear. ``'equilibrium'``: the same without
-            the rotor's own unbalance, as bearings in a list of supports are linearised.
+            the rotor's own unbalance, and films about rest under their mean force, as bearings in
+            a list of supports are linearised.
             ``'given'``: the current state of everything but the rotor, and the rotor undeformed.
 
         Raises
@@ -249,7 +248,7 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
     @contextmanager
     def _probing(self, speed: float) -> Iterator[Probe]:
         """Open the scene for probing, its cages as they are when the rotor starts."""
-        with held_cages(self.body, spin_at_start(self.body)[0]), probing(self, speed) as probe:
+        with probing(self, speed, cage=spin_at_start(self.body)[0]) as probe:
             yield probe
 
     def undamped(self) -> LinearScene:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple
@@ -10,11 +10,12 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.journal_bearing import TangentFilm
+from exudyn_rotor.bearings.held_law import HeldBearing, TangentFilm
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.periodic.periodic_system import EPSILON
+from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
-from exudyn_rotor.multibody.supports.support_connectors import tangent_films
+from exudyn_rotor.multibody.supports.linear_laws import linear_laws
+from exudyn_rotor.multibody.supports.magnetic_connectors import TangentMagnets, tangent_magnets
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.stiffening import stiffening as second_order
@@ -37,10 +38,16 @@ class Probe:
         scene: SceneCoordinates,
         speed: float,
         solver: exudyn.MainSolverStatic,
-        films: tuple[TangentFilm, ...],
+        bearings: tuple[HeldBearing, ...],
+        magnets: tuple[TangentMagnets, ...],
     ) -> None:
-        self.scene, self.speed, self.solver, self.films = scene, speed, solver, films
+        self.scene, self.speed, self.solver = scene, speed, solver
+        self.bearings, self.magnets = bearings, magnets
         self.mbs = scene.body.mbs
+        self.laws = [law for bearing in bearings for law in bearing.laws]
+        self.films = [law for law in self.laws if isinstance(law, TangentFilm)]
+        self.carriers = _carriers_of_pads(scene)
+        self._held, self._carried = False, None
         body = scene.body
         self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
         self.spin = scene.spin_coordinate
@@ -60,7 +67,7 @@ class Probe:
     @property
     def straight(self) -> float:
         """Motion [m] along which the forces are straight enough for their derivatives."""
-        return min(self.step, _STEPS[-1]) if self.films else self.step
+        return min(self.step, _STEPS[-1]) if self.films or self.magnets else self.step
 
     @property
     def remembering(self) -> list[TangentFilm]:
@@ -78,16 +85,57 @@ class Probe:
             for film in self.remembering:
                 film.stiff = True
 
+    def at_rest(self) -> Probe:
+        """Return the same at the speed 0."""
+        return Probe(self.scene, 0.0, self.solver, self.bearings, self.magnets)
+
+    def forget(self) -> None:
+        """Forget where bearings have been seen."""
+        for law in self.laws:
+            law.seen = []
+
+    @property
+    def moving(self) -> list[HeldBearing]:
+        """Bearings with films that have been seen to move."""
+        return [one for one in self.bearings if one.moves]
+
     @contextmanager
-    def tangents(self) -> Iterator[None]:
-        """Let films go on by their tangents from the next state on."""
-        for film in self.films:
-            film.hold(True)
+    def settled(self, bearings: Sequence[HeldBearing]) -> Iterator[None]:
+        """Take films about rest under the mean of the forces seen.
+
+        Raises
+        ------
+        UnconvergedError
+            Where there is no equilibrium.
+        """
+        try:
+            for one in bearings:
+                self._settle(one)
+            yield
+        finally:
+            for one in bearings:
+                one.release()
+
+    def _settle(self, bearing: HeldBearing) -> None:
+        try:
+            bearing.settle(self.speed)
+        except (ValueError, ArithmeticError) as error:
+            where = f"linear scene at {self.speed:g} rad/s"
+            raise UnconvergedError(f"{where}: {error}") from error
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold laws of bearings, and what carries pads, from the next state on."""
+        self._hold(True)
         try:
             yield
         finally:
-            for film in self.films:
-                film.hold(False)
+            self._hold(False)
+
+    def _hold(self, held: bool) -> None:
+        self._held, self._carried = held, None
+        for law in (*self.laws, *self.magnets):
+            law.hold(held)
 
     def constraints(self, theta: float) -> np.ndarray:
         """Return the constraints' Jacobian by the free coordinates, rows that are zero left out."""
@@ -154,6 +202,10 @@ class Probe:
         q, q_t = self._set(theta, x, v)
         self.solver.ComputeODE2RHS(self.mbs)
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
+        if self._carried is not None:
+            total[self.carriers] = self._carried[2]
+        elif self._held:
+            self._carried = tuple(each[self.carriers] for each in (q, q_t, total))
         total[self.physics] -= self._physics_force(q[self.physics], q_t[self.physics])
         return total[self.scene.free]
 
@@ -185,6 +237,8 @@ class Probe:
         if self.spin is not None:
             sign = self.scene.spin_sign
             q[self.spin], q_t[self.spin] = sign * theta, sign * self.speed
+        if self._carried is not None:
+            q[self.carriers], q_t[self.carriers], _ = self._carried
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
         data.SetTime(theta / self.speed if self.speed else 0.0)
@@ -194,10 +248,27 @@ class Probe:
 
 
 @contextmanager
-def probing(scene: SceneCoordinates, speed: float) -> Iterator[Probe]:
-    """Open a scene for probing and leave it as it was."""
-    with tangent_films(scene.body) as films, evaluating(scene.body.mbs) as solver:
-        yield Probe(scene, speed, solver, films)
+def probing(scene: SceneCoordinates, speed: float, cage: float | None = None) -> Iterator[Probe]:
+    """Open a scene for probing and leave it as it was.
+
+    With an angle [rad], cages of rolling bearings stand where they are when the spin has it.
+    """
+    body = scene.body
+    with (
+        linear_laws(body, cage) as bearings,
+        tangent_magnets(body) as magnets,
+        evaluating(body.mbs) as solver,
+    ):
+        yield Probe(scene, speed, solver, bearings, magnets)
+
+
+def _carriers_of_pads(scene: SceneCoordinates) -> np.ndarray:
+    """Return the coordinates by which what carries tilting pads turns with a base.
+
+    Static tilts that turn with it are left out as static forces that do.
+    """
+    found = (one.carrier_rotations(scene.body.mbs) for one in scene.body.supports)
+    return np.concatenate([np.zeros(0, dtype=int), *found])
 
 
 class LinearPoint(NamedTuple):
@@ -214,7 +285,7 @@ def linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> LinearPoint:
     """Return the scene linearised about y at one angle."""
-    with probe.tangents():
+    with probe.held():
         return _linearised(probe, theta, y, y_t, y_tt)
 
 

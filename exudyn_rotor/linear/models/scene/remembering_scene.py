@@ -9,7 +9,7 @@ rotor, as in :mod:`exudyn_rotor.linear.models.rotor.own_coordinates`.
 A rotor on an uneven mesh, or with a shaft that is, moves under its weight twice in a revolution. A
 motion of ε clearances changes the films' coefficients by a share of order ε, twice in a revolution,
 too, and exponents by one of order ε², as at first order the mean of that change is zero. It is left
-out here, as in lists of supports; scenes with other films have it.
+out here, as in lists of supports; scenes with other films have it about the steady motion.
 """
 
 from __future__ import annotations

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import exudyn
+import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.models.scene.equilibrium import UNHELD
+from exudyn_rotor.linear.models.scene.probe import Probe
+from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.mark import mark_of
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+
+_PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
+_ROUNDING = 1e-13  # rad, of an angle after some revolutions
 
 
 def check_body(mbs: exudyn.MainSystem, body: RotorBody) -> None:
@@ -67,3 +75,21 @@ def rotors_in(mbs: exudyn.MainSystem) -> dict[int, str | None]:
         if item["objectType"] == "GenericODE2" and mark_of(mbs, exudyn.ObjectIndex(number)):
             found[number] = names.get(nodes[0], item["name"])
     return found
+
+
+def check_period(scene: SceneCoordinates, probe: Probe) -> None:
+    """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
+    still = np.zeros(len(scene.free))
+    for theta in (0.5, 2.5, 4.5):
+        first = probe.force(theta, still, still)
+        loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
+        # where a journal that is off its axis is all but at the wall, rounding is a force
+        rounding = np.abs(probe.force(theta + _ROUNDING, still, still) - first).max()
+        for turns in (1.0, 2.0):
+            later = probe.force(theta + 2.0 * np.pi * turns, still, still)
+            if np.abs(later - first).max() > _PERIODIC * loads + UNHELD * scene.mass + rounding:
+                raise UnconvergedError(
+                    f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
+                    "revolution of the rotor, so there is no steady motion; leave out loads and "
+                    "motions that vary in time"
+                )

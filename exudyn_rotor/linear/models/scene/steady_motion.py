@@ -15,6 +15,7 @@ import numpy as np
 
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.scene.equilibrium import (
+    BALANCED,
     FAR,
     NOISE,
     SMALLEST,
@@ -24,8 +25,7 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
 )
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
-from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised, probing
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
 
@@ -39,12 +39,12 @@ _FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the s
 _FEW_STRIDES = 8  # with many samples
 _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
+_FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
 _LEAST_SHARE = 2e-3  # of a step
 _MOTION = 1e-7  # tolerance of a motion about which films have coefficients of another kind
+_BESIDE_REST = 1e-5  # one of which the mean force alone counts
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
-_PERIODIC = 1e-6  # share of the forces that may change from one revolution to the next: round-off
-_ROUNDING = 1e-13  # rad, of an angle after some revolutions
 _CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
 
 
@@ -65,19 +65,32 @@ class Scene(Protocol):
 def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
     """Return the equations about the steady motion; raises as :func:`steady_motion`.
 
+    Without the rotor's own unbalance films are those of journals at rest, as in lists of supports.
     Films that conserve mass have a force in them, but no stiffness and no damping:
     :mod:`.remembering_scene` adds what they have, which depends on the frequency.
     """
-    if not probe.remembering:
-        return steady_motion(scene, probe, None)[0]
-    _, orders, found = steady_motion(scene, probe, _MOTION)
+    rest, tolerance = scene.about == "equilibrium", None
+    if probe.remembering:
+        tolerance = _MOTION
+    elif rest and probe.films:
+        tolerance = _BESIDE_REST
+    try:
+        system, orders, found = steady_motion(scene, probe, tolerance)
+    except _UnresolvedError:  # on the way; about the motion itself a film may be smooth
+        if tolerance is not None or scene.about == "given":
+            raise
+        tolerance = _MOTION
+        system, orders, found = steady_motion(scene, probe, tolerance)
+    moving = probe.moving if rest else []
+    if tolerance is None and not moving:
+        return system
     samples = len(orders) + _LEFT_OUT
-    while samples <= _MOST_SAMPLES:
-        with probe.without_tangents():
+    with probe.settled(moving), probe.without_tangents():
+        while samples <= _MOST_SAMPLES:
             system, resolved = _Search(scene, probe, samples, _MOTION, True).equations(found)
-        if resolved:
-            return system
-        samples *= 2
+            if resolved:
+                return system
+            samples *= 2
     raise _unresolved(probe.speed)
 
 
@@ -109,8 +122,12 @@ def steady_motion(
     raise _unresolved(probe.speed)
 
 
+class _UnresolvedError(UnconvergedError):
+    """Too few angles for the coefficients over a revolution."""
+
+
 def _unresolved(speed: float) -> UnconvergedError:
-    return UnconvergedError(
+    return _UnresolvedError(
         f"linear scene at {speed:g} rad/s: {_MOST_SAMPLES} angles of a revolution do not "
         "resolve the coefficients; is there a stop, contact or friction, or an oil film whose edge "
         "moves from node to node? about='equilibrium' leaves the rotor's own unbalance out, as "
@@ -158,24 +175,6 @@ def motion_at_rest(
         if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _REST_SAMPLES:
             return orders, harmonics
         count = 2 * count + 1
-
-
-def check_period(scene: SceneCoordinates, probe: Probe) -> None:
-    """Refuse loads that are others after a revolution, as those that vary in time by themselves."""
-    still = np.zeros(len(scene.free))
-    for theta in (0.5, 2.5, 4.5):
-        first = probe.force(theta, still, still)
-        loads = max(np.abs(first).max(), np.abs(probe.rotor_terms(theta)[3]).max())
-        # where a journal that is off its axis is all but at the wall, rounding is a force
-        rounding = np.abs(probe.force(theta + _ROUNDING, still, still) - first).max()
-        for turns in (1.0, 2.0):
-            later = probe.force(theta + 2.0 * np.pi * turns, still, still)
-            if np.abs(later - first).max() > _PERIODIC * loads + UNHELD * scene.mass + rounding:
-                raise UnconvergedError(
-                    f"linear scene at {probe.speed:g} rad/s: a load does not repeat with every "
-                    "revolution of the rotor, so there is no steady motion; leave out loads and "
-                    "motions that vary in time"
-                )
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,8 +227,7 @@ class _Search:
         """
         Y = self._start(None)
         try:
-            with probing(self.scene, 0.0) as at_rest:
-                orders, still = motion_at_rest(self.scene, at_rest, _AT_REST, 0.0)
+            orders, still = motion_at_rest(self.scene, self.probe.at_rest(), _AT_REST, 0.0)
         except UnconvergedError:
             pass  # films carry nothing at rest
         else:
@@ -282,7 +280,8 @@ class _Search:
             tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
             limit = self.tolerance * max(sizes.max(), self._counts(sizes))
             goal = max(self.tolerance * self._counts(sizes), _SOLVED * (tail - limit))
-            if np.abs(change * metres).max() < goal:
+            balanced = np.abs(residual / metres).max() <= BALANCED * self.scene.mass
+            if np.abs(change * metres).max() < goal or (balanced and iteration > _FEW_ITERATIONS):
                 self._check_spin(torque)
                 if not resolved and self.samples == _MOST_UNRESOLVED:
                     limit = max(limit, _ROUGH * sizes.max())
@@ -313,7 +312,9 @@ class _Search:
         return np.pad(found, ((more, more), (0, 0)))
 
     def _points(self, Y: np.ndarray) -> list[LinearPoint]:
-        """Return the scene linearised at all angles of the motion."""
+        """Return the scene linearised at all angles of the motion, by steps that are for it."""
+        self.probe.step = self.probe.velocity_step = None
+        self.probe.forget()
         rates = 1j * self.orders[:, None] * self.probe.speed
         motion = [(self.waves @ (Y * rates**n)).real for n in range(3)]
         return [linearised(self.probe, *at) for at in zip(self.angles, *motion, strict=True)]
