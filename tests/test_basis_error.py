@@ -171,7 +171,7 @@ def test_modes_that_are_dropped_are_known():
 
 def test_errors_are_in_the_table_and_above_the_accuracy_in_a_warning():
     rotor, given = reduced("tilt", "free 4"), {"supports": supports("stiff"), "modes": 5}
-    with pytest.warns(UserWarning, match=r"mode \d \(.*\) at .* Hz errs by about .* interfaces"):
+    with pytest.warns(UserWarning, match=r"mode \d \(.*\) at .* rpm errs by about .* interfaces"):
         result = campbell(rotor, SPEEDS, **given)
     assert "basis error" in result.table()
     columns = result.columns()["basis error"]
@@ -229,7 +229,7 @@ def test_estimates_of_critical_speeds(kind):
 
 def test_map_of_critical_speeds_has_the_errors_of_each():
     rotor, given = reduced("tilt", "free 6"), {"nodal_diameters": [1], "max_speed": 3000.0}
-    with pytest.warns(UserWarning, match="the critical speed of .* Hz errs by about") as told:
+    with pytest.warns(UserWarning, match="the critical speed of .* rpm errs by about") as told:
         result = critical_speed_map(rotor, ["left", "right"], [1e6, 1e8], **given)
     assert len(told) == 1
     stiff = [Support(name, 1e8) for name in ("left", "right")]
@@ -260,7 +260,7 @@ def test_errors_of_harmonic_responses_and_of_a_few_speeds_on_anisotropic_support
     rotor = reduced("tilt", "free 4")
     force = HarmonicForce("right", (1.0, 0.5j))
     given = {"supports": supports("stiff"), "speed": 500.0, "at": ["left", "right", 3]}
-    with pytest.warns(UserWarning, match="the motion of .* at .* Hz errs by about"):
+    with pytest.warns(UserWarning, match="the motion of .* at .* (Hz|rpm) errs by about"):
         result = harmonic_response(rotor, [200.0, 800.0], force, **given)
     full = harmonic_response(solid("tilt"), [200.0, 800.0], force, **given)
     true = np.linalg.norm((full.motion - result.motion)[:, :2, :, :3], axis=(2, 3))

@@ -50,6 +50,29 @@ def test_one_ball_straight_below_the_load_carries(load, count):
     np.testing.assert_allclose(place, expected, atol=1e-7 * 2e-5)
 
 
+@pytest.mark.parametrize(("elements", "exponent"), [("balls", 1.5), ("rollers", 10.0 / 9.0)])
+@pytest.mark.parametrize("count", [3, 8, 15])
+def test_preloaded_elements_hold_the_centre_without_a_load(elements, exponent, count):
+    """All carry k p^n at an interference p: a stiffness of n k p^(n−1) Z/2 in every direction."""
+    preloaded = bearing(count=count, clearance=-5e-6, elements=elements, stiffness=1e9)
+    np.testing.assert_allclose(preloaded.element_loads([0.0, 0.0], 0.7), 1e9 * 5e-6**exponent)
+    assert not np.any(preloaded.equilibrium(100.0))
+    K = preloaded.coefficients(100.0)[0]
+    expected = 0.5 * count * exponent * 1e9 * 5e-6 ** (exponent - 1.0)
+    np.testing.assert_allclose(K, expected * np.eye(2), atol=1e-12 * expected)
+
+
+@pytest.mark.parametrize("load", [1e-6, 1.0, 1e5])
+@pytest.mark.parametrize("clearance", [-1e-3, -1e-5, -1e-9])
+def test_preloaded_elements_balance_every_load(load, clearance):
+    preloaded = bearing(clearance=clearance)
+    force = load * np.array([0.6, -0.8])
+    place = preloaded.equilibrium(0.0, force, 0.3)
+    rounding = 1e-15 * preloaded.element_loads([0.0, 0.0]).sum()
+    found = preloaded.law(*place, 0.0, 0.0, 0.3, 0.0)
+    np.testing.assert_allclose(found, -force, atol=1e-9 * load + 100.0 * rounding)
+
+
 @pytest.mark.filterwarnings("ignore:rotor 'rotor'. a contact that opens")
 @pytest.mark.parametrize("spin", [0.0, 300.0])
 def test_uneven_rotor_on_balls_has_a_steady_start(spin):
@@ -137,7 +160,7 @@ def test_a_loaded_rotor_sways_at_the_passing_frequency():
     assert strongest == pytest.approx(pair[0].passing_frequency(300.0), abs=apart)
 
 
-@pytest.mark.parametrize("clearance", [0.0, 5e-6])
+@pytest.mark.parametrize("clearance", [-5e-6, 0.0, 5e-6])
 @pytest.mark.parametrize(
     ("options", "angle"), [({"spin": 0.0}, 0.0), ({"spin": "free", "initial_angle": 0.6}, 0.6)]
 )
@@ -189,11 +212,13 @@ def test_a_run_at_a_speed_starts_near_and_turns_its_cage():
 def test_linear_analyses_take_it():
     pair = [bearing(name, load=[0.0, -98.0], damping=500.0) for name in ("left", "right")]
     assert stability(rotor(), [100.0], supports=pair).growth_of("lateral")[0] < -1.0
+    upright = [bearing(name, clearance=-2e-6, damping=500.0) for name in ("left", "right")]
+    assert stability(rotor(), [100.0], supports=upright).growth_of("lateral")[0] < -1.0
 
 
 def test_refused_input():
     for changes, match in (
-        ({"clearance": -1e-6}, "clearance: needs"),
+        ({"clearance": -0.007}, "clearance: needs a finite number .m. > -0.006"),
         ({"count": 2}, "count: needs"),
         ({"element_radius": 0.02}, "8 elements of 0.02 m do not fit"),
         ({"elements": "needles"}, "elements: 'needles' is unknown"),

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from point_rotors import ring_rotor
 from scipy.integrate import solve_ivp
+from test_supports_in_scenes import rings
 
 from exudyn_rotor import (
     Foundation,
@@ -19,6 +20,7 @@ from exudyn_rotor import (
     add_supports,
     recommended_settings,
     rolling_bearing_response,
+    unbalance_response,
 )
 
 BALLS = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
@@ -229,6 +231,71 @@ def test_loads_along_a_held_axis_press_no_element(axis, speeds, amount):
             rolling_bearing_response(
                 rotor, speeds, [Unbalance("seat", amount)] if amount else (), supports=held, **given
             )
+
+
+@pytest.mark.parametrize(("clearance", "speed"), [(1e-6, 100.0), (5e-6, 400.0)])
+def test_upright_rotors_whirl_by_a_small_unbalance(clearance, speed):
+    """The motion that a run finds; Newton's method comes there from larger unbalances alone."""
+    one, amount = bearing(clearance=clearance), 1e-4
+    response = rolling_bearing_response(
+        point(), [speed], Unbalance("seat", amount), supports=one, gravity=[0.0, 0.0, -9.81]
+    )
+    times, path = integrated(one, speed, amount, 1.2, 0.2, [0.0, 0.0])
+    away = np.abs(response.displacement(speed, times) - path)
+    assert away.max() < 2e-3 * np.ptp(path)
+
+
+def test_preloaded_upright_rotors_whirl_as_linear_equations_say():
+    """Far below the preload their contacts are springs: unbalance_response, written apart."""
+    preloaded = [bearing(clearance=-1e-5)]
+    speeds, unbalance = [200.0, 500.0], Unbalance("seat", 1e-4)
+    response = rolling_bearing_response(point(), speeds, unbalance, supports=preloaded)
+    assert response.linear_errors.max() < 1e-3
+    linear = unbalance_response(point(), speeds, unbalance, supports=preloaded)
+    turning = linear.motion[:, 0, linear.orders.tolist().index(1), :2]
+    for direction, expected in zip(("n1", "n2"), turning.T, strict=True):
+        found = response.phasor("seat", direction, 0, 1)
+        np.testing.assert_allclose(np.abs(found), np.abs(expected), rtol=1e-3)
+    with pytest.raises(ValueError, match="without a load no element carries, and preloaded ones"):
+        rolling_bearing_response(point(), [200.0], supports=preloaded)
+
+
+@pytest.mark.parametrize("clearance", [-1e-5, 5e-6])
+def test_a_sweep_from_rest_is_as_good_as_one_from_a_speed(clearance):
+    """At rest there is no whirl, and of preloaded elements all but no varying compliance."""
+    given = {"supports": bearing(clearance=clearance), "gravity": GRAVITY, "tolerance": 5e-3}
+    unbalance = Unbalance("seat", 3e-4)
+    whole = rolling_bearing_response(point(), [0.0, 300.0], unbalance, **given)
+    alone = rolling_bearing_response(point(), [300.0], unbalance, **given)
+    assert max(whole.errors.max(), alone.errors.max()) < 5e-3
+    times = np.linspace(0.0, 0.1, 50)
+    moved, expected = (each.displacement(300.0, times) for each in (whole, alone))
+    np.testing.assert_allclose(moved, expected, atol=0.01 * np.ptp(expected, axis=0).max())
+
+
+def test_balanced_rotors_begin_strained_by_their_spin():
+    """As those with a small unbalance do: without that strain the run below began with a jump."""
+    reduced = rings(heavy=0.0)
+    pair = [bearing(name, clearance=5e-6) for name in ("left", "right")]
+    held = [*pair, Support("left", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))]
+    response = rolling_bearing_response(
+        reduced, [300.0], supports=held, gravity=10.0 * np.array(GRAVITY), tolerance=1e-3
+    )
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, reduced, spin=300.0, gravity=10.0 * np.array(GRAVITY))
+    add_supports(body, held)
+    sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
+    mbs.Assemble()
+    body.start_from(response.state(300.0, body))
+    settings = recommended_settings(end_time=0.01, step=2e-5)
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 2e-5
+    mbs.SolveDynamic(settings)
+    path = mbs.GetSensorStoredData(sensor)
+    expected = response.displacement(300.0, path[:, 0], "left")
+    away = np.abs(path[:, 1:3] - expected).max()
+    assert away < 0.01 * np.ptp(expected, axis=0).max()  # 0.66 of it without the strain
 
 
 def test_refused_input():

@@ -8,10 +8,13 @@ move in it as far as the reduced rotor knows; interfaces move with all shapes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from exudyn_rotor.linear.models.basis.basis_error import BasisError
+from exudyn_rotor.linear.response.response import Response
+from exudyn_rotor.units import Units
 
 # of the largest motion at the same speed or frequency: smaller ones count as that
 _LEAST = 0.1
@@ -20,6 +23,7 @@ HARMONICS = 1e-4  # largest relative change of the finer motion by further harmo
 _FEW = 3  # speeds or frequencies that are looked at beside the peaks
 
 Motion = Mapping[int, np.ndarray]
+Kind = TypeVar("Kind", bound=Response)
 
 
 def looked_at(motions: Sequence[Motion], constant: bool) -> np.ndarray:
@@ -55,12 +59,13 @@ def _size(amplitudes: np.ndarray) -> np.ndarray:
     return np.linalg.norm(amplitudes[:, :3], axis=1)
 
 
-def warn_of_response(
-    basis: BasisError, errors: np.ndarray | None, places: Sequence[str], values: np.ndarray
-) -> None:
-    """Warn where the basis leaves out too much of a motion; `values` (s,) in rad/s."""
+def with_warning(basis: BasisError, response: Kind, unit: str) -> Kind:
+    """Return the response; warn where the basis leaves out too much, in `unit`, Hz or rpm."""
+    errors = response.basis_errors
     if errors is None or not errors.size:
-        return
+        return response
     at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-    hertz = values[at] / (2.0 * np.pi)
-    basis.warn(np.nan_to_num(errors), f"the motion of {places[place]!r} at {hertz:.4g} Hz")
+    value = Units.of(unit).speeds(response.abscissa[at])
+    what = f"the motion of {response.places[place]!r} at {value:.5g} {unit}"
+    basis.warn(np.nan_to_num(errors), what)
+    return response

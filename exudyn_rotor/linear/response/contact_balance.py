@@ -40,7 +40,9 @@ _LOST = (
     "speeds in smaller steps, or the other way (downwards=…); a damped run of a scene shows what "
     "the rotor does"
 )
+_ROUNDING = 1e-14  # share of the clearance, or interference
 _FREE = 1e-9  # share of the springs k₀ that counts as no stiffness
+_STILL = 1e-10  # share of the mean place that is no motion: rounding, or solved no better
 _UNSEEN = 0.03  # of the tolerance: harmonics that the force cannot make larger do not count
 
 
@@ -176,7 +178,7 @@ class ContactBalance:
         places = np.zeros_like(loads)
         for b, one in enumerate(self.bearings):
             size = sizes[..., b, :]
-            far = one.clearance + depth_under(one, size)
+            far = np.maximum(one.clearance + depth_under(one, size), 0.0)
             places[..., b, :] = far * loads[..., b, :] / np.maximum(size, 1e-300)
         return self._spectrum(places.reshape(*self.points, -1))[self._places]
 
@@ -241,6 +243,7 @@ class ContactBalance:
         ------
         UnconvergedError
         """
+        rounding = _ROUNDING * max(abs(one.clearance) for one in self.bearings)
         for _ in range(_MOST_ITERATIONS):
             residual, slopes = self._parts(c, damper)
             step = self._step(residual, slopes, damper)
@@ -250,7 +253,7 @@ class ContactBalance:
                 if share < _LEAST_SHARE:
                     break
             c = c - share * step
-            if np.abs(step).max() <= tolerance * np.abs(c).max():
+            if np.abs(step).max() <= tolerance * np.abs(c).max() + rounding:
                 return c
         raise UnconvergedError(_LOST)
 
@@ -267,7 +270,8 @@ class ContactBalance:
         away = np.linalg.norm(self.values(c) - self.values(right), axis=-1).max()
         q = self.values(right)
         way = np.linalg.norm(q - q.mean(axis=(0, 1)), axis=-1).max()
-        return float(away / way) if way else 0.0
+        still = _STILL * np.linalg.norm(q, axis=-1).max()
+        return float(away / way) if way > still else 0.0
 
     def left_out(self, c: np.ndarray, tolerance: float) -> tuple[float, float]:
         """Return the root of the mean square of harmonics beyond K and of those beyond N.
@@ -279,6 +283,7 @@ class ContactBalance:
         ghat, mean = self._spectrum(g), scipy.linalg.block_diag(*slopes.mean(axis=(0, 1)))
         N, (A, B), inside = self.reach[1], self.points, set(self.orders)
         size = np.linalg.norm(c[[order != (0, 0) for order in self.orders]])
+        size = max(size, _STILL * np.linalg.norm(c))
         if size == 0.0:
             return 0.0, 0.0
         largest = max(np.abs(_on(mean, H, H)).max() for *_, H in self._receptances.values())

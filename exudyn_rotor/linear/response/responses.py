@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,6 +26,8 @@ class UnbalanceResponse(Response):
         See :class:`Response`.
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
+    loads : tuple of str
+        The unbalances in words.
 
     Examples
     --------
@@ -39,6 +41,13 @@ class UnbalanceResponse(Response):
     """
 
     speeds: np.ndarray = numbers("abscissa")
+    loads: tuple[str, ...] = field(default=(), kw_only=True)
+
+    def table(
+        self, place: str | None = None, order: int | None = None, *, units: str = "SI"
+    ) -> str:
+        """Return the table of :meth:`Response.table`, with the unbalances."""
+        return "\n".join([super().table(place, order, units=units), *self.loads])
 
     @property
     def abscissa(self) -> np.ndarray:

@@ -26,6 +26,7 @@ _Balances = Callable[[tuple[int, int]], ContactBalance]
 
 _FIRST, _WIDE = (4, 0), (4, 4)  # harmonics of the ball pass and of the spin
 _MOST_UNKNOWNS = 1500
+_MORE_UNBALANCE = 2.0 ** np.arange(6.0, -0.5, -0.5)
 _STEP = 1e-3  # of the tolerance, by which the last step of Newton's method may change the motion
 _UNLOADED = 1e-9  # share of the largest static load that counts as none
 
@@ -43,6 +44,8 @@ class SteadyMotion:
     def reach(self, tolerance: float) -> tuple[int, int]:
         """Return with how many harmonics to begin nearby."""
         K, N = self.balance.reach
+        if self.balance.rest.speed == 0.0:  # without inertia far more harmonics count
+            return _FIRST
         return (max(K // 2, _FIRST[0]) if self.error < 0.1 * tolerance else K), N
 
 
@@ -80,8 +83,29 @@ class RollingProblem:
 
     def solved(self, speed: float, near: SteadyMotion | None, tolerance: float) -> SteadyMotion:
         """Return the steady motion, beginning with one near it."""
+        of = self._balances(speed)
+        mean = self._mean_place(of((0, 0)), tolerance)
+        try:
+            balance, q, error = _found(_starts(of, near, mean, tolerance), of, tolerance)
+        except UnconvergedError:
+            if mean is not None:
+                raise
+            balance, q, error = self._from_more_unbalance(speed, tolerance)
+        if not balance.holds(q):
+            raise UnconvergedError(
+                "in its clearance no element touches, and the rotor may stand anywhere there"
+            )
+        linear_error = np.nan
+        if mean is not None:
+            linear = balance.linear(balance.padded(mean, (0, 0)))
+            linear_error = balance.distance(linear, q)
+        grown = growth(balance, q, self.model.space(1, speed, held=True))
+        return SteadyMotion(balance, q, error, linear_error, grown)
+
+    def _balances(self, speed: float, more: float = 1.0) -> _Balances:
+        """Return the equations by the harmonics that they have, with so much more unbalance."""
         loads = dict(self.static)
-        loads[0] = loads.get(0, 0.0) + speed**2 * self.unbalance
+        loads[0] = loads.get(0, 0.0) + more * speed**2 * self.unbalance
         space = self.model.space(1, speed).prepared([speed])
         rest = Rest(space, speed, self.passes * speed, self.seats, loads)
         if not rest.presses():
@@ -89,32 +113,41 @@ class RollingProblem:
                 f"loads, unbalances: press no element at {speed:g} rad/s: all loads are along the "
                 "axis; give one across it, or an unbalance and speeds above zero"
             )
-        of = partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
-        mean = self._mean_place(of((0, 0)), tolerance)
-        for start in _starts(of, near, mean, tolerance):
-            try:
-                balance, q, error = _refined(of, *start, tolerance)
-            except UnconvergedError as failed:
-                lost = failed
-                continue
-            if not balance.holds(q):
-                raise UnconvergedError(
-                    "in its clearance no element touches, and the rotor may stand anywhere there"
-                )
-            linear_error = np.nan
-            if mean is not None:
-                linear = balance.linear(balance.padded(mean, (0, 0)))
-                linear_error = balance.distance(linear, q)
-            grown = growth(balance, q, self.model.space(1, speed, held=True))
-            return SteadyMotion(balance, q, error, linear_error, grown)
-        raise lost
+        return partial(ContactBalance.of, self.bearings, rest, self.springs, rest.moved())
+
+    def _from_more_unbalance(
+        self, speed: float, tolerance: float
+    ) -> tuple[ContactBalance, np.ndarray, float]:
+        """Return the whirl that a larger one becomes: of rotors that unbalance alone presses."""
+        balance = q = None
+        for more in _MORE_UNBALANCE:
+            of = self._balances(speed, more)
+            starts = _starts(of, None, None, tolerance)
+            if q is not None:
+                nearby = of(balance.reach)
+                starts = iter([(nearby, nearby.padded(q, balance.reach))])
+            balance, q, error = _found(starts, of, tolerance)
+        return balance, q, error
 
     def _mean_place(self, balance: ContactBalance, tolerance: float) -> np.ndarray | None:
         """Return where the bearings rest on average (1, d); None where one has no load."""
         loads = np.linalg.norm((self.springs * balance.start[0].real).reshape(-1, 2), axis=1)
+        loads += self.springs[::2] * [max(-one.clearance, 0.0) for one in self.bearings]
         if loads.min() <= _UNLOADED * loads.max():
             return None
         return balance.solved(balance.quasi_static(), _STEP * tolerance)
+
+
+def _found(
+    starts: Iterator[tuple[ContactBalance, np.ndarray]], of: _Balances, tolerance: float
+) -> tuple[ContactBalance, np.ndarray, float]:
+    """Return the motion from the first start that leads to one, and what is left out."""
+    for start in starts:
+        try:
+            return _refined(of, *start, tolerance)
+        except UnconvergedError as failed:
+            lost = failed
+    raise lost
 
 
 def _starts(

@@ -176,10 +176,11 @@ def rolling_bearing_response(
     crosswise = np.abs(across).max() > _ROUND * np.abs(gravity).max()
     weight = [BaseAcceleration(-across)] if crosswise else []
     static = total([*weight, *loads], model) if weight or loads else {}
-    unbalance = np.zeros(model.size)
-    if unbalances or (own and not model.is_balanced):
-        unbalance = unbalance_load(model, unbalances, own)
-    _check_loaded(static, values[0] * unbalance)
+    whirls = bool(unbalances) or (own and not model.is_balanced)
+    # a balanced rotor is strained by centrifugal loads, too
+    unbalance = (unbalance_load(model, unbalances, own) if whirls
+                 else own * np.array(model.unit_unbalance, dtype=float))  # fmt: skip
+    _check_loaded(static, whirls * values[0] * unbalance)
     problem = RollingProblem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
     try:
         with one_thread():
@@ -226,7 +227,7 @@ def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> No
     if not static and not np.any(unbalance):
         raise ValueError(
             "gravity, loads, unbalances: need one that is not zero: without a load no element "
-            "carries; unbalance alone needs speeds above zero"
+            "carries, and preloaded ones do not move; unbalance alone needs speeds above zero"
         )
 
 

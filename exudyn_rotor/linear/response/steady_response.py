@@ -29,7 +29,7 @@ from exudyn_rotor.linear.response.basis_check import (
     HARMONICS,
     looked_at,
     motion_error,
-    warn_of_response,
+    with_warning,
 )
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
@@ -178,9 +178,10 @@ def unbalance_response(
 
     constant = space.at(fastest).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
-    warn_of_response(basis, errors, labels, values)
-    extra = _kept(model, solved) | {"refined": refine}
-    return UnbalanceResponse(labels, *found, frame, values, basis_errors=errors, **extra)
+    extra = _kept(model, solved) | {"refined": refine, "basis_errors": errors}
+    extra["loads"] = tuple(map(str, unbalances)) + ("the rotor's own unbalance",) * own
+    response = UnbalanceResponse(labels, *found, frame, values, **extra)
+    return with_warning(basis, response, "rpm")
 
 
 def harmonic_response(
@@ -268,9 +269,9 @@ def harmonic_response(
 
     constant = space.at(speed).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
-    warn_of_response(basis, errors, labels, values)
-    extra = _kept(model, solved) | {"refined": refine}
-    return HarmonicResponse(labels, *found, frame, values, speed, basis_errors=errors, **extra)
+    extra = _kept(model, solved) | {"refined": refine, "basis_errors": errors}
+    response = HarmonicResponse(labels, *found, frame, values, speed, **extra)
+    return with_warning(basis, response, "Hz")
 
 
 def _basis_errors(

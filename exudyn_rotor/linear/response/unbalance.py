@@ -121,6 +121,11 @@ class Unbalance:
         share = checks.number(share, "share", above=0.0, most=1.0)
         return cls(at, share * permissible_unbalance(grade, mass, speed), angle)
 
+    def __str__(self) -> str:
+        """Return place, amount [g mm] and angle [deg] in words."""
+        amount, angle = 1e6 * self.amount, np.degrees(self.angle)
+        return f"unbalance of {amount:.4g} g mm at {self.at!r}, angle {angle:.4g} deg"
+
     @property
     def vector(self) -> np.ndarray:
         """Unbalance along (n1, n2, e), rotor frame, shape (3,) [kg m]."""
