@@ -25,6 +25,7 @@ from train_models import (
 from exudyn_rotor import (
     Link,
     RotorTrain,
+    ShortJournalBearing,
     SolidRotor,
     Support,
     campbell,
@@ -32,6 +33,7 @@ from exudyn_rotor import (
     linear_model,
     stability,
 )
+from exudyn_rotor.bearings.bearing import NoEquilibriumError
 
 
 @pytest.mark.parametrize("ratio", [1.7, -1.3, 1.0])
@@ -256,6 +258,22 @@ def test_table_of_a_link_tells_whose_speed_it_needs():
     with pytest.raises(ValueError, match=r"not -50 rad/s.* speed of 'A' less that of 'B', which"):
         linear_model(there).at(100.0)
     linear_model(back).at(100.0)
+
+
+def test_film_between_shafts_that_does_not_carry():
+    """The error is that of a bearing on the ground, which critical speeds take for a slow film."""
+    film = ShortJournalBearing(
+        interface="a", radius=0.02, length=0.02, clearance=5e-5, viscosity=1e-4, load=[0.0, -90.0]
+    )
+    rotors, ground = dict.fromkeys("AB", rigid(*FIRST)), [Support(name, 3e5) for name in "ab"]
+    train = RotorTrain(
+        rotors,
+        {"A": 1.0, "B": -1.0},
+        dict.fromkeys("AB", ground),
+        [Link("A:a", "B:a", film.linearised())],
+    )
+    with pytest.raises(NoEquilibriumError, match="speed of 'A' less that of 'B'"):
+        linear_model(train).at(0.0)
 
 
 def test_links_are_where_their_ends_are():

@@ -80,3 +80,21 @@ def test_slow_growth_beside_a_free_motion_keeps_its_name():
     _, _, codes, diameters = ring_content(0, 1, 2).named(modes, SPEED)
     assert [WHIRLS[code] for code in codes] == ["axial", "forward", "forward"]
     assert diameters.tolist() == [0, 1, 1]
+
+
+def test_repeated_modes_of_each_group_become_waves_of_one_sense():
+    """Planes of ``cos nα`` and ``sin nα`` become ``exp(±inα)``, −n first; one shape stays one."""
+    rng, content = np.random.default_rng(3), ring_content(0, 1, 2)
+    waves = np.zeros((2, 6, 2), dtype=complex)
+    for n, wave in enumerate(waves, start=1):
+        wave[2 * n : 2 * n + 2] = np.array([[1.0, 1.0], [1j, -1j]]) / np.sqrt(2.0)
+    single = np.repeat(waves[0, :, :1], 2, axis=1)
+    mixed = waves @ rng.normal(size=(2, 2, 2))
+    defective = single + 1e-6 * rng.normal(size=single.shape)
+    given = np.stack([mixed[0], single, defective, mixed[1]])[:, None]
+    given /= np.linalg.norm(given, axis=2, keepdims=True)
+    first, same, near, last = content.polarised(given, np.array([0]))[:, 0]
+    for found, wave in zip((first, last), waves, strict=True):
+        np.testing.assert_allclose(np.abs(wave.conj().T @ found), np.eye(2), atol=1e-12)
+    np.testing.assert_allclose(np.abs(single.conj().T @ same), 1.0, atol=1e-12)
+    np.testing.assert_array_equal(near, given[2, 0])

@@ -1,11 +1,25 @@
 """Growth of trains of uneven rotors: that of an asymmetric one, and what a mesh feigns."""
 
+import warnings
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from point_rotors import free_stiffness
+from spool_models import spool_with_growth
 
-from exudyn_rotor import Link, ReducedRotor, RotorTrain, SolidRotor, Support, stability
+from exudyn_rotor import (
+    Link,
+    ReducedRotor,
+    RotorTrain,
+    SolidRotor,
+    Support,
+    linear_model,
+    stability,
+)
+from exudyn_rotor.linear.periodic.exponents import exponents
 
+CROSS = np.array([[0.0, 1e6, 0.0], [-1e6, 0.0, 0.0], [0.0, 0.0, 0.0]])
 RADIUS, HALF, SPRING = 0.1, 0.2, 2e5  # [m], [m], [N/m] at each end
 
 
@@ -68,3 +82,29 @@ def test_growth_that_even_rotors_have_counts_however_small():
     assert not found.stable[0]
     growth = 0.5 * cross / np.sqrt(SPRING * 2.0)  # two of k, k_c and 2 kg
     assert np.abs(found.exponents[0].real - growth).min() < 1e-3 * growth
+
+
+@pytest.mark.filterwarnings("ignore:at 4000 rad/s motions grow")
+@pytest.mark.parametrize(("ratio", "method"), [(1.0, "auto"), (2.0, "floquet")])
+def test_axial_motion_of_an_uneven_mesh_grows_in_any_axes(ratio, method):
+    """The drive feeds it by the bearings' damping; of a finer mesh it would be less.
+
+    As constant equations in the frame of the rotor and as periodic ones in slower axes.
+    """
+    one, speed, springs = spool_with_growth()
+    alone = stability(one, [speed], supports=springs, accuracy=None)
+    assert not alone.stable[0]
+    given = RotorTrain({"A": one}, {"A": ratio}, {"A": springs}, largest_unevenness=0.0)
+    system = linear_model(given).whole_space(True).at(speed / ratio)
+    assert system.is_constant == (ratio == 1.0)
+    found = exponents(system, method, 1e-12).real.max()
+    # of Floquet's method in 5e4 times the period that the tolerance is for
+    assert abs(found - alone.growth[0]) < 1e-2 * alone.growth[0]
+
+
+def test_growth_by_bearings_is_not_laid_to_the_mesh():
+    one, speed, springs = spool_with_growth()
+    crossed = [replace(each, stiffness=each.stiffness + CROSS, damping=0.0) for each in springs]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert not stability(one, [speed], supports=crossed, accuracy=None).stable[0]

@@ -31,6 +31,7 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import checked_speeds, sweep
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.threads import meanwhile, one_thread
+from exudyn_rotor.units import Units
 
 _FULL_MODES = 10
 _SLOW = 1.0  # rad/s
@@ -374,12 +375,11 @@ def _warn_of_basis(basis: BasisError, result: Campbell) -> None:
     if errors is None:
         return
     at, mode = np.unravel_index(np.argmax(np.nan_to_num(errors)), errors.shape)
-    speed, frequency = (
-        value / (2.0 * np.pi)
-        for value in (result.speeds[at], result.frequencies_inertial[at, mode])
-    )
+    shown = Units.of("rpm")
+    speed = shown.speeds(result.speeds[at])
+    heard = shown.frequencies(result.frequencies_inertial[at, mode])
     word = result.whirl[at, mode]
-    basis.warn(errors, f"mode {mode + 1} ({word}, {frequency:.4g} Hz) at {speed:.4g} Hz")
+    basis.warn(errors, f"mode {mode + 1} ({word}, {heard:.4g} Hz) at {speed:.5g} rpm")
 
 
 def _checked_count(modes: int | None, model: LinearModel) -> int:

@@ -13,6 +13,7 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.modal import excitation
 from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
 from exudyn_rotor.linear.modal.damping import oscillates
+from exudyn_rotor.linear.modal.tracking import joined_in_space
 from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.results import Result, numbers, storable
@@ -92,7 +93,7 @@ class Campbell(Result):
     >>> print(result.table(1))
       speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
                0     1                 0              0              0  0  axial
-           7.958     1                 0              0              0  0  axial
+         7.95775     1                 0              0              0  0  axial
     free motions: translation along axis
     stiffening: tilt
     """
@@ -146,7 +147,8 @@ class Campbell(Result):
         weaker sense has more than half the amplitude of the stronger; 'axial', 'torsional' and
         'radial' for n = 0; 'static' for a wave that stands still in space, like a free rotor that
         is displaced; 'overdamped' for a lateral motion that decays without oscillating;
-        'unknown' where neither shapes nor interfaces show the mode.
+        'unknown' where neither shapes nor interfaces show the mode, or where it has more than four
+        nodal diameters: its inertial frequency is that of the rotor frame then.
         """
         return np.array(WHIRLS)[self.whirl_codes]
 
@@ -196,7 +198,14 @@ class Campbell(Result):
         order = checks.number(order, "order", above=0.0)
         tracked = self.tracked()
         values = tracked.frequencies_inertial
-        return excitation.crossings(self.speeds, values, tracked.continued, order)
+        return excitation.crossings(self.speeds, values, tracked._joined(True), order)
+
+    def _joined(self, inertial: bool) -> np.ndarray:
+        """Return where a line goes on from the speed before, in one of the frames, shape (s, k)."""
+        if not inertial:
+            return self.continued
+        seen = self.frequencies_rotor, self.frequencies_inertial, self.nodal_diameters
+        return joined_in_space(self.speeds, *seen, self.continued)
 
     def plot(
         self,
@@ -210,7 +219,8 @@ class Campbell(Result):
     ) -> Axes:
         """Draw the tracked modes over the spin speed; see :mod:`exudyn_rotor.plotting`.
 
-        A line breaks where it would join different modes.
+        A line breaks where it would join different modes, or waves of a mode that stands in the
+        rotor frame: it is seen at ``ν + nΩ`` and ``ν − nΩ``, and the stronger one is drawn.
 
         Parameters
         ----------
@@ -247,7 +257,7 @@ class Campbell(Result):
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
-        codes, continued = tracked.whirl_codes, tracked.continued
+        codes, continued = tracked.whirl_codes, tracked._joined(inertial)
         drawn = np.where(tracked.oscillates, shown.frequencies(values), np.nan)
         handles = draw_campbell(ax, speeds, drawn, codes, continued, unstable)
         if limits is not None:
@@ -322,7 +332,7 @@ class Campbell(Result):
                 if self.splits is not None and self.splits[i, j] > 0.0:
                     kind += f"  pair, the other {self.splits[i, j]:.1e} above"
                 lines.append(
-                    f"{at:12.4g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
+                    f"{at:12.6g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
                     f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"
                 )
         if self.free_motions:
@@ -331,7 +341,7 @@ class Campbell(Result):
             lines.append(f"stiffening: {self.stiffening}")
         lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
         if lost.size:
-            listed = ", ".join(f"{f:.4g}" for f in lost)
+            listed = ", ".join(f"{f:.6g}" for f in lost)
             lines.append(f"modes not followed up to {speed}: {listed}")
         if errors is None:
             lines.append(NOT_KNOWN)

@@ -218,8 +218,8 @@ def critical_speeds(
 def warn_of_critical(basis: BasisError, speeds: np.ndarray, errors: np.ndarray) -> None:
     """Warn where the basis leaves out too much for some critical speed [rad/s]."""
     if np.any(errors > 0.0):
-        worst = speeds.flat[np.nanargmax(errors)] / (2.0 * np.pi)
-        basis.warn(np.nan_to_num(errors), f"the critical speed of {worst:.4g} Hz")
+        worst = Units.of("rpm").speeds(speeds.flat[np.nanargmax(errors)])
+        basis.warn(np.nan_to_num(errors), f"the critical speed of {worst:.5g} rpm")
 
 
 def critical_speeds_of(

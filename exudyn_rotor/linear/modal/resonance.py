@@ -296,7 +296,7 @@ def _turning(
     vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(ascending)), axis=0)
     for group in same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
         if len(group) > 1:
-            vectors[:, :, group] = content.polarised(vectors[:, :, group], multiples)
+            vectors[:, :, group] = content.polarised(vectors[None, :, :, group], multiples)[0]
     seen = multiples[:, None] + content.orders[None, :]
     energy = content.energies(vectors)
     total = np.maximum(content.whole_energy(vectors), 1e-300)

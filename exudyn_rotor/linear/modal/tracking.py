@@ -18,6 +18,7 @@ _STEEPEST = 4.0
 # a match is another mode below this likeness, or beyond this many steepest changes of frequency
 _LEAST_LIKENESS, _MOST_CHANGES = 0.25, 2.0
 _NO_FREQUENCY = 1e-7  # of the highest: a free motion
+_ROUGH = 1e-6  # of a frequency
 _MOST_ENTRIES = 1_000_000  # of the arrays of speeds that are matched at once
 
 
@@ -35,6 +36,41 @@ class Tracks:
 
     columns: np.ndarray
     continued: np.ndarray
+
+
+def joined_in_space(
+    speeds: np.ndarray,
+    rotor: np.ndarray,
+    inertial: np.ndarray,
+    diameters: np.ndarray,
+    continued: np.ndarray,
+) -> np.ndarray:
+    """Return where the same wave of a mode is seen as at the speed before, shape (s, k).
+
+    A mode that stands in the rotor frame is seen at ``ν + nΩ`` and ``ν − nΩ``. Where the stronger
+    of the two becomes the weaker, its frequency seen from outside jumps by ``2nΩ``, while that of
+    one wave changes by ``|Δν| + n|ΔΩ|`` at most; with four for unknown n.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (s,)
+        Ω [rad/s].
+    rotor, inertial : ndarray, shape (s, k)
+        Frequencies ν ≥ 0 in the rotor frame and those seen from outside [rad/s].
+    diameters : ndarray of int, shape (s, k)
+        n, −1 where it is not known.
+    continued : ndarray of bool, shape (s, k)
+        Where a column is the same mode as at the speed before.
+    """
+    known = np.where(diameters < 0, _STEEPEST, np.maximum(diameters, 1))
+    steepest = np.maximum(known[1:], known[:-1]) * np.abs(np.diff(speeds))[:, None]
+    change, together = np.abs(np.diff(rotor, axis=0)), rotor[1:] + rotor[:-1]
+    # where ν may pass zero, it goes on as the conjugate motion
+    change = np.where(together <= 2.0 * steepest, together, change)
+    jump = np.abs(np.diff(inertial, axis=0))
+    joined = continued.copy()
+    joined[1:] &= jump <= change + steepest + _ROUGH * inertial[1:]
+    return joined
 
 
 @one_thread()

@@ -11,16 +11,16 @@ Dynamics of Rotating Systems (2005).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.cached import kept
+from exudyn_rotor.linear.modal.one_sense import as_waves
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
-from exudyn_rotor.linear.models.waves import HIGHEST, wave_amplitudes
-from exudyn_rotor.linear.periodic.eigenvalues import repeated
+from exudyn_rotor.linear.models.waves import HIGHEST, compressed, stacked, wave_amplitudes
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -40,8 +40,11 @@ FAMILIES = ("lateral", "torsional", "axial", "disc", "other", "foundation")
 MIXED_SHARE = 0.25
 # share of energy that two frequencies seen from outside may differ by and count as equally strong
 _EVEN = 0.05
-# a mode has n nodal diameters when ±n hold this share of its energy
-DIAMETER_SHARE = 0.7
+# a mode has n nodal diameters when ±n hold this share of its energy, or, where the waves along a
+# shaft are too many for the fit, the second share of what is fitted
+DIAMETER_SHARE, _PURE_SHARE = 0.7, 0.9
+# least fitted share for that, and share below which more nodal diameters are all there is
+_FITTED, _NOT_FITTED = 0.1, 0.05
 
 # inertial frequencies below this share of the speed are round-off
 _STATIC = 1e-7
@@ -115,36 +118,47 @@ class WhirlContent:
         return np.sum(moved.real**2 + moved.imag**2, axis=2)
 
     def polarised(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
-        """Turn modes (h, c, g) of one eigenvalue so that each holds waves of one sense.
+        """Turn modes (n, h, c, g) of one eigenvalue so that each holds waves of one sense.
 
-        `orders` (h,) are the multiples of Ω by which the harmonics turn. The combinations make the
-        mean wave number seen from outside extremal: circular motion instead of motion in two
-        planes.
+        Unit vectors, in n groups; `orders` (h,) are the multiples of Ω by which the harmonics turn.
+        The combinations make the mean wave number seen from outside extremal: circular motion
+        instead of motion in two planes.
         """
-        shape, flat = vectors.shape, vectors.reshape(-1, vectors.shape[2])
-        alike = np.abs(flat.conj().T @ flat) >= (1.0 - _SAME) * np.sum(np.abs(flat) ** 2, axis=0)
-        first, place = np.unique(np.argmax(alike, axis=0), return_inverse=True)
-        if first.size < shape[2]:  # as the two copies of a free motion
-            once = self.polarised(vectors[:, :, first], orders)
-            nearest = np.abs(flat[:, first].conj().T @ once.reshape(len(flat), -1))
-            return once[:, :, linear_sum_assignment(-nearest)[1][place]]
+        count, width, result = len(vectors), vectors.shape[3], vectors.astype(complex)
+        flat = vectors.reshape(count, -1, width)
+        first = _first_alike(flat)
+        twins = np.any(first != np.arange(width), axis=1)
+        for i in np.flatnonzero(twins):  # as the two copies of a free motion
+            once, place = np.unique(first[i], return_inverse=True)
+            turned = self.polarised(vectors[i : i + 1, :, :, once], orders)[0]
+            nearest = np.abs(flat[i][:, once].conj().T @ turned.reshape(flat.shape[1], -1))
+            result[i] = turned[:, :, linear_sum_assignment(-nearest)[1][place]]
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
-        if lengths.size < shape[2] or lengths[-1] < _DEPENDENT * lengths[0]:
-            return vectors  # copies of a defective eigenvalue
-        chosen = self._chosen(span.reshape(shape))
-        moved = self.waves @ chosen[:, None]
-        seen = np.add.outer(orders, self.orders)
-        weighted = seen[:, :, None, None] * moved.conj()
-        mean = np.tensordot(weighted, moved, ((0, 1, 2), (0, 1, 2)))
+        # not copies of a defective eigenvalue
+        clear = ~twins & (lengths[:, -1] >= _DEPENDENT * lengths[:, 0])
+        if lengths.shape[1] == width and np.any(clear):
+            turned = self._extremal(span[clear].reshape(-1, *vectors.shape[1:]), orders)
+            result[clear] = turned / np.linalg.norm(turned, axis=(1, 2), keepdims=True)
+        return result
+
+    def _extremal(self, span: np.ndarray, orders: np.ndarray) -> np.ndarray:
+        """Return combinations of motions (n, h, c, g) whose mean wave number is extremal."""
+        chosen, width = self._chosen(span), span.shape[3]
+        moved = (self.waves @ chosen[:, :, None]).reshape(len(span), -1, width)
+        seen = np.add.outer(orders, self.orders).repeat(self.waves.shape[1])
         # 0.4 lies between the waves, so that axial motion parts from torsion
-        mean = mean + _gram(self.axial, chosen, 0.4 + 0.0 * orders)
-        gram = _gram(self.whole, chosen, 1.0 + 0.0 * orders)
-        floor = 1e-12 * max(np.trace(gram).real, 1e-300)
-        lower = np.linalg.cholesky(gram + floor * np.eye(shape[2]))
-        turned = np.linalg.solve(lower, np.linalg.solve(lower, mean).conj().T)
-        _, directions = np.linalg.eigh(0.5 * (turned + turned.conj().T))
-        combined = span @ np.linalg.solve(lower.conj().T, directions)
-        return (combined / np.linalg.norm(combined, axis=0)).reshape(shape)
+        axial, whole = (
+            (part @ chosen).reshape(len(span), -1, width) for part in (self.axial, self.whole)
+        )
+        mean = _gram(moved, seen) + _gram(axial, 0.4)
+        gram = _gram(whole, 1.0)
+        traces = np.trace(gram, axis1=1, axis2=2).real[:, None, None]
+        lower = np.linalg.cholesky(gram + 1e-12 * np.maximum(traces, 1e-300) * np.eye(width))
+        half = np.linalg.solve(lower, mean).conj().swapaxes(1, 2)
+        turned = np.linalg.solve(lower, half)
+        _, directions = np.linalg.eigh(0.5 * (turned + turned.conj().swapaxes(1, 2)))
+        turn = np.linalg.solve(lower.conj().swapaxes(1, 2), directions)
+        return span @ turn[:, None]
 
     def turn_both_ways(
         self, first: np.ndarray, second: np.ndarray, orders: np.ndarray
@@ -179,7 +193,7 @@ class WhirlContent:
 
     def named_at(self, modes: Sequence[FloquetModes], speeds: Sequence[float]) -> list[Named]:
         """Return what :meth:`named` does, for several speeds at once."""
-        vectors = self._as_waves(modes)
+        vectors = as_waves(modes, self.polarised)
         alike: dict[tuple, list[int]] = {}
         for index, entry in enumerate(modes):
             alone = index if entry.vectors.size > _MANY else None  # saves time for small ones only
@@ -198,25 +212,6 @@ class WhirlContent:
             for row, *entries in zip(rows, *parts, strict=True):
                 result[row] = (vectors[row], *entries)
         return [result[row] for row in range(len(modes))]
-
-    def _as_waves(self, modes: Sequence[FloquetModes]) -> list[np.ndarray]:
-        """Return vectors (h, c, k) with Im λ ≥ 0, repeated modes as waves of one sense."""
-        result, last = [], (None, None)
-        for entry in modes:
-            vectors = entry.vectors.astype(complex)
-            negative, halves = entry.values.imag < 0.0, [np.arange(len(entry.values))]
-            if np.any(negative):
-                vectors[:, :, negative] = vectors[::-1][:, :, negative].conj()
-                halves = [np.flatnonzero(~negative), np.flatnonzero(negative)]
-            for half in halves:
-                for group in _copies(entry.values[half], entry.resolution):
-                    copies = vectors[:, :, half[group]]
-                    # free motions are the same at all speeds
-                    if not np.array_equal(copies, last[0]):
-                        last = copies, self.polarised(copies, entry.orders)
-                    vectors[:, :, half[group]] = last[1]
-            result.append(vectors)
-        return result
 
     def classify(
         self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float | np.ndarray
@@ -240,7 +235,7 @@ class WhirlContent:
         ``ν + nΩ`` as at ``ν − nΩ``; where less than 5 % tells them apart the first counts. The mode
         is mixed where the weaker sense has more than a quarter of the energy of the stronger (half
         its amplitude), static where its strongest wave stands still, unknown where nothing of it is
-        seen; then n is taken as 0.
+        seen, or only nodal diameters above four; then n is taken as 0.
         """
         energy = self.energies(vectors)  # (h, o, k)
         beside, total = self.beside(vectors), self.whole_energy(vectors)
@@ -269,6 +264,7 @@ class WhirlContent:
         code[still] = self._without_waves(vectors[:, :, still])
         code[stands] = FOUNDATION
         unseen = total <= 1e-12 * np.max(total, initial=0.0)
+        unseen |= self._not_fitted(vectors, energy, total) & ~stands
         code[unseen] = UNKNOWN
         strongest = orders[np.argmax(np.sum(np.abs(vectors) ** 2, axis=1), axis=0)]
         frequency = np.where(unseen, np.abs(nu + strongest * speed), frequency)
@@ -302,23 +298,34 @@ class WhirlContent:
 
     def _without_waves(self, vectors: np.ndarray) -> np.ndarray:
         """Return axial, torsional or radial for modes with n = 0."""
+        strongest = np.argmax(self._parts(vectors), axis=0)
+        return np.array([AXIAL, TORSIONAL, RADIAL])[strongest]
+
+    def _parts(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the energy along the axis of n = 0, the circumference and the radius (3, k)."""
         chosen = self._chosen(vectors)
         parts = (self.axial, self.tangential, self.radial)
-        strongest = np.argmax(
-            [np.sum(_energy(component, chosen), axis=0) for component in parts], axis=0
-        )
-        return np.array([AXIAL, TORSIONAL, RADIAL])[strongest]
+        return np.array([np.sum(_energy(component, chosen), axis=0) for component in parts])
+
+    def _not_fitted(self, vectors: np.ndarray, energy: np.ndarray, total: np.ndarray) -> np.ndarray:
+        """Return which modes have more nodal diameters than are looked at, shape (k,)."""
+        few = energy.sum(axis=(0, 1)) < _NOT_FITTED * total
+        few[few] = self._parts(vectors[:, :, few]).max(axis=0) < 0.5 * total[few]
+        return few
 
     def _diameters(self, energy: np.ndarray, whole: np.ndarray) -> np.ndarray:
         """Return n where ±n hold most of the energy, −1 elsewhere."""
         by_order = np.sum(energy, axis=0)
         counts = np.arange(self.orders.max() + 1)
         pairs = np.array([by_order[np.abs(self.orders) == n].sum(axis=0) for n in counts])
-        clear = pairs.max(axis=0) >= DIAMETER_SHARE * np.maximum(whole, 1e-300)
+        whole, fitted, most = np.maximum(whole, 1e-300), pairs.sum(axis=0), pairs.max(axis=0)
+        # on a coarse mesh fields of several n may cancel each other
+        clear = most >= DIAMETER_SHARE * np.maximum(whole, fitted)
+        clear |= (fitted >= _FITTED * whole) & (most >= _PURE_SHARE * fitted)
         return np.where(clear, np.argmax(pairs, axis=0), -1)
 
     def _chosen(self, vectors: np.ndarray) -> np.ndarray:
-        return vectors if self.rows is None else vectors[:, self.rows]
+        return vectors if self.rows is None else vectors[..., self.rows, :]
 
 
 @kept
@@ -345,13 +352,6 @@ def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     return np.array(FAMILIES)[kinds]
 
 
-def _copies(values: np.ndarray, resolution: float) -> Iterator[np.ndarray]:
-    """Yield the indices of values that are one; of zero only what rounding has made of it."""
-    for group in repeated(values, resolution):
-        zero = values[group] == 0.0
-        yield from (part for part in (group[zero], group[~zero]) if part.size > 1)
-
-
 def named_overdamped(codes: np.ndarray, overdamped: np.ndarray) -> np.ndarray:
     """Return whirl codes; lateral motions that are overdamped have no sense."""
     lateral = np.isin(codes, (FORWARD, BACKWARD, MIXED, STATIC))
@@ -362,36 +362,26 @@ def _energy(amplitudes: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.sum(np.abs(amplitudes @ vectors) ** 2, axis=1)
 
 
-def _gram(amplitudes: np.ndarray, vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    moved = amplitudes @ vectors
-    return np.einsum("h,hpi,hpj->ij", weights, moved.conj(), moved)
+def _gram(moved: np.ndarray, weights: np.ndarray | float) -> np.ndarray:
+    """Return the weighted products of columns, (n, g, g), of amplitudes (n, p, g)."""
+    return (moved.conj().swapaxes(1, 2) * weights) @ moved
+
+
+def _first_alike(vectors: np.ndarray) -> np.ndarray:
+    """Return for each column (n, g) of vectors (n, c, g) the first one that is the same."""
+    products = np.abs(vectors.conj().swapaxes(1, 2) @ vectors)
+    sizes = np.diagonal(products, axis1=1, axis2=2)
+    return np.argmax(products >= (1.0 - _SAME) * sizes[:, None, :], axis=1)
 
 
 def _operators(points: np.ndarray, motion: np.ndarray, standing: np.ndarray) -> tuple:
     """Return the fields of :class:`WhirlContent` up to `whole`."""
     orders, amplitudes, axial = wave_amplitudes(points, motion)
     amplitudes[HIGHEST] = np.vstack([amplitudes[HIGHEST], standing])
-    waves = _alike(amplitudes)
+    waves = stacked(amplitudes)
     u1, u2, _ = motion.reshape(len(points), 3, -1).transpose(1, 0, 2)
     angle = np.arctan2(points[:, 1], points[:, 0])[:, None]
     radial = np.cos(angle) * u1 + np.sin(angle) * u2
     tangential = np.cos(angle) * u2 - np.sin(angle) * u1
     whole = np.vstack([motion, standing])
-    return (orders, waves, axial, *(_small(X) for X in (tangential, radial, whole)))
-
-
-def _small(matrix: np.ndarray) -> np.ndarray:
-    """Return a square matrix with the same Gram matrix, where that is smaller."""
-    if matrix.shape[0] <= matrix.shape[1]:
-        return matrix
-    squares, turn = np.linalg.eigh(matrix.conj().T @ matrix)
-    return np.sqrt(np.maximum(squares, 0.0))[:, None] * turn.conj().T
-
-
-def _alike(matrices: Sequence[np.ndarray]) -> np.ndarray:
-    """Return matrices with the same Gram matrices and equally many rows, in one array."""
-    small = [_small(X) for X in matrices]
-    result = np.zeros((len(small), max(map(len, small)), small[0].shape[1]), dtype=complex)
-    for rows, X in zip(result, small, strict=True):
-        rows[: len(X)] = X
-    return result
+    return (orders, waves, axial, *(compressed(X) for X in (tangential, radial, whole)))

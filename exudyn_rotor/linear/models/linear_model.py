@@ -82,8 +82,8 @@ def linear_model(
         a SolidRotor with elements, and 'tilt' without.
     about : {'steady', 'equilibrium', 'given'}
         Motion about which a scene is linearised: the periodic motion under its loads and the
-        rotor's own unbalance at each speed, that without this unbalance, or its current state with
-        the rotor undeformed.
+        rotor's own unbalance at each speed; that without this unbalance, films at rest under their
+        mean force, as in a list of supports; or its current state with the rotor undeformed.
     dense : bool, optional
         Whether a SolidRotor is solved in all its coordinates by dense matrices, or for its lowest
         modes; by default dense up to 600 degrees of freedom.

@@ -6,13 +6,15 @@ The wave n of a motion turns in the rotor frame as ``exp(i(νt − nα))``, see
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 HIGHEST = 4  # largest |n| that is looked at
-_AXIAL_TERMS = 6
-_RADIAL_TERMS = 2
-# share of a field that others must leave over to count as new
-_NEW_SHARE = 1e-2
+# how many T_q(z) with each of 1, r², r⁴: shafts bend in many waves, discs have nodal circles
+_AXIAL_TERMS = (10, 6, 2)
+# share of a field that others must leave over to count as new: what less is left tells noise
+_NEW_SHARE = 3e-2
 # share of the longest field, squared, below which one depends on others
 _DEPENDENT = 1e-12
 
@@ -58,8 +60,8 @@ def wave_amplitudes(
 def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
     """Return cosines, then sines of the fields of the waves ``exp(ilα)`` at points, (s, p) per l.
 
-    Those of ``r^|l| (1, r²) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet: where
-    the points are too few to tell waves apart, they are of low |l|.
+    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet:
+    where the points are too few to tell waves apart, they are of low |l|.
     """
     x, y, z = points.T
     radius = np.hypot(x, y)
@@ -68,9 +70,12 @@ def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
     radius = np.where(radius <= 1e-9 * max(length, widest), 0.0, radius)
     scaled = radius / (radius.max(initial=0.0) or 1.0)
     along = np.polynomial.chebyshev.chebvander(
-        2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z), _AXIAL_TERMS - 1
+        2.0 * (z - z.min()) / length - 1.0 if length > 0.0 else np.zeros_like(z),
+        max(_AXIAL_TERMS) - 1,
     )
-    steady = np.hstack([along * scaled[:, None] ** (2 * p) for p in range(_RADIAL_TERMS)])
+    steady = np.hstack(
+        [along[:, :count] * scaled[:, None] ** (2 * p) for p, count in enumerate(_AXIAL_TERMS)]
+    )
     turning = np.vander(scaled * np.exp(1j * np.arctan2(y, x)), highest + 1, increasing=True)
     fields = turning[:, :, None] * steady[:, None, :]
     parts = fields.reshape(len(points), -1).view(float)  # real beside imaginary ones
@@ -105,3 +110,20 @@ def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:
     return np.linalg.solve(
         np.linalg.cholesky(directions @ within @ directions.conj().T), directions
     )
+
+
+def compressed(matrix: np.ndarray) -> np.ndarray:
+    """Return a square matrix with the same Gram matrix, where that is smaller."""
+    if matrix.shape[0] <= matrix.shape[1]:
+        return matrix
+    squares, turn = np.linalg.eigh(matrix.conj().T @ matrix)
+    return np.sqrt(np.maximum(squares, 0.0))[:, None] * turn.conj().T
+
+
+def stacked(matrices: Sequence[np.ndarray]) -> np.ndarray:
+    """Return matrices with the same Gram matrices and equally many rows, in one array."""
+    small = [compressed(X) for X in matrices]
+    result = np.zeros((len(small), max(map(len, small)), small[0].shape[1]), dtype=complex)
+    for rows, X in zip(result, small, strict=True):
+        rows[: len(X)] = X
+    return result

@@ -73,6 +73,12 @@ class TurnedRotor:
         """Return the rotor, one of ratio 1 as an axisymmetric one."""
         return self if self.turning else replace(self, turning=Turning.of(self.alone))
 
+    def mesh_unevenness(self, places: Sequence[str]) -> float:
+        """Return the share that is not axisymmetric, also of a rotor that is taken as it is."""
+        if self.turning is not None:
+            return self.unevenness
+        return _unevenness(self.alone, Turning.of(self.alone), places)
+
     @property
     def size(self) -> int:
         """Number of coordinates k."""

@@ -37,6 +37,7 @@ _RIGID_PAIRS = (
 )
 _PAIR = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)  # waves of n = 1 and −1
 _NOTHING = 1e-13  # share of a matrix that is round-off
+_FREE = 1e-12  # share of the largest squared frequency that is round-off of a free motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +65,11 @@ class Turning:
         """Find the waves of a rotor without supports."""
         inv, kinds = rotor.invariants, rotor.rotor.rigid_kinds
         squares, V = la.eigh(inv.K, inv.M)
-        omega = np.sqrt(np.maximum(squares, 0.0))
+        # free motions are of one group, those of a rotor without rigid coordinates, too
+        omega = np.sqrt(np.where(squares > _FREE * squares.max(), squares, 0.0))
         rigid = len(kinds)
         omega[:rigid], V[:, :rigid] = 0.0, np.eye(len(V), rigid)
-        first = omega[rigid] if rigid < len(omega) else 1.0
+        first = omega[omega > 0.0].min(initial=np.inf)
         E, waves = _flexible_waves(rotor, V, omega, rigid)
         for pair in _RIGID_PAIRS:
             if set(pair) <= set(kinds):
