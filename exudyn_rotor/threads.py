@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import cache, partial
-from threading import Lock, local
+from threading import Lock, RLock, local
 from typing import TypeVar
 
 import numpy as np
@@ -123,15 +123,18 @@ def in_turns(function: Callable[[Item], Result], items: Sequence[Item]) -> list[
     in Python, they would wait for one another at every call of numpy. What calls :func:`eig` must
     hold no lock that another item needs, as a property of ``functools`` does before Python 3.12.
     """
-    turn = Lock()
+    turn = RLock()  # which knows its owner
 
     def work(item: Item) -> Result:
-        with turn:
+        before = getattr(_HERE, "turn", None)
+        try:
+            turn.acquire()
             _HERE.turn = turn
-            try:
-                return function(item)
-            finally:
-                del _HERE.turn
+            return function(item)
+        finally:
+            _HERE.turn = before
+            with suppress(RuntimeError):  # interrupted while it waited, here or in eig
+                turn.release()
 
     return shared(work, items)
 

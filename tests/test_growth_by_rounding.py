@@ -215,3 +215,46 @@ def test_inverse_iteration_at_a_root_keeps_the_vector():
     K = -(np.array([shifted**2, shifted, 1.0]) @ [1.0, 0.0, 0.0]) * np.eye(2)
     found = eigenvalues.inverse_iterated(np.array([value]), vectors, np.eye(2), np.zeros((2, 2)), K)
     np.testing.assert_array_equal(found, vectors)
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(st.integers(0, 2**32 - 1), st.floats(6.0, 12.0), st.sampled_from(KINDS), st.booleans())
+def test_bounds_of_inexact_entries_hold_beside_fast_states(seed, power, kind, by_rows):
+    """Each entry errs by its share, or by that of its row; a fast controller feels the motion."""
+    rng, share, size = np.random.default_rng([seed, 2]), 1e-10, 8
+    given_one = system_of(kind, seed, 1e4)
+    M, D, K = (np.pad(X, (0, 2)) for X in given_one.matrices(0.0))
+    M[size:, size:], D[size:, size:] = np.eye(2), 10.0 ** (0.5 * power) * np.eye(2)
+    K[size:, size:], K[size, 0], K[0, size] = 10.0**power * np.eye(2), -(10.0**power), 1e4
+    system = PeriodicSystem(100.0, {0: M}, {0: D}, {0: K}, rounding=share)
+    modes = motions(system, shapes=False)
+    unit = np.sqrt(np.diag(M))
+    for _ in range(5):
+        changed = []
+        for X in (D, K):
+            rows = np.linalg.norm(X / unit / unit[:, None], axis=1)[:, None] * unit * unit[:, None]
+            error = np.where(X == 0.0, 0.0, rows) if by_rows else np.abs(X)
+            changed.append({0: X + share * error * rng.uniform(-1.0, 1.0, X.shape)})
+        other = motions(PeriodicSystem(100.0, {0: M}, *changed), shapes=False).values
+        apart = np.abs(modes.values[:, None] - other)
+        moved = apart.min(axis=1)
+        alone = np.sort(np.abs(modes.values[:, None] - modes.values), axis=1)[:, 1] > 100.0 * moved
+        assert np.mean(alone) > 0.5
+        np.testing.assert_array_less(moved[alone], modes.bounds[alone] + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_bounds_of_inexact_entries_are_not_of_what_stands_beside(seed):
+    """A controller without a link, of 1e12 1/s², brings the rounding of the eigensolver alone."""
+    M, D, K = system_of("damped", seed, 1e4).matrices(0.0)
+    terms = (np.pad(X, (0, 1)) for X in (M, D, K))
+    fast = [np.diag([0.0] * 8 + [x]) for x in (1.0, 1e6, 1e12)]
+    both = [{0: X + Y} for X, Y in zip(terms, fast, strict=True)]
+    alone, beside = (
+        motions(PeriodicSystem(100.0, *given_terms, rounding=1e-11), shapes=False)
+        for given_terms in (({0: M}, {0: D}, {0: K}), both)
+    )
+    slow = np.abs(beside.values) < 1e5
+    assert np.count_nonzero(slow) == len(alone.values)
+    solver = 100.0 * np.finfo(float).eps * 1e12 / np.abs(beside.values).min()
+    assert beside.bounds[slow].max() < 1.01 * alone.bounds.max() + solver

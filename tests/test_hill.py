@@ -7,6 +7,7 @@ import pytest
 from asymmetric import asymmetric_shaft
 from exponent_methods import floquet_exponents
 from models import disc_rotor
+from scipy.optimize import linear_sum_assignment
 from test_stability import anisotropic, mathieu, random_system
 
 from exudyn_rotor.bearings.support import Support
@@ -146,7 +147,7 @@ def test_motions_follow_into_truncations_too_large_to_be_solved(monkeypatch):
     monkeypatch.setattr(hill, "_MORE_OF_FEW", 1.0)
     monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.6 * unknowns))
     assert np.array_equal(motions(system, "hill", 1e-11).values, exact.values)
-    monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.4 * unknowns))
+    monkeypatch.setattr(hill, "MOST_UNKNOWNS", int(0.2 * unknowns))
     with pytest.raises(UnconvergedError, match="harmonics up to"):
         motions(system, "hill", 1e-11)
 
@@ -268,3 +269,31 @@ def test_models_with_many_modes_have_four_steps_of_harmonics(size, order, larger
     assert followed == 6
     with pytest.raises(UnconvergedError, match="harmonics up to"):
         hill._next(uneven, 100, 1.0, 1e-8, 2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("eccentric", [False, True])
+def test_motions_by_slow_ones_are_those_of_large_truncations(seed, eccentric, monkeypatch):
+    """A few coupled soft coordinates beside stiff ones, at a speed that splits their frequencies.
+
+    The reference is Hill's method without this way, to the tolerances of both.
+    """
+    rng, size, soft = np.random.default_rng(seed), 14, 3
+    rates = np.concatenate([rng.uniform(200.0, 400.0, soft), rng.uniform(4e3, 2e4, size - soft)])
+    links = 1e3 * np.outer(*(2 * [np.where(np.arange(size) < soft, 8.0, 1.0)]))
+    turning = links * (rng.normal(size=(size, size)) + 1j * rng.normal(size=(size, size)))
+    K = {0: np.diag(rates**2), 2: 0.25 * (turning + turning.T)}
+    if eccentric:
+        K[1] = 0.1 * (turning + turning.T)
+    K |= {-n: K[n].conj() for n in K if n}
+    D = {0: 0.02 * np.diag(rates)}
+    system = PeriodicSystem(60.0, {0: np.eye(size)}, D, K)
+    expected = fold(motions(system, "hill", 1e-9).values, abs(system.base))
+    monkeypatch.setattr(hill, "_LONG", 0)
+    used, original = [], hill._by_slow_motions
+    monkeypatch.setattr(hill, "_by_slow_motions", lambda *a: used.append(original(*a)) or used[-1])
+    found = fold(motions(system, "hill", 1e-9).values, abs(system.base))
+    assert any(each is not None for each in used)
+    apart = np.abs(fold(found[:, None] - expected, abs(system.base)))
+    rows, columns = linear_sum_assignment(apart)
+    assert np.all(apart[rows, columns] < 1e-8 * np.maximum(-expected[columns].real, system.speed))

@@ -15,6 +15,7 @@ from transformed import transformed
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.campbell import campbell
+from exudyn_rotor.linear.models.linear_model import linear_model
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic import floquet_modes as modes_module
 from exudyn_rotor.linear.periodic import fundamental, hill
@@ -291,3 +292,23 @@ def test_entries_of_very_different_sizes_are_weighed_without_a_warning():
     F = np.triu(np.full((1, 6, 6), 1e-200), 2) + np.triu(np.ones((1, 6, 6)), 4)
     rest = _Remainder(F, np.arange(6.0) + 0j, np.full(6, 1e-3), 1.0, np.zeros(6))
     assert rest.share < 1e-6
+
+
+def test_more_harmonics_where_the_estimate_of_those_left_out_is_too_small():
+    """Two masses on a shaft that is uneven, as all bearings are; against Floquet's method."""
+    shaft = np.kron([[1.0, -1.0], [-1.0, 1.0]], np.diag([3039108.0, 3343019.0, 4.33e7]))
+    mass = np.kron(np.diag([0.3741, 7.1276]), np.eye(3))
+    rotor = SolidRotor.from_matrices(mass, shaft, [[0.0, 0.0, 0.1], [0.0, 0.0, 0.3]], "z")
+    rotor = rotor.with_interface("light", [0]).with_interface("heavy", [1])
+    supports = [
+        Support("light", [[59229.0, 6e4], [-6e4, 5800399.0]], 10.0),
+        Support("heavy", [[558734.0, 1e5], [-1e5, 1337696.0]], 10.0),
+        Support("heavy", damping=np.diag([20.0, 60.0]), frame="rotor"),
+    ]
+    model = linear_model(rotor, supports=supports, stiffening="none")
+    system = model.space(0, 100.0, held=True).at(100.0)
+    exact = motions(system, "floquet", 1e-11).values
+    found = fold(floquet_modes(system).values, system.base)
+    lateral = np.abs(found.real) > 1e-6  # the axial motion is free of damping
+    apart = np.abs(fold(found[lateral, None] - exact, system.base)).min(axis=1)
+    assert apart.max() < 1e-5

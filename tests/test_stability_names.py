@@ -70,6 +70,34 @@ def test_an_undamped_axial_mode_does_not_hide_the_lateral_growth(rings):
     assert result.damping_ratio[at] == pytest.approx(-root.real / abs(root), rel=1e-9)
     assert result.log_decrement[at] == pytest.approx(-2.0 * np.pi * root.real / root.imag)
     assert "forward" in result.table()
+
+
+def test_the_least_stable_motion_of_each_family_is_named():
+    """Torsion with little damping is the least stable of all, and hid which lateral motion is.
+
+    ``I_p φ̈ + d φ̇ + k φ = 0`` decays with d/(2 I_p).
+    """
+    rings = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+    speeds, damping = np.array([100.0, 200.0]), 1e-3 * np.diag([1e3, 1e3, 1.0])
+    tilt = np.diag([1e5, 1e5, TORSION])
+    springs = Support("all", np.diag([STIFFNESS, STIFFNESS, AXIAL]), OUTER, tilt, damping)
+    result = stability(
+        rings, speeds, supports=[springs, Support("all", damping=1.0, frame="rotor")]
+    )
+    assert set(result.families[[0, 1], result.least_stable]) == {"torsional"}
+    assert result.exponents[result.least_stable_of("torsional")].real == pytest.approx(
+        -0.5e-3 / POLAR, rel=1e-6
+    )
+    row, column = result.least_stable_of("lateral")
+    root = max((max(lateral(speed, 1.0), key=lambda value: value.real) for speed in speeds),
+               key=lambda value: value.real)  # fmt: skip
+    assert (row, result.whirl[row, column]) == (1, "forward")
+    assert result.exponents[row, column].real == pytest.approx(root.real, rel=1e-9)
+    decrement = -2.0 * np.pi * root.real / root.imag
+    told = f"least stable lateral motion: {root.real:.4g} 1/s at 1909.86 rpm, "
+    told += f"{root.imag / (2.0 * np.pi):.5g} Hz, forward, n = 1, log decrement {decrement:.3g}"
+    assert told in result.table(units="rpm").splitlines()
+    assert result.least_stable_of("disc") is None
     for word, omega in (("axial", AXIAL / MASS), ("torsional", TORSION / POLAR)):
         found = result.frequencies_inertial[result.whirl == word]
         np.testing.assert_allclose(found, np.sqrt(omega), rtol=1e-6)

@@ -10,6 +10,7 @@ import pytest
 from threadpoolctl import ThreadpoolController
 
 import exudyn_rotor
+from exudyn_rotor import threads
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.sweep import sweep
 from exudyn_rotor.threads import eig, in_turns, meanwhile, one_thread, shared
@@ -218,3 +219,51 @@ def test_meanwhile_computes_once_beside_eigenproblems_and_passes_errors_on(threa
             eig(np.random.default_rng(0).normal(size=(9, 60, 60)))
             with pytest.raises(ZeroDivisionError):
                 result()
+
+
+class Interrupted:
+    """A lock that is interrupted when it is waited for a second time; another has it then."""
+
+    def __init__(self) -> None:
+        self.mine, self.taken, self.others = False, 0, False
+
+    def acquire(self) -> bool:
+        self.taken += 1
+        if self.taken == 2:
+            self.others = True
+            raise KeyboardInterrupt
+        self.mine = True
+        return True
+
+    def release(self) -> None:
+        if not self.mine:
+            raise RuntimeError("cannot release un-acquired lock")
+        self.mine = False
+
+    __enter__ = acquire
+
+    def __exit__(self, *_error: object) -> None:
+        self.release()
+
+
+def test_an_interrupt_while_a_turn_is_waited_for_comes_through(monkeypatch):
+    """As Ctrl-C; neither a lock of another thread is released nor one left behind."""
+    made = []
+    for name in ("Lock", "RLock"):
+        monkeypatch.setattr(threads, name, lambda: made.append(Interrupted()) or made[-1], False)
+    with pytest.raises(KeyboardInterrupt):
+        in_turns(lambda item: eig(item), [np.eye(3)])
+    assert made[0].others
+    assert not made[0].mine
+    monkeypatch.undo()
+    assert np.allclose(in_turns(lambda item: eig(item)[0], [np.eye(3)]), 1.0)
+
+
+def test_turns_within_turns_give_the_outer_one_back():
+    def outer(item):
+        first = threads._HERE.turn
+        in_turns(eig, [item])
+        return threads._HERE.turn is first
+
+    assert in_turns(outer, [np.eye(3)] * 2) == [True, True]
+    assert getattr(threads._HERE, "turn", None) is None

@@ -7,7 +7,7 @@ import pytest
 from asymmetric import asymmetric_shaft
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor import Support, linear_model, stability_threshold
+from exudyn_rotor import SolidRotor, Support, linear_model, stability_threshold, unstable_ranges
 from exudyn_rotor.linear.stability import thresholds
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt
 from exudyn_rotor.linear.stability.growth_over import GrowthOver
@@ -147,3 +147,27 @@ def test_motions_that_meet_are_followed_as_long_as_that_is_worth_it(monkeypatch)
     finer.calls = 0
     assert np.isnan(thresholds._searched_again(search, 0.5, True))
     assert thresholds._MOST <= finer.calls < 3 * thresholds._MOST
+
+
+@pytest.mark.parametrize("stiffer", [1.0, 1.3, 4.0])
+@pytest.mark.parametrize("inner", [9.0, 40.0])
+def test_the_limit_of_a_motion_on_uneven_supports_takes_few_solutions(monkeypatch, stiffer, inner):
+    """Of two masses: at the end of the range the one that grows later may grow faster.
+
+    ``(ms² + cs + k)(ms² + cs + l) + (dΩ)² = 0`` with springs k, l, dampers c = outer + d, d turning
+    with the rotor, has ``s = iω`` for ``ω² = (k + l)/2m``, ``(dΩ)² = (k − l)²/4 + c²ω²``.
+    """
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    limits, supports = [], []
+    masses = {"left": (2e4, 2.4e4, 9.0), "right": (1.2e4, 3.5e4 * stiffer, inner)}
+    for place, (name, (k, el, d)) in enumerate(masses.items()):
+        rotor = rotor.with_interface(name, [place])
+        supports += [Support(name, np.diag([k, el]), 10.0), Support(name, damping=d, frame="rotor")]
+        limits.append(np.hypot(0.5 * (k - el), (10.0 + d) * np.sqrt((k + el) / 4.0)) / d)
+    solved, solve = [], GrowthAt.__call__
+    monkeypatch.setattr(GrowthAt, "__call__", lambda *given: solved.append(1) or solve(*given))
+    highest = 1.5 * max(limits)
+    found = unstable_ranges(rotor, [50.0, highest], supports=supports, stiffening="none")
+    assert found == pytest.approx(np.array([[min(limits), highest]]), abs=1e-8 * highest)
+    assert len(solved) <= 2 + 2 + 2 + 2 + 1  # samples, halves, limits of both masses, name

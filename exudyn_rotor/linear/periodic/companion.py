@@ -39,8 +39,10 @@ class Companion:
         by storing it in one matrix with K₊ [1/s²]; Frobenius norms.
     scale : ndarray, shape (…)
         Largest frequency [1/s].
+    given : tuple of ndarray
+        M, D and K.
     rounding : float
-        Relative error of the entries of D and K.
+        Relative error of D and K, see :meth:`of`.
     found, z : ndarray, shapes (…, 2k), (…, 2k, 2k)
         Eigenvalues, and vectors z as columns of unit length.
     """
@@ -50,6 +52,7 @@ class Companion:
     sizes: np.ndarray
     noises: np.ndarray
     scale: np.ndarray
+    given: tuple[np.ndarray, np.ndarray, np.ndarray]
     rounding: float
     found: np.ndarray
     z: np.ndarray
@@ -60,8 +63,9 @@ class Companion:
     ) -> Companion:
         """Return the form of ``M ẍ + D ẋ + K x = 0``.
 
-        `rounding` is the relative error of the entries of D and K; larger than that of one
-        operation, it is taken for an error without symmetry.
+        `rounding` is the relative error of the entries of D and K. Larger than that of one
+        operation, it is that of differences of forces: without symmetry, and a share of the length
+        of its row, in coordinates of unit mass, for each entry that is not zero.
 
         Raises
         ------
@@ -104,7 +108,7 @@ class Companion:
         # in one matrix with K₊
         stored = np.where(np.any(circulatory, axis=(-2, -1)), noise, 0.0) / (4.0 * size)
         noises = np.stack([noise, rounding_of(D, inverse.T, rounding), stored])
-        return cls(A, axes, sizes, noises, scale, rounding, *eig(A))
+        return cls(A, axes, sizes, noises, scale, (M, D, K), rounding, *eig(A))
 
     @cached_property
     def _left(self) -> np.ndarray:
@@ -159,18 +163,36 @@ class Companion:
         z, left, count = self.z, self._left, self.sizes.shape[-1]
         most, amounts = np.linalg.norm(self.A, axis=(-2, -1))[..., None], self._amounts
         stiff, damped, stored = self.noises[..., None]
+        operation = EPSILON / self.rounding
         with np.errstate(over="ignore"):  # of left vectors of a defective eigenvalue
             forced = np.ascontiguousarray(_transposed(left[..., count:]))
             condition = np.linalg.norm(left, axis=-1) * np.linalg.norm(z, axis=-2)
             whole = np.linalg.norm(forced, axis=-2) * np.linalg.norm(amounts, axis=-2)
             real = _symmetric_norm(forced, amounts) if self.rounding == EPSILON else whole
-            relative = 2.0 * count * self.rounding
             unsymmetric = damped * np.abs(self.values()) + stored
-            solver = relative * most * condition + unsymmetric * whole
-            double = np.sqrt(relative) * most + np.sqrt(unsymmetric + stiff)
+            solver = 2.0 * count * EPSILON * most * condition + operation * unsymmetric * whole
+            if self.rounding > EPSILON:
+                solver = solver + self._by_entries(forced, amounts)
+            double = np.sqrt(2.0 * count * self.rounding) * most + np.sqrt(unsymmetric + stiff)
+            stiff = operation * stiff
             whole, real = (np.minimum(solver + stiff * each, double) for each in (whole, real))
         # of what may be zero, the first order in the error says nothing about the sign of λ²
         return whole, np.where(np.abs(self.values()) <= whole, whole, real)
+
+    def _by_entries(self, forced: np.ndarray, amounts: np.ndarray) -> np.ndarray:
+        """Return by how much errors of the entries of D and K change eigenvalues (…, 2k) [1/s].
+
+        ``|w|ᵀ (|ΔK| + |λ| |ΔD|) |x|``, entry by entry: the norm of all would let what is stiff, as
+        a controller, count for motions that it does not take part in.
+        """
+        M, D, K = self.given
+        unit = np.sqrt(np.diag(M))
+        left, moved = (unit[:, None] * np.abs(self.axes @ each) for each in (forced, amounts))
+        by_damping, by_stiffness = (
+            np.sum(left * (_error_of_rows(X / unit[:, None] / unit) @ moved), axis=-2)
+            for X in (D, K)
+        )
+        return self.rounding * (by_stiffness + np.abs(self.values()) * by_damping)
 
     def shifts(self, loads: np.ndarray, columns: np.ndarray) -> np.ndarray:
         """Return by how much forces on the left-hand side shift eigenvalues, to first order.
@@ -200,6 +222,11 @@ def _inverse(vectors: np.ndarray) -> np.ndarray:
 def _transposed(X: np.ndarray) -> np.ndarray:
     """Return the transpose of each matrix."""
     return X.swapaxes(-1, -2)
+
+
+def _error_of_rows(X: np.ndarray) -> np.ndarray:
+    """Return the length of its row for each entry that is not zero."""
+    return np.where(X == 0.0, 0.0, np.linalg.norm(X, axis=-1, keepdims=True))
 
 
 def rounding_of(X: np.ndarray, axes: np.ndarray, relative: float) -> np.ndarray:

@@ -25,6 +25,8 @@ _EQUAL = 1e-6  # relative difference of overdamped motions that are one in two d
 # share of the largest stiffness per mass that is none, and that rounding leaves
 _NULL, _STILL_NULL = 1e-12, 1e-14
 
+Solved = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
 
 def resolved(values: np.ndarray, errors: np.ndarray) -> np.ndarray:
     """Return eigenvalues with zero for those that rounding may have made of it."""
@@ -42,8 +44,8 @@ def quadratic_modes(
     K: np.ndarray,
     rounding: float = EPSILON,
     once: bool = False,
-) -> list[tuple[np.ndarray, np.ndarray, float, np.ndarray]]:
-    """Return one eigenvalue of each pair of ``λ²M + λD + K``, with its vector, system by system.
+) -> Solved:
+    """Return one eigenvalue of each pair of ``λ²M + λD + K``, with its vector, of each system.
 
     Parameters
     ----------
@@ -58,11 +60,15 @@ def quadratic_modes(
 
     Returns
     -------
-    list of tuples
-        values (k,), ascending in |Im λ|: one of every conjugate pair (Im λ > 0), and half of the
-        real ones, see :func:`less_damped`; vectors (k, k), displacements, columns of unit length;
-        the size below which differences of eigenvalues are round-off [1/s]; and bounds (k,), by how
-        much rounding can change the real parts [1/s].
+    values : ndarray, shape (s, k)
+        Ascending in |Im λ|: one of every conjugate pair (Im λ > 0), and half of the real ones, see
+        :func:`less_damped`.
+    vectors : ndarray, shape (s, k, k)
+        Displacements, columns of unit length.
+    resolutions : ndarray, shape (s,)
+        Size below which differences of eigenvalues are round-off [1/s].
+    bounds : ndarray, shape (s, k)
+        By how much rounding can change the real parts [1/s].
 
     Raises
     ------
@@ -70,13 +76,14 @@ def quadratic_modes(
         If the mass matrix is not positive definite, or the eigenvalues are not finite.
     """
     if not len(M):
-        return [_no_modes()] * len(D)
+        return _no_modes(len(D))
     companion, size = Companion.of(M, D, K, rounding), len(M)
     found, states = companion.modes()
     errors, bounds = companion.errors
     resolutions = resolution_of(found)
-    parts = zip(resolved(found, errors), states, resolutions, strict=True)
-    values = np.array([merged(*each) for each in parts])
+    values = resolved(found, errors).astype(complex)
+    for i in _with_copies(values, resolutions):
+        values[i] = merged(values[i], states[i], resolutions[i])
     # those of a repeated real one part by rounding
     values = np.where(np.abs(values.imag) <= errors, values.real, values)
     chosen = _one_of_each_pair(less_damped(values, M, K, once), values, size)
@@ -85,19 +92,17 @@ def quadratic_modes(
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
     _iterate_doubtful(found, chosen, values, vectors, M, D, K)
     _set_free_motions(values == 0.0, vectors, M, K)
-    return list(zip(values, vectors, resolutions, bounds, strict=True))
+    return values, vectors, resolutions, bounds
 
 
-def all_quadratic_modes(
-    systems: ConstantSystems, shapes: bool = True
-) -> list[tuple[np.ndarray, np.ndarray, float, np.ndarray]]:
+def all_quadratic_modes(systems: ConstantSystems, shapes: bool = True) -> Solved:
     """Return what :func:`quadratic_modes` does, of all 2k eigenvalues, as they come.
 
     The systems share their mass matrix. Without `shapes` vectors may err by rounding.
     """
     M, D, K = systems.M[0], systems.D, systems.K
     if not len(M):
-        return [_no_modes()] * len(D)
+        return _no_modes(len(D))
     companion, size = Companion.of(M, D, K, systems.rounding), len(M)
     found, states = companion.modes()
     errors, bounds = companion.errors
@@ -106,12 +111,13 @@ def all_quadratic_modes(
     if shapes:
         everyone = np.broadcast_to(np.arange(2 * size), values.shape)
         _iterate_doubtful(found, everyone, values, vectors, M, D, K)
-    return list(zip(values, vectors, resolution_of(found), bounds, strict=True))
+    return values, vectors, resolution_of(found), bounds
 
 
-def _no_modes() -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
+def _no_modes(count: int) -> Solved:
     """Return what :func:`quadratic_modes` does of no coordinates."""
-    return np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0)
+    none = np.zeros((count, 0))
+    return none, np.zeros((count, 0, 0)), np.zeros(count), none
 
 
 def _iterate_doubtful(
@@ -226,6 +232,15 @@ def merged(values: np.ndarray, states: np.ndarray, resolution: float) -> np.ndar
         if np.count_nonzero(copies) > 1:
             result[group[copies]] = values[group[copies]].mean()
     return result
+
+
+def _with_copies(values: np.ndarray, resolutions: np.ndarray) -> np.ndarray:
+    """Return which rows of values (s, j) may have copies of one that is not zero."""
+    order = np.argsort(values.imag, axis=1)
+    ascending = np.take_along_axis(values, order, axis=1)
+    near = np.diff(ascending.imag, axis=1) <= resolutions[:, None]
+    moving = ascending != 0.0
+    return np.flatnonzero(np.any(near & (moving[:, 1:] | moving[:, :-1]), axis=1))
 
 
 def repeated(values: np.ndarray, resolution: float) -> list[np.ndarray]:

@@ -141,10 +141,11 @@ def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> Hi
     """Return motions as they are chosen at `first`, or once more."""
 
     def choose(solution: HillSolution) -> Chosen | None:
+        count = 2 * solution.shapes.shape[1]
         if solution.pairs is not None:
-            columns = np.arange(2 * system.size)
+            columns = np.arange(count)
         else:
-            columns = _central(solution, system.step, 2 * system.size) if first else None
+            columns = _central(solution, system.step, count) if first else None
         if columns is None:  # strongly damped motions hardly have a mean harmonic
             columns = one_of_each_family(solution, system.speed)
         if columns is None:
@@ -167,19 +168,31 @@ def _without_conjugates(
     values, shapes = solution.values[columns], solution.shapes[:, :, columns]
     apart = values - values[:, None].conj()
     steps = np.rint(apart.imag / base)
-    near = np.triu(np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base))
+    near = np.nonzero(np.triu(np.abs(apart - 1j * steps * base) <= _SAME_FAMILY * abs(base)))
+    near = np.column_stack(near)[_are_conjugate(shapes, *near, steps[near].astype(int))]
     paired, dropped, alone = np.zeros((3, len(columns)), dtype=bool)
-    for one, other in zip(*np.nonzero(near), strict=True):
-        conjugate = shifted(shapes[::-1, :, one].conj(), int(steps[one, other]))
-        sizes = np.linalg.norm(conjugate) * np.linalg.norm(shapes[:, :, other])
-        alike = abs(np.vdot(conjugate, shapes[:, :, other])) > _ALIKE * sizes
-        if not alike or alone[one] or paired[one] or dropped[one] or dropped[other]:
+    for one, other in near.tolist():
+        if alone[one] or paired[one] or dropped[one] or dropped[other]:
             continue
         if one == other:
             alone[one] = True
         else:
             paired[one], dropped[other] = True, True
     return columns[~dropped], paired[~dropped]
+
+
+def _are_conjugate(
+    shapes: np.ndarray, ones: np.ndarray, others: np.ndarray, steps: np.ndarray
+) -> np.ndarray:
+    """Return which of some motions, so many steps lower, have the conjugates of others as shape."""
+    alike = np.zeros(len(ones), dtype=bool)
+    for step in np.unique(steps):
+        chosen = steps == step
+        conjugate = shifted(shapes[::-1, :, ones[chosen]].conj(), int(step))
+        shape = shapes[:, :, others[chosen]]
+        sizes = np.linalg.norm(conjugate, axis=(0, 1)) * np.linalg.norm(shape, axis=(0, 1))
+        alike[chosen] = np.abs(np.sum(conjugate.conj() * shape, axis=(0, 1))) > _ALIKE * sizes
+    return alike
 
 
 def _sizes(values: np.ndarray, speed: float) -> np.ndarray:

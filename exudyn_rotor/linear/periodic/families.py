@@ -89,6 +89,8 @@ def _in_span(vector: np.ndarray, copies: list[np.ndarray]) -> bool:
     basis = [copy for copy in copies if np.linalg.norm(copy) > 0.5]
     if not basis:
         return False
+    if len(basis) == 1:
+        return abs(np.vdot(basis[0], vector)) ** 2 > 0.5 * np.vdot(basis[0], basis[0]).real
     span, lengths, _ = np.linalg.svd(np.array(basis).T, full_matrices=False)
     span = span[:, lengths > 0.1]
     return np.linalg.norm(span.conj().T @ vector) ** 2 > 0.5

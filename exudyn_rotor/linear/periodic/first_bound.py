@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.periodic.fundamental import sampled
+from exudyn_rotor.linear.periodic.fundamental import accelerations, sampled
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.periodic.shared_motions import SharedMotions
@@ -151,7 +151,7 @@ def _remainder(
     slip = np.zeros_like(x)
     slip[..., :count] = seen(slips)
     M, D, K = sampled(system, angles)
-    forced += np.linalg.solve(M, D @ v + K @ x)
+    forced += accelerations(system, M, D @ v + K @ x)
     scale = max(np.abs(found.values).max(), abs(system.speed))
     P = np.concatenate([x, v / scale], axis=1)
     try:

@@ -8,13 +8,14 @@ each Floquet family ``λ + i p Ω`` the member with the largest central harmonic
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from exudyn_rotor.linear.periodic.eigenvalues import (
+    Solved,
     free_motions,
     less_damped,
     merged,
@@ -36,6 +37,8 @@ from exudyn_rotor.linear.periodic.truncation import HillSolution
 
 # decay over Ω above which a motion is gone before the coefficients change
 _GONE = 100.0
+# share of the tolerance where the estimate of what harmonics left out do has been too small
+_TIGHTER = 0.1
 # times the rounding of exponents within which that of their vectors may mix them
 _MIXED = 100.0
 
@@ -113,12 +116,13 @@ def _floquet_modes(system: PeriodicSystem, tolerance: float) -> FloquetModes:
 
 
 def _by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
-    """Return motions by Hill's method; from all harmonics where they fail the check."""
+    """Return motions by Hill's method; from more harmonics where they fail the check."""
     choose = partial(_one_of_each_family, speed=system.speed)
-    return first_or_again(
-        partial(solve_hill, system, choose, tolerance),
-        lambda found: _checked(system, found, tolerance),
-    )
+
+    def solve(first: bool) -> HillMotions:
+        return solve_hill(system, choose, tolerance if first else _TIGHTER * tolerance, first)
+
+    return first_or_again(solve, lambda found: _checked(system, found, tolerance))
 
 
 def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:
@@ -150,11 +154,17 @@ def apart_from_free(
     apart = FreeDirections.of(system)
     if apart is None:
         return solve(system)
-    return _beside_free(solve(system.projected(apart.others)), apart, copies)
+    found = solve(system.projected(apart.others))
+    bounds = None if found.bounds is None else found.bounds[None]
+    center = list(found.orders).index(0)
+    given = found.values[None], found.vectors[None], bounds
+    (values,), (vectors,), bounds = _beside_free(*given, center, apart, copies)
+    bounds = None if bounds is None else bounds[0]
+    return FloquetModes(values, vectors, found.orders, found.resolution, bounds)
 
 
 def constant_apart_from_free(
-    systems: ConstantSystems, solve: Callable[[ConstantSystems], Sequence[tuple]], copies: int
+    systems: ConstantSystems, solve: Callable[[ConstantSystems], Solved], copies: int
 ) -> list[FloquetModes]:
     """Return as :func:`apart_from_free` of systems that do not change in time.
 
@@ -162,22 +172,40 @@ def constant_apart_from_free(
     """
     found: dict[int, FloquetModes] = {}
     for rows, few, apart in parted(systems):
-        for row, (values, vectors, *rest) in zip(rows.tolist(), solve(few), strict=True):
-            modes = FloquetModes(values, vectors[None], np.array([0]), *rest)
-            found[row] = modes if apart is None else _beside_free(modes, apart, copies)
+        values, vectors, resolutions, bounds = solve(few)
+        vectors = vectors[:, None]
+        if apart is not None:
+            values, vectors, bounds = _beside_free(values, vectors, bounds, 0, apart, copies)
+        each = zip(rows.tolist(), values, vectors, resolutions, bounds, strict=True)
+        for row, found_values, found_vectors, *rest in each:
+            found[row] = FloquetModes(found_values, found_vectors, np.array([0]), *rest)
     return [found[row] for row in range(len(systems.D))]
 
 
-def _beside_free(modes: FloquetModes, apart: FreeDirections, copies: int) -> FloquetModes:
-    """Return motions of all other directions together with `copies` of the free ones."""
-    given, count = apart.others @ modes.vectors, copies * apart.free.shape[1]
-    vectors = np.zeros((*given.shape[:2], count + given.shape[2]), dtype=complex)
-    vectors[list(modes.orders).index(0), :, :count] = np.tile(apart.free, copies)
-    vectors[:, :, count:] = given / np.linalg.norm(given, axis=(0, 1))
-    values = np.append(np.zeros(count), modes.values)
-    bounds = None if modes.bounds is None else np.append(np.zeros(count), modes.bounds)
-    joined = FloquetModes(values, vectors, modes.orders, modes.resolution, bounds)
-    return joined.columns(np.lexsort((values.real, np.abs(values.imag))))
+def _beside_free(
+    values: np.ndarray,
+    vectors: np.ndarray,
+    bounds: np.ndarray | None,
+    center: int,
+    apart: FreeDirections,
+    copies: int,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Return motions of all other directions together with `copies` of the free ones.
+
+    Of s systems: values and bounds (s, k), and vectors (s, h, c, k), of which one harmonic is the
+    `center`.
+    """
+    given, count = apart.others @ vectors, copies * apart.free.shape[1]
+    joined = np.zeros((*given.shape[:3], count + given.shape[3]), dtype=complex)
+    joined[:, center, :, :count] = np.tile(apart.free, copies)
+    joined[..., count:] = given / np.linalg.norm(given, axis=(1, 2), keepdims=True)
+    none = np.zeros((len(values), count))
+    values = np.hstack([none, values])
+    order = np.lexsort((values.real, np.abs(values.imag)))
+    joined = np.take_along_axis(joined, order[:, None, None], axis=3)
+    if bounds is not None:
+        bounds = np.take_along_axis(np.hstack([none, bounds]), order, axis=1)
+    return np.take_along_axis(values, order, axis=1), joined, bounds
 
 
 def one_of_each_family(solution: HillSolution, speed: float) -> np.ndarray | None:

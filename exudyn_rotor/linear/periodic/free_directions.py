@@ -90,8 +90,8 @@ def _parts(terms: Terms) -> Iterator[np.ndarray]:
 def _axes_of(M: np.ndarray) -> np.ndarray | None:
     """Return ``L⁻ᵀ`` with ``M = LLᵀ``; None where that fails, which who solves tells about."""
     try:
-        return la.solve_triangular(la.cholesky(M, lower=True), np.eye(len(M)), lower=True).T
-    except (la.LinAlgError, ValueError):
+        return np.linalg.inv(np.linalg.cholesky(M)).T
+    except np.linalg.LinAlgError:
         return None
 
 
@@ -103,7 +103,7 @@ def _noise(X: np.ndarray, axes: np.ndarray, rounding: float) -> float:
 
 def _forces(X: np.ndarray, free: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Return the size of what matrices (n, k, k) do at directions, from either side, (n,)."""
-    free = free / np.linalg.norm(la.solve(axes, free), axis=0)
+    free = free / np.linalg.norm(np.linalg.solve(axes, free), axis=0)
     sides = (axes.T @ (Y @ free) for Y in (X, X.swapaxes(1, 2)))
     return np.max([np.linalg.norm(Y, axis=(1, 2)) for Y in sides], axis=0)
 
@@ -122,7 +122,7 @@ def _apart(
         return None
     rows, held = np.eye(len(M)), 0
     if acting:
-        _, sizes, rows = la.svd(np.vstack(acting), full_matrices=False)
+        _, sizes, rows = np.linalg.svd(np.vstack(acting), full_matrices=False)
         held = np.count_nonzero(sizes > 1.0)
     if held == len(M):
         return None

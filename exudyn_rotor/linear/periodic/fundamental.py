@@ -10,18 +10,21 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.linalg
+from tqdm import tqdm
 
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import (
     EPSILON,
     PeriodicSystem,
+    Terms,
     UnconvergedError,
     fold,
 )
 
 MOST_STEPS = 2**14
 _CHUNK = 128
+_SHOWN_FROM = 4e9  # steps times entries cubed, of some seconds
 _OF_A_WAVE = 2  # steps at least, of the highest harmonic
 _SAMPLES = 8  # angles of a period, doubled at least once
 # of the tolerance: share of a motion that its outermost harmonics may be
@@ -59,6 +62,12 @@ def _converged(system: PeriodicSystem, tolerance: float) -> tuple[np.ndarray, in
     most = max(0.5 * fastest * period, _OF_A_WAVE * system.order / max(system.step, 1))
     steps = max(8, 2 ** int(np.ceil(np.log2(most + 1.0))))
     error, last = np.inf, None
+    if 2 * steps > MOST_STEPS:  # the error is told by two solutions
+        raise UnconvergedError(
+            f"floquet at {system.speed:g} rad/s: the fastest motion, {fastest:.3g} 1/s, needs more "
+            f"than {MOST_STEPS} steps a period; use method='hill', a larger speed (or 0), or fewer "
+            "high modes"
+        )
     while steps <= MOST_STEPS:
         with np.errstate(over="ignore", invalid="ignore"):
             fundamental = _magnus(system, period, steps)
@@ -87,7 +96,8 @@ def _magnus(system: PeriodicSystem, period: float, steps: int, start: float = 0.
     h = period / steps
     fundamental = np.eye(2 * system.size)
     nodes = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])  # Gauss points
-    for first in range(0, steps, _CHUNK):
+    brief = steps * (2 * system.size) ** 3 < _SHOWN_FROM
+    for first in tqdm(range(0, steps, _CHUNK), desc="floquet", disable=brief, leave=False):
         starts = np.arange(first, min(first + _CHUNK, steps))
         angles = start + system.speed * h * (starts[None, :] + nodes[:, None])
         A1, A2, A3 = h * state_matrix(*sampled(system, angles))
@@ -101,11 +111,29 @@ def _magnus(system: PeriodicSystem, period: float, steps: int, start: float = 0.
 
 
 def sampled(system: PeriodicSystem, angles: np.ndarray) -> list[np.ndarray]:
-    """Return M, D, K at many angles, each (*angles.shape, k, k)."""
-    return [
-        sum(np.exp(1j * n * angles)[..., None, None] * X for n, X in terms.items()).real
-        for terms in (system.M, system.D, system.K)
-    ]
+    """Return M, D, K at many angles, each (*angles.shape, k, k); a constant one as a view."""
+    return [_at_angles(terms, angles) for terms in (system.M, system.D, system.K)]
+
+
+def _at_angles(terms: Terms, angles: np.ndarray) -> np.ndarray:
+    """Return ``X₀ + 2 Re Σ X_n exp(inθ)``, n > 0, at angles."""
+    shape = *angles.shape, *terms[0].shape
+    orders = [n for n in terms if n > 0]
+    if not orders:
+        return np.broadcast_to(terms[0].real, shape)
+    turned = np.multiply.outer(angles, orders)
+    waves = np.concatenate([2.0 * np.cos(turned), -2.0 * np.sin(turned)], axis=-1)
+    parts = [X.ravel() for part in (np.real, np.imag) for X in map(part, map(terms.get, orders))]
+    return terms[0].real + (waves @ np.array(parts)).reshape(shape)
+
+
+def accelerations(system: PeriodicSystem, M: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return ``M⁻¹F`` of mass matrices (n, k, k) and forces (n, k, j) at angles."""
+    if len(system.M) > 1:
+        return np.linalg.solve(M, forces)
+    count, size, _ = forces.shape
+    flat = forces.transpose(1, 0, 2).reshape(size, -1)
+    return np.linalg.solve(M[0], flat).reshape(size, count, -1).transpose(1, 0, 2)
 
 
 def _commutator(A: np.ndarray, B: np.ndarray) -> np.ndarray:

@@ -80,22 +80,23 @@ def feedback(
     system: PeriodicSystem, values: np.ndarray, shapes: np.ndarray, orders: np.ndarray
 ) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """Return what the first harmonics left out do to those kept, as `shapes`, and what they are."""
-    highest, result, answers = orders[-1], np.zeros_like(shapes), {}
+    highest, result = int(orders[-1]), np.zeros_like(shapes)
     terms = (system.M, system.D, system.K)
+    links = {n: _links(terms, n) for n in {n for X in terms for n in X}}
     reach = range(highest + 1, highest + system.order + 1)
+    excited = {}
     for n in [*reach, *(-m for m in reach)]:
-        links = {m: _links(terms, n - orders[m]) for m in range(len(orders))}
-        excited = 0.0
-        for m, (M, D, K) in ((m, link) for m, link in links.items() if link is not None):
-            excited = excited + _applied(M, D, K, values + 1j * orders[m] * system.speed, shapes[m])
-        if np.ndim(excited) == 0:
-            continue
-        answer = -_answer(system, values + 1j * n * system.speed, excited)
-        answers[n] = answer
-        for m in range(len(orders)):
-            back = _links(terms, orders[m] - n)
-            if back is not None:
-                result[m] += _applied(*back, values + 1j * n * system.speed, answer)
+        for place, m in enumerate(orders.tolist()):
+            if n - m in links:
+                rate = values + 1j * m * system.speed
+                excited[n] = excited.get(n, 0.0) + _applied(*links[n - m], rate, shapes[place])
+    answers = {}
+    for n, forces in excited.items():
+        rate = values + 1j * n * system.speed
+        answers[n] = -_answer(system, rate, forces)
+        for place, m in enumerate(orders.tolist()):
+            if m - n in links:
+                result[place] += _applied(*links[m - n], rate, answers[n])
     return result, answers
 
 

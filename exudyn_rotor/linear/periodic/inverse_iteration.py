@@ -18,6 +18,7 @@ from exudyn_rotor.threads import shared
 OFF_ROOT = 1e-9
 _MOST_STEPS = 5
 _MOST_ENTRIES = 1_000_000  # of the matrices of motions that are iterated at once
+_LARGE = 60  # coordinates from which on threads do not mostly wait for one another
 
 
 def nearest_root(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
@@ -107,7 +108,12 @@ def moved_together(
         answers[place, kept] = harmonic_chain.on_both_sides(matrices, both[place, kept])
 
     # one system after the other: its matrices stay in the cache
-    shared(solve, np.flatnonzero(np.any(wanted, axis=1)))
+    places = np.flatnonzero(np.any(wanted, axis=1))
+    if systems.M.shape[1] >= _LARGE:
+        shared(solve, places)
+    else:
+        for place in places:
+            solve(place)
     z, w = answers[..., 0].transpose(2, 0, 3, 1)
     a, b, c = (np.einsum("skj,skj->sj", w.conj(), X) for X in (*inertia_and_slopes(z), loads))
     return np.where(wanted, shifted + nearest_root(a, b, c), values)

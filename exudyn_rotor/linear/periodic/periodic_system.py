@@ -97,14 +97,16 @@ class PeriodicSystem:
         """Orthonormal motions that coefficients which are not constant act on and by, (k, p)."""
         terms = [X for terms in (self.M, self.D, self.K) for n, X in terms.items() if n > 0]
         sides = [part for X in terms for Y in (X, X.T) for part in (Y.real, Y.imag)]
-        found, noise = np.zeros((self.size, 0)), self.size * EPSILON
-        for X in sides:
-            size = np.abs(X).max(initial=0.0)
-            if size == 0.0 or found.shape[1] == self.size:
-                continue
-            left = X / size - found @ (found.T @ (X / size))  # most act at places that are known
-            if np.abs(left).max() > noise:
-                found = _range(np.hstack([found, X / size]), noise)
+        sides = np.reshape(sides, (-1, self.size, self.size))
+        sizes = np.abs(sides).max(axis=(-2, -1), initial=0.0)
+        sides = sides[sizes > 0.0] / sizes[sizes > 0.0, None, None]
+        found, noise, left = np.zeros((self.size, 0)), self.size * EPSILON, np.ones(len(sides))
+        while np.any(left > noise) and found.shape[1] < self.size:
+            first = int(np.argmax(left > noise))
+            found = _range(np.hstack([found, sides[first]]), noise)
+            # most act at places that are known
+            left = np.abs(sides - found @ (found.T @ sides)).max(axis=(-2, -1))
+            left[: first + 1] = 0.0
         return found
 
     @cached_property

@@ -39,7 +39,7 @@ from exudyn_rotor.linear.periodic.first_bound import (
     largest_share,
     left_to_rest,
 )
-from exudyn_rotor.linear.periodic.fundamental import sampled, state_matrix
+from exudyn_rotor.linear.periodic.fundamental import accelerations, sampled, state_matrix
 from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.periodic.shared_motions import SharedMotions, shared_motions
@@ -268,7 +268,7 @@ class _States:
         x, v = at_angles(shapes), at_angles(speeds)
         M, D, K = sampled(system, angles)
         drift = at_angles(turning * shapes + shapes @ T - speeds)
-        forced = at_angles(turning * speeds + speeds @ T) + np.linalg.solve(M, D @ v + K @ x)
+        forced = at_angles(turning * speeds + speeds @ T) + accelerations(system, M, D @ v + K @ x)
         P = np.concatenate([x, v / scale], axis=1)
         E = np.concatenate([drift, forced / scale], axis=1)
         lengths = np.sqrt(np.mean(np.linalg.norm(P, axis=1) ** 2, axis=0))

@@ -19,12 +19,15 @@ from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.whole_space import WholeSpace
 from exudyn_rotor.linear.periodic.exponents import METHODS, descending
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.inverse_iteration import moved
+from exudyn_rotor.linear.periodic.inverse_iteration import moved, settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.threads import in_turns, one_thread
 
 _MODES = 10  # of a large SolidRotor
 _DRIFT = 3.0  # times its estimate that a motion may drift by what the equations neglect
+# secants: share of the range that is their first step, how many there are, and the relative step
+# of λ after which inverse iteration ends
+_FIRST, _SECANTS, _FOLLOWED = 0.02, 12, 1e-6
 _FASTEST = 100.0  # revolutions' rate beyond which decay does not count for it
 
 
@@ -108,6 +111,37 @@ class GrowthAt:
         # folded ones are other copies, which are off by a multiple of the speed
         rates = rates - 1j * (modes.values - growth.values).imag / speed
         return rates if np.all(np.isfinite(rates)) else None
+
+    @one_thread()
+    def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
+        """Return where a motion that grows at the second of two speeds no longer does.
+
+        NaN where that is not found, None where it cannot be, as of constant equations. By secants,
+        and inverse iterations of that motion alone: others may still grow there.
+        """
+        if growth.motions is None or not isinstance(self.space, WholeSpace):
+            return None
+        which = int(np.argmax(growth.values.real - growth.bounds))
+        one, others = growth.motions.columns(np.array([which])), self.space.others
+        value, shape = one.values, one.vectors if others is None else others.T @ one.vectors
+        here, change = ends[1], np.zeros(1)
+        speed = here + _FIRST * (ends[0] - here)
+        for _ in range(_SECANTS):
+            system, guess = self.space.at(speed), value + change * (speed - here)
+            least = _FOLLOWED * np.maximum(np.abs(guess), abs(system.base))
+            found = settled(system, one.orders, guess, shape, least)
+            if found is None:  # too far
+                speed = 0.5 * (here + speed)
+                continue
+            change, here, shape = (found[0] - value) / (speed - here), speed, found[1]
+            value = found[0]
+            rise, excess = change[0].real, value[0].real - growth.bounds[which]
+            speed = here - excess / rise if rise else np.nan
+            if not min(ends) < speed < max(ends):
+                speed = 0.5 * (here + ends[0])
+            if abs(speed - here) <= accuracy:
+                return speed
+        return np.nan
 
 
 def growth_of(

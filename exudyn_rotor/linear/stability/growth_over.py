@@ -60,6 +60,10 @@ class GrowthOver:
         """Return None: a second growth tells the rates of exponents."""
         return None
 
+    def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
+        """Return None: growths alone tell where a motion no longer grows."""
+        return None
+
     def basis(self, value: float) -> tuple[BasisError, float]:
         """Return the check of the basis, and the spin speed."""
         raise NotImplementedError
@@ -96,6 +100,9 @@ class OverSpeed(GrowthOver):
 
     def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
         return self.task.rates(growth, value, step)
+
+    def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
+        return self.task.limit(growth, ends, accuracy)
 
     def basis(self, value: float) -> tuple[BasisError, float]:
         return self.checked, value

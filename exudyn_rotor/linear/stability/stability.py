@@ -27,9 +27,11 @@ from exudyn_rotor.linear.stability.growth import (
     held_space,
 )
 from exudyn_rotor.linear.stability.stability_result import Stability
+from exudyn_rotor.linear.stability.uneven_mesh import warn_of_uneven_mesh
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, sweep
 from exudyn_rotor.threads import meanwhile
+from exudyn_rotor.units import Units
 
 
 def stability(
@@ -144,6 +146,7 @@ def stability(
         stiffening=model.stiffening,
     )
     _warn_of_basis(basis, result)
+    warn_of_uneven_mesh(model, result)
     return result
 
 
@@ -154,7 +157,8 @@ def _warn_of_basis(basis: BasisError, result: Stability) -> None:
         return
     row = int(np.nanargmax(errors))
     column = result.least_stable[row]
-    heard = result.frequencies_inertial[row, column] / (2.0 * np.pi)
+    shown = Units.of("rpm")
+    heard = shown.frequencies(result.frequencies_inertial[row, column])
     motion = f"the least stable motion ({result.whirl[row, column]}, {heard:.4g} Hz)"
-    speed = result.speeds[row] / (2.0 * np.pi)
-    basis.warn(np.nan_to_num(errors), f"{motion} at {speed:.4g} Hz")
+    speed = shown.speeds(result.speeds[row])
+    basis.warn(np.nan_to_num(errors), f"{motion} at {speed:.5g} rpm")

@@ -68,6 +68,7 @@ class Stability(Result):
     >>> print(result.table())
     speed [rad/s]  lateral [1/s]    torsional        axial  frequency [rad/s]  n  whirl      verdict
           50.0000             -1            -            -                150  1  forward    stable
+    least stable lateral motion: -1 1/s at 50 rad/s, 150 rad/s, forward, n = 1, log decrement 0.0419
     error of the basis: not known
     """
 
@@ -185,6 +186,37 @@ class Stability(Result):
         largest = np.where(self.families == family, growth, -np.inf).max(axis=1)
         return np.where(np.isfinite(largest), largest, np.nan)
 
+    def least_stable_of(self, family: str) -> tuple[int, int] | None:
+        """Return row and column of a family's least stable motion over all speeds.
+
+        None where the family has no motion, or only neutral ones.
+
+        Parameters
+        ----------
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other'}
+        """
+        checks.choice(family, "family", FAMILIES)
+        told = (self.families == family) & (np.abs(self.exponents.real) > self.bounds)
+        growth = np.where(told, self.exponents.real, -np.inf)
+        row, column = np.unravel_index(np.argmax(growth), growth.shape)
+        return (int(row), int(column)) if told[row, column] else None
+
+    def _least_stable_line(self, family: str, shown: Units) -> str | None:
+        """Return what the table says of a family's least stable motion."""
+        found = self.least_stable_of(family)
+        if found is None:
+            return None
+        n, decrement = self.nodal_diameters[found], self.log_decrement[found]
+        parts = [
+            f"{self.exponents[found].real:.4g} 1/s at {shown.speeds(self.speeds[found[0]]):.6g} "
+            f"{shown.speed}",
+            f"{shown.frequencies(self.frequencies_inertial[found]):.5g} {shown.frequency}",
+            f"{self.whirl[found]}" + (f", n = {n}" if n >= 0 else ""),
+        ]
+        if np.isfinite(decrement):
+            parts.append(f"log decrement {decrement:.3g}")
+        return f"least stable {family} motion: " + ", ".join(parts)
+
     def _written(self, family: str) -> list[str]:
         """Return the growth of a family for the table: '±' its bound where that hides it."""
         own = (self.families == family) & (np.abs(self.exponents.real) <= self.bounds)
@@ -216,6 +248,9 @@ class Stability(Result):
     def table(self, *, units: str = "SI") -> str:
         """Return speed, growth of the families, the least stable motion and verdict as text.
 
+        Below, the least stable motion of each family over all speeds: an undamped torsion, say, is
+        the least stable of all motions at every speed, and would hide which lateral one is.
+
         A family whose growth is below what its bound can feign has '±' and the bound, but for
         rounding of the last digits, which is 0. Where all are neutral no motion is named.
 
@@ -245,6 +280,7 @@ class Stability(Result):
             if reduced:
                 lines[-1] += f"{in_table(errors[row]):>13}"
         lines = [line.rstrip() for line in lines]
+        lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])

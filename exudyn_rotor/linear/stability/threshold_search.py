@@ -20,6 +20,9 @@ _DAMPED = 0.05
 # times which a damped motion may rise between two samples as its tangents tell
 _STEEPER = 10.0
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
+# motions whose limits are tried, and shares of the accuracy: how well they are known, and where
+# growths on both sides of them are made
+_LIMITS, _CLOSE, _BESIDE = 3, 0.05, 0.4
 # share of its distance from zero that a real part may differ from the cubic between its tangents
 _SURPRISE = 0.1
 _PLACES = 65  # where the cubic is looked at
@@ -39,6 +42,12 @@ class Made(Protocol):
 
     def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
         """Return the change of the exponents at a value; None where a second growth tells it."""
+
+    def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
+        """Return where a motion that grows at the second value does no longer.
+
+        NaN where that is not found, None where growths alone tell it.
+        """
 
 
 @dataclass(eq=False)
@@ -75,11 +84,13 @@ class Search:
     def _change(self, stable: float, unstable: float, accuracy: float) -> float:
         """Return where the verdict changes between two values.
 
-        By secants through the growth on the unstable side, which is that of one motion; on the
-        stable side the largest real part is soon that of another. Every fourth step halves where
-        the secants do not meet.
+        Where the motion that grows can be followed alone, growths on both sides of its limit tell
+        whether that is it. Else by secants through the growth on the unstable side, which is that
+        of one motion; on the stable side the largest real part is soon that of another. Every
+        fourth step halves where the secants do not meet.
         """
-        last, root, error, steps = None, np.nan, np.inf, 0
+        stable, unstable, root = self._beside_limit(stable, unstable, accuracy)
+        last, error, steps = None, np.inf, 0
         while abs(unstable - stable) > accuracy:
             steps += 1
             guess, before, former = np.nan, root, error
@@ -97,6 +108,34 @@ class Search:
         if np.isnan(root):
             return 0.5 * (stable + unstable)
         return float(np.clip(root, min(stable, unstable), max(stable, unstable)))
+
+    def _beside_limit(
+        self, stable: float, unstable: float, accuracy: float
+    ) -> tuple[float, float, float]:
+        """Return two values nearer to a change of the verdict, and where it is; NaN: not told."""
+        for _ in range(_LIMITS):
+            if abs(unstable - stable) <= accuracy:
+                break
+            limit = self.made.limit(self.at(unstable), (stable, unstable), _CLOSE * accuracy)
+            if limit is None:
+                break
+            if np.isnan(limit):
+                middle = 0.5 * (stable + unstable)
+                if self.unstable(middle):
+                    unstable = middle
+                else:
+                    stable = middle
+                continue
+            away = _BESIDE * accuracy * np.sign(stable - unstable)
+            ends = min(stable, unstable), max(stable, unstable)
+            beyond, before = np.clip([limit + away, limit - away], *ends).tolist()
+            if self.unstable(beyond):  # by another motion
+                unstable = beyond
+                continue
+            if self.unstable(before):
+                return beyond, before, limit
+            return before, unstable, np.nan
+        return stable, unstable, np.nan
 
     def _secant(self, far: float, near: float) -> float:
         """Return where the growth at two unstable values points to; NaN where it does not fall."""
