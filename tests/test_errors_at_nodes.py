@@ -85,6 +85,18 @@ def test_errors_are_those_of_the_full_run(rotor, scene, request):
             assert truth[STEPS // 4 :].max() == pytest.approx(estimate.max(), rel=0.2)
 
 
+def test_damping_delays_the_stress_of_a_run_up(upright):
+    """The share 2βω̇/ω of the static stress; without it the truth is 3.9 times the estimate."""
+    solid = upright.with_damping(stiffness=3e-4)
+    reduced = solid.reduce(craig_bampton_modes(solid, 30, coupling="RBE3"), stress=True)
+    full = run(solid, solid, **SCENES["run-up"]).recorded()
+    body = run(solid, reduced, **SCENES["run-up"])
+    record, zeta, _ = recorded(body, reduced)
+    stress = StressField.of(reduced, body).history(zeta.T, record.speed, slice(None))
+    truth = von_mises(stress - full.stress)
+    assert truth.max() == pytest.approx(at_nodes(body, reduced, solid).stress.max(), rel=0.1)
+
+
 def at_nodes(body, reduced, solid, nodes=None):
     record = body.recorded()
     nodes = np.arange(solid.node_count) if nodes is None else np.array(nodes)
@@ -108,8 +120,9 @@ def spring_forces(solid, body, moved, record):
 def test_left_out_is_the_static_solution_of_the_residual(upright, level):
     """With forces of the springs by their law, the full equations, and a pseudo-inverse of K.
 
-    To the tolerance of Newton's method, 1e-9, to which the motion keeps its equations, times the
-    largest stiffness over the lowest, some hundreds.
+    Damping works on what is left out of the static stretch ω²s, too. To the tolerance of Newton's
+    method, 1e-9, to which the motion keeps its equations, times the largest stiffness over the
+    lowest, some hundreds.
     """
     reduced = upright.reduce(8, stress=True)  # these tell all loads of both interfaces
     body = run(upright, reduced, damping=0.0, translation="none", spin=FAST, stiffening=level)
@@ -125,12 +138,23 @@ def test_left_out_is_the_static_solution_of_the_residual(upright, level):
     relief = np.linalg.solve(rigid.T @ (upright.mass @ rigid), rigid.T)
     picked = np.arange(1, STEPS + 1)
     missing = np.zeros_like(moved)
+
+    def solved(r):
+        u = stiffness @ (r - upright.mass @ (rigid @ (relief @ r)))
+        return u - rigid @ (relief @ (upright.mass @ u))
+
+    flexible = reduced.shapes.matrix[:, 6:]
+    stretch = solved(full.spin_terms.h)
+    stretch -= flexible @ (
+        flexible.T @ (upright.stiffness @ stretch) / reduced.frequencies[6:] ** 2
+    )
+    delay = 2.0 * upright.damping @ stretch
     for i in picked:
         r = springs[:, i] + full.varying_forces(record.time[i], moved[:, i], rate[:, i])
         r -= upright.stiffness @ moved[:, i] + upright.damping @ rate[:, i]
         r -= upright.mass @ second[:, i]
-        u = stiffness @ (r - upright.mass @ (rigid @ (relief @ r)))
-        missing[:, i] = u - rigid @ (relief @ (upright.mass @ u))
+        r -= delay * FAST.rate(record.time[i]) * FAST.acceleration(record.time[i])
+        missing[:, i] = solved(r)
     expected = np.linalg.norm(missing.reshape(-1, 3, STEPS + 1), axis=1).T[picked]
     found = at_nodes(body, reduced, upright)
     np.testing.assert_allclose(found.displacement, expected, atol=1e-6 * expected.max())

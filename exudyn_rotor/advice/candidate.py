@@ -11,9 +11,13 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.full.full_body import reduced_body
@@ -33,7 +37,7 @@ class Candidate:
 
     Attributes
     ----------
-    source : LinearRotor or LinearScene
+    source : LinearRotor, ControlledRotor, LinearScene or RememberingScene
     invariants : Invariants
         In the basis of the rotor's modal coordinates.
     modal : ndarray of int
@@ -56,7 +60,7 @@ class Candidate:
         Coordinates of `source` without a steady motion: the spin, where nothing holds it.
     """
 
-    source: LinearRotor | LinearScene
+    source: LinearRotor | ControlledRotor | LinearScene | RememberingScene
     invariants: Invariants
     modal: np.ndarray
     flexible: np.ndarray
@@ -80,9 +84,18 @@ class Candidate:
 
         Damping and circulatory forces are left out.
         """
-        M, D, K, count = self.hill(speed)
+        alone = self.resonating
+        system = self.system(speed) if alone is self.source else alone.at(speed)
+        orders = system.harmonics(_ORDER)
+        M, D, K = hill_matrices(system, orders)
         G = 1j * D
-        return M, 0.5 * (G + G.conj().T), 0.5 * (K + K.conj().T), count
+        return M, 0.5 * (G + G.conj().T), 0.5 * (K + K.conj().T), len(orders)
+
+    @cached_property
+    def resonating(self) -> LinearModel:
+        """The source; on what holds it in place of controllers, pads and voids, if it has these."""
+        alone = self.source.undamped()
+        return alone if alone.size < self.source.size else self.source
 
     def hill(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Return M, D, K in the rotor frame, harmonics of the speed included."""
@@ -126,8 +139,11 @@ def candidate(
     supports: Sequence[Support] | Support | None,
     interfaces: Sequence[str] | None,
     axial: bool | None,
+    speed: float = 0.0,
 ) -> Candidate:
     """Take a reduced rotor with its supports, or a scene with its body.
+
+    Where `axial` is None, a scene tells at a `speed` [rad/s] whether anything acts along the axis.
 
     Raises
     ------
@@ -141,7 +157,7 @@ def candidate(
         checks.flag(axial, "axial")
     if isinstance(target, ReducedRotor):
         return _of_rotor(target, body, supports, interfaces, axial)
-    return _of_scene(target, body, supports, interfaces, axial)
+    return _of_scene(target, body, supports, interfaces, axial, speed)
 
 
 def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
@@ -152,8 +168,9 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
         with warnings.catch_warnings():  # said above
             warnings.filterwarnings("ignore", message="the centre of mass is")
             attached = _of_rotor(reduced.with_attachments, body, supports, interfaces, axial)
-    if axial is None:
-        axial = not known or any(_acts_along(support) for support in source.supports)
+    plain = source.plain if isinstance(source, ControlledRotor) else source
+    if axial is None:  # what has coordinates of its own acts across the axis
+        axial = not known or any(_acts_along(support) for support in plain.supports)
     first = len(reduced.rigid_kinds)
     return Candidate(
         source=source,
@@ -165,9 +182,9 @@ def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
         supported=known or reduced.grounded,
         axial=bool(axial),
         interfaces=_named(interfaces, tuple(reduced.interfaces)),
-        translations=axes_of(reduced.axis).T @ source.invariants.S,
+        translations=_wide(axes_of(reduced.axis).T @ source.invariants.S, source),
         attached=attached,
-        held=_free_spin(reduced, source),
+        held=_free_spin(reduced, plain),
     )
 
 
@@ -188,15 +205,16 @@ def _acts_along(support: Support) -> bool:
     return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)
 
 
-def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
+def _of_scene(mbs, body, supports, interfaces, axial, speed) -> Candidate:
     reduced_body(body, how="a scene needs what add_rotor returned")
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")
-    source = LinearScene.of(mbs, body, about="given")
+    scene = LinearScene.of(mbs, body, about="given")
+    source = RememberingScene.of(scene)
     inv, kinds = body.motion.invariants, body.selection.kinds
     first = body.motion.formulation.translation_count
     # constraints may mix coordinates; those of the rotor's modes stay as they are
-    modal = np.argmax(np.abs(source.N[first : first + inv.size]), axis=1)
+    modal = np.argmax(np.abs(scene.N[first : first + inv.size]), axis=1)
     elastic = [kind is ModeKind.ELASTIC for kind in kinds]
     flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & elastic)
     return Candidate(
@@ -207,23 +225,28 @@ def _of_scene(mbs, body, supports, interfaces, axial) -> Candidate:
         frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
         grounded=body.selection.source.grounded,
         supported=True,
-        axial=_scene_acts_along(source, body) if axial is None else bool(axial),
+        axial=_scene_acts_along(scene, body, speed) if axial is None else bool(axial),
         interfaces=_named(interfaces, tuple(body.markers)),
-        translations=_scene_translations(source, body),
+        translations=_wide(_scene_translations(scene, body), source),
     )
 
 
-def _scene_translations(source, body: RotorBody) -> np.ndarray:
+def _wide(columns: np.ndarray, source: LinearModel) -> np.ndarray:
+    """Return columns with zeros for coordinates that come last, of supports."""
+    return np.pad(columns, [(0, 0), (0, source.size - columns.shape[1])])
+
+
+def _scene_translations(scene: LinearScene, body: RotorBody) -> np.ndarray:
     inv = body.motion.invariants
     count = body.motion.formulation.translation_count
-    loads = np.zeros((3, len(source.free)))
+    loads = np.zeros((3, len(scene.free)))
     loads[:count, :count] = inv.mass * np.eye(3)[:count, :count]
     loads[:, count : count + inv.size] = axes_of(body.axis).T @ inv.S
-    return loads @ source.N
+    return loads @ scene.N
 
 
-def _scene_acts_along(source, body: RotorBody) -> bool:
-    """True if gravity or a connector acts along the axis."""
+def _scene_acts_along(scene: LinearScene, body: RotorBody, speed: float) -> bool:
+    """True if gravity or a connector acts along the axis; films do not."""
     axis = body.frame.orientation @ body.motion.invariants.direction
     gravity = body.motion.gravity
     if body.gravity_load is not None:
@@ -238,8 +261,8 @@ def _scene_acts_along(source, body: RotorBody) -> bool:
         row = count + kinds.index(ModeKind.AXIAL)
     else:
         return True
-    row = int(np.argmax(np.abs(source.N[row])))
-    system = source.at(0.0)
+    row = int(np.argmax(np.abs(scene.N[row])))
+    system = scene.at(speed)
     scale = max(np.abs(term).max() for term in system.K.values())
     return any(np.abs(term[row]).max() > 1e-9 * scale for term in system.K.values())
 

@@ -8,9 +8,11 @@ f being the loads where something acts on the rotor, as the equations of motion 
 (:mod:`exudyn_rotor.advice.residual`), and the weight. What works on the mass-orthonormal columns Q
 of the rotor, rounding and other loads, is taken out with the inertia forces: ``r − M Q Qᵀ r``. What
 the modes leave out is ``v = K⁺ r``, by inertia relief: the first correction, exact for loads that
-are slow beside the modes that are left out. Their own inertia, and what v changes of the supports'
-forces and of the motion in the modes, are left out: next to a resonance, and after a sudden start
-or shock, that is more than v.
+are slow beside the modes that are left out. Damping delays the part of it that grows with ω², the
+static stretch s by the spin, so that ``−2ωω̇ D s`` is added to r: ``K v + D v̇ = r`` to first order,
+which of what turns with ω changes the phase alone. The inertia of the modes that are left out, and
+what v changes of the supports' forces and of the motion in the modes, do not count here: next to a
+resonance, and after a sudden start or shock, that is more than v.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from exudyn_rotor.advice.residual import place_loads, recorded_states
 from exudyn_rotor.advice.run_loads import instants, turned, weight
@@ -115,7 +118,7 @@ def left_out_at_nodes(
     count, speed = len(picked), record.speed[picked]
     loads, zeta, frame = recorded_states(body, record, picked)
     basis = reduced.shapes.matrix @ body.selection.T
-    forces = _unbalanced(body, record, picked, solid, basis)
+    forces, damping = _unbalanced(body, record, picked, solid, basis)
     for place, values in place_loads(body, loads, size):
         columns = place.load_columns(solid)
         if columns is not None:
@@ -125,8 +128,11 @@ def left_out_at_nodes(
     # the static stretch less that of the modes, in their own equilibrium
     share = (columns.T @ forces[:, count:])[rigid:] / reduced.frequencies[rigid:, None] ** 2
     forces[:, count:] -= solid.stiffness @ (columns[:, rigid:] @ share)
-    responses = inertia_relief(solid).solve(forces, _TOLERANCE)
-    left, stretch = responses[:, :count], responses[:, count:]
+    solve = inertia_relief(solid).solve
+    stretch = solve(forces[:, count:], _TOLERANCE)
+    growth = 2.0 * speed * _spin_accelerations(body, record, picked)
+    forces[:, :count] -= np.outer(damping @ stretch[:, 0], growth)
+    left = solve(forces[:, :count], _TOLERANCE)
     places = (3 * nodes[:, None] + np.arange(3)).ravel()
     missing = left[places].reshape(-1, 3, count)
     moved = (basis[places] @ zeta).reshape(-1, 3, count) + frame + missing
@@ -145,22 +151,19 @@ def left_out_at_nodes(
 
 def _unbalanced(
     body: RotorBody, record: Record, picked: np.ndarray, solid: SolidRotor, basis: np.ndarray
-) -> np.ndarray:
-    """Return r without M c̈ and loads at interfaces, then ``h`` as a last column, (3n, s + 1)."""
+) -> tuple[np.ndarray, sp.csr_array]:
+    """Return r without M c̈ and loads at interfaces, then ``h`` as a last column, (3n, s + 1).
+
+    And the damping that acts on what the modes leave out.
+    """
     # damping in proportion to the mass leaves no force beyond the modes
     setup = replace(
         body.plan.setup, modal_coordinates=None, modal_velocities=None, mass_damping=0.0
     )
     full = make_full_plan(solid, setup).motion
-    inv, terms, form = full.invariants, full.spin_terms, body.formulation
-    omega, times = record.speed[picked], record.time[picked]
-    q, q_t, q_tt = (
-        rows[picked][:, body.layout.unknowns].T for rows in (record.q, record.q_t, record.q_tt)
-    )
-    if form.has_spin:
-        omega_t = q_tt[form.translation_count]
-    else:
-        omega_t = np.array([float(form.spin.acceleration(t)) for t in times])
+    inv, terms = full.invariants, full.spin_terms
+    omega, omega_t = record.speed[picked], _spin_accelerations(body, record, picked)
+    q, q_t = (rows[picked][:, body.layout.unknowns].T for rows in (record.q, record.q_t))
     c, rate = (basis @ rows[body.motion.modes] for rows in (q, q_t))
     forces = -(inv.K @ c) - inv.D @ rate - 2.0 * (inv.G @ (omega * rate))
     forces += terms.C_hat @ (omega**2 * c) - terms.W @ (omega_t * c)
@@ -168,7 +171,14 @@ def _unbalanced(
         forces -= terms.K4 @ (omega**4 * c)
     forces += np.outer(terms.h, omega**2) - np.outer(terms.g, omega_t)
     forces += inv.S.T @ _body_force(body, record, picked)
-    return np.column_stack([forces, terms.h])
+    return np.column_stack([forces, terms.h]), inv.D
+
+
+def _spin_accelerations(body: RotorBody, record: Record, picked: np.ndarray) -> np.ndarray:
+    form = body.formulation
+    if form.has_spin:
+        return record.q_tt[picked][:, body.layout.unknowns][:, form.translation_count]
+    return np.array([float(form.spin.acceleration(t)) for t in record.time[picked]])
 
 
 def _body_force(body: RotorBody, record: Record, picked: np.ndarray) -> np.ndarray:

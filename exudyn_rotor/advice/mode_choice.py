@@ -218,15 +218,17 @@ def critical(given: Candidate, request: Request) -> np.ndarray:
     """Return the lowest speeds in the range at which unbalance meets a resonance [rad/s].
 
     There ``K₀ + Ω² X`` is singular, as it is seen from the rotor; X is what one radian per second
-    changes. Supports that change with the speed make this approximate.
+    changes. Both come from the middle and the end of the range, as supports need not be known
+    outside. Supports that change with the speed make this approximate.
     """
     if not given.supported or request.low == request.high:
         return np.zeros(0)
-    _, _, K_half, _ = given.conservative(0.5 * request.high)
+    middle = 0.5 * (request.low + request.high)
+    _, _, K_middle, _ = given.conservative(middle)
     _, _, K_full, _ = given.conservative(request.high)
-    if len(K_half) != len(K_full):
+    if len(K_middle) != len(K_full):
         return np.linspace(request.low, request.high, _CRITICAL + 2)[1:-1]
-    X = (K_full - K_half) / (0.75 * request.high**2)
+    X = (K_full - K_middle) / (request.high**2 - middle**2)
     K = K_full - request.high**2 * X
     squares = scipy.linalg.eigvals(K, -X)
     squares = squares[np.isfinite(squares) & (np.abs(squares.imag) < 1e-6 * np.abs(squares))].real

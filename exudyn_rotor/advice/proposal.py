@@ -173,7 +173,7 @@ def propose(
         Frequencies in the inertial frame of what acts on the rotor, ≥ 0 [rad/s]: everything up to
         the highest is taken to occur. None: weight, unbalance and bearings only, so everything up
         to the spin speed.
-    supports : sequence of Support, optional
+    supports : sequence of Support or bearings, optional
         What holds the rotor; an empty list for a rotor that nothing holds. None: not known.
     interfaces : sequence of str, optional
         Where the rotor is loaded and looked at; all interfaces by default.
@@ -251,7 +251,7 @@ def propose(
     request = Request.of(speeds, load_frequencies, accuracy)
     if tilt is not None:
         tilt = checks.tolerance(tilt, "tilt")
-    given = candidate(target, body, supports, interfaces, axial)
+    given = candidate(target, body, supports, interfaces, axial, request.high)
     spin = _spin(given, request, spin)
     chosen = choose_modes(given, request)
     level = choose_level(given, request, chosen.kept)

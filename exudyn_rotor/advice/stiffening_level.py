@@ -81,7 +81,7 @@ def _shift(
     frequencies, vectors, (M, G) = resonances(given, speed, request.loads + speed)
     if frequencies.size == 0:
         return _static_shift(given, speed, change)
-    size = given.source.size
+    size = given.resonating.size
     work = np.zeros(frequencies.size)
     for start in range(0, len(M), size):  # every harmonic of the speed
         modal = vectors[start + given.modal]
@@ -101,7 +101,7 @@ def _shift(
 def _static_shift(given: Candidate, speed: float, change: np.ndarray) -> float:
     """Return the relative change of the lowest stiffnesses where no frequency is in the band."""
     *_, K, count = given.conservative(speed)
-    size = given.source.size
+    size = given.resonating.size
     places = size * (count // 2) + given.modal
     H = np.linalg.pinv(K[np.ix_(places, places)], rcond=1e-10, hermitian=True)
     return float(0.5 * speed**2 * np.abs(np.linalg.eigvals(H @ change)).max())

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.reduction.mode_pairs import lowest_with_pairs
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
 from exudyn_rotor.solvers.inertia_relief import (
@@ -101,6 +102,11 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     TypeError, ValueError
         If there are not that many modes, parts are loose, or the iteration misses the tolerance.
 
+    Warns
+    -----
+    UserWarning
+        Where the last mode is one of a pair, and the other is left out.
+
     Notes
     -----
     The iteration needs ``K⁻¹`` on the motions without a rigid part. Inertia relief gives it with
@@ -126,13 +132,15 @@ def free_modes(rotor: FiniteElementRotor, count: int, *, tolerance: float = 1e-1
     size, rigid_count = rigid.shape
     check_count(count, size - rigid_count, smallest=1)
     graded = stiffness.diagonal().max() > _GRADED * np.median(stiffness.diagonal())
-    if lanczos.is_small(size, count) and not (graded and 4 * count <= size):
-        values, modes = lanczos.dense_modes(
-            stiffness.toarray(), mass.toarray(), count, skip=rigid_count
-        )
-    else:
+
+    def solve(number: int) -> lanczos.Modes:
+        if lanczos.is_small(size, number) and not (graded and 4 * number <= size):
+            dense = stiffness.toarray(), mass.toarray()
+            return lanczos.dense_modes(*dense, number, skip=rigid_count)
         inverse = inertia_relief(rotor, rigid)
-        values, modes = lowest_modes(stiffness, mass, inverse, count, tolerance)
+        return lowest_modes(stiffness, mass, inverse, number, tolerance)
+
+    values, modes = lowest_with_pairs(rotor, solve, count, size - rigid_count)
     precision = relative_rounding(stiffness, rigid)
     lanczos.check_modes(stiffness, mass, values, modes, precision=precision)
     return ModeBasis(

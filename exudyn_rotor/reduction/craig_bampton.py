@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from exudyn_rotor import checks
 from exudyn_rotor.reduction.attachment import is_clamped
 from exudyn_rotor.reduction.component import ModeBasis, check_count, check_rotor, eigenmode_labels
+from exudyn_rotor.reduction.mode_pairs import lowest_with_pairs
 from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.solid.rotor import FiniteElementRotor
 from exudyn_rotor.solvers import lanczos
@@ -156,7 +157,8 @@ def _rigid_coupling(
         ) from error
     static[inner] = -inverse.solve((rotor.stiffness @ static)[inner])
     _check_equilibrium(rotor, (rotor.stiffness @ static)[inner], rounding(rotor.stiffness, static))
-    values, inner_modes = _eigenmodes(stiffness, mass, inverse, count, tolerance)
+    solve = partial(_eigenmodes, stiffness, mass, inverse, tolerance=tolerance)
+    values, inner_modes = lowest_with_pairs(rotor, solve, count, len(inner), inner)
     lanczos.check_modes(stiffness, mass, values, inner_modes)
     eigenmodes = np.zeros((rotor.mass.shape[0], count))
     eigenmodes[inner] = inner_modes
@@ -172,7 +174,8 @@ def _mean_coupling(
         interface.mean_motion(len(rotor.nodes))[: _motion_count(interface)] for interface in chosen
     ]
     constraints = sp.csr_array(sp.vstack(rows))
-    check_count(count, mass.shape[0] - constraints.shape[0], smallest=0)
+    available = mass.shape[0] - constraints.shape[0]
+    check_count(count, available, smallest=0)
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
     inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
     static = inverse.prescribe(np.eye(constraints.shape[0]))
@@ -180,7 +183,9 @@ def _mean_coupling(
     precision = relative_rounding(stiffness, rigid)
     force = lanczos.without_reactions(stiffness @ static, constraints)
     _check_equilibrium(rotor, force, rounding(stiffness, static, precision))
-    values, modes = _eigenmodes(stiffness, mass, inverse, count, tolerance, constraints)
+    held = {"tolerance": tolerance, "constraints": constraints}
+    solve = partial(_eigenmodes, stiffness, mass, inverse, **held)
+    values, modes = lowest_with_pairs(rotor, solve, count, available)
     lanczos.check_modes(
         stiffness, mass, values, modes, precision=precision, constraints=constraints
     )
