@@ -10,12 +10,12 @@ import exudyn_rotor as er
 
 RPM, ENDS = np.pi / 30.0, ("drive end", "free end")
 RANGE = np.array([6500.0, 9000.0]) * RPM  # of operation [rad/s]
-shaft = occ.Cylinder((0, 0, 0), occ.Z, 0.05, 1.2)  # a compressor with three wheels [m]
-for start in (0.45, 0.57, 0.69):
-    shaft = shaft + occ.Cylinder((0, 0, start), occ.Z, 0.16, 0.06)
+shaft = occ.Cylinder((0, 0, 0), occ.Z, 50, 1200)  # a compressor with three wheels [mm]
+shaft = sum((occ.Cylinder((0, 0, z), occ.Z, 160, 60) for z in (450, 570, 690)), shaft)
 shaft.WriteStep("compressor.step")
 with warnings.catch_warnings(record=True) as raised:
-    mesh = ngsolve.Mesh(occ.OCCGeometry("compressor.step").GenerateMesh(maxh=0.12))
+    drawn = occ.OCCGeometry("compressor.step").shape.Scale(occ.Pnt(0, 0, 0), 1e-3)  # mm to m
+    mesh = ngsolve.Mesh(occ.OCCGeometry(drawn).GenerateMesh(maxh=0.12))
     steel = {"youngsModulus": 2.05e11, "poissonsRatio": 0.3, "density": 7830.0}
     solid = er.SolidRotor.from_ngsolve(mesh, steel, axis="z")
     for name, place in (("drive end", 0.06), ("midspan", 0.6), ("free end", 1.14)):

@@ -4,6 +4,10 @@ The magnetic bearings fail at 190 rpm, and the rotor falls through the clearance
 friction it comes to swing beside the lowest point, where friction and weight balance, and brakes by
 μ m g R. With much friction it climbs the wall and whirls backward, until it rolls without sliding:
 the whirl is then Ω R/e against the spin, e the clearance with what the whirling mass adds to it.
+
+Friction decides by much. Along the wall of the clearance c, at the angle φ from the lowest point,
+w = v²/2gc follows w' = 2μw + μ cos φ − sin φ. An impact without rebound leaves w = μ², which leads
+over the top from μ = 1/2 on. Below, the rebounds decide, and every small change with them.
 """
 
 import exudyn
@@ -15,7 +19,7 @@ import exudyn_rotor as er
 from exudyn_rotor import plotting
 
 CLEARANCE, RADIUS, STIFFNESS, SPIN, GRAVITY = 5e-4, 0.03, 5e7, 20.0, 9.81  # SI units
-STEP, LITTLE, MUCH = 5e-5, 0.1, 0.4
+STEP, LITTLE, MUCH = 5e-5, 0.1, 0.6
 shaft = occ.Cylinder((0, 0, -0.2), occ.Z, RADIUS, 0.4)
 solid = shaft + occ.Cylinder((0, 0, -0.02), occ.Z, 0.1, 0.04)
 mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.08, curvaturesafety=1.0))

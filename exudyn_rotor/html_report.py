@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import inspect
 import io
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from datetime import date
 from html import escape
@@ -59,7 +60,7 @@ nav li {{ line-height: 1.4; }}
 </head>
 <body>
 <h1>{title}</h1>
-<p class="date">{day}</p>
+<p class="date">{day}, {made_by}</p>
 {body}
 </body>
 </html>
@@ -137,7 +138,8 @@ def report(
         parts.append(f'<section id="s{number}">\n<h2>{escape(heading)}</h2>\n{html}\n</section>')
     body = "\n".join(["<nav><ol>", *links, "</ol></nav>", *parts])
     day = date.today().isoformat()
-    write_text(path, _PAGE.format(title=escape(title), day=day, body=body))
+    made_by = f"exudyn_rotor {sys.modules[__package__].__version__}, Exudyn {exudyn.__version__}"
+    write_text(path, _PAGE.format(title=escape(title), day=day, made_by=made_by, body=body))
 
 
 # ------------------------------------------------------------------ what is given

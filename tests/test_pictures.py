@@ -208,6 +208,20 @@ def test_spectra_part_forward_from_backward():
     assert len(found.table().splitlines()) == len(found.times) + 1
 
 
+@pytest.mark.parametrize(("orders", "last"), [((1.0,), 60.0), ((1.0, 3.0), 180.0)])
+def test_pictures_end_where_nothing_is_left(orders, last):
+    """20 to 60 Hz in samples of 1 kHz: not 500 Hz, of which the spectra would be a tenth.
+
+    Windows of 0.2 s widen a line by 4/0.2 s at most.
+    """
+    found = spectra(*run_up(), length=0.2)
+    low, high = found.plot(orders=orders).get_xlim()
+    assert 1.1 * last < high == pytest.approx(-low, rel=0.1)
+    assert high < 1.2 * (last + 20.0)
+    assert found.plot(highest=2.0 * np.pi * 300.0).get_xlim()[1] == pytest.approx(300.0, rel=0.1)
+    assert found.plot_spectrogram().get_ylim()[1] < 500.0
+
+
 def test_amplitude_of_one_signal():
     """A harmonic on a line of the spectrum, and a constant that is taken out."""
     time = np.arange(0.0, 1.0, 1e-3)

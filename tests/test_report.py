@@ -15,6 +15,7 @@ from point_rotors import ring_rotor
 from small_results import STORED
 from test_controlled_trains import MAGNETIC, PADS
 
+import exudyn_rotor
 from exudyn_rotor import (
     Foundation,
     GearMesh,
@@ -22,9 +23,11 @@ from exudyn_rotor import (
     RotorTrain,
     ShortJournalBearing,
     Support,
+    Unbalance,
     add_rotor,
     linear_model,
     report,
+    unbalance_response,
 )
 from exudyn_rotor.results import Result
 
@@ -93,6 +96,18 @@ def test_the_file_needs_nothing_beside_it(written, ring):
     assert all(link.startswith(("data:", "#s")) for link in page.links)
     pictures = [link for link in page.links if link.startswith("data:image/png;base64,")]
     assert all(base64.b64decode(one.split(",")[1]).startswith(b"\x89PNG") for one in pictures)
+
+
+def test_it_says_which_versions_made_it_and_which_unbalance_was_applied(written, ring):
+    """42.5 g mm at 30 degrees; a report without them could not be checked."""
+    given = {"supports": Support("mid", 1e5, 50.0), "accuracy": None, "own": False}
+    response = unbalance_response(ring, [50.0], Unbalance("mid", 4.25e-5, np.pi / 6), **given)
+    text = written([response])
+    assert f"exudyn_rotor {exudyn_rotor.__version__}, Exudyn {exudyn.__version__}" in text
+    assert "unbalance of 42.5 g mm at &#x27;mid&#x27;, angle 30 deg" in text
+    assert response.loads == ("unbalance of 42.5 g mm at 'mid', angle 30 deg",)
+    own = unbalance_response(ring, [50.0], Unbalance("mid", 1e-5), **given | {"own": True})
+    assert own.loads[1:] == ("the rotor's own unbalance",)
 
 
 def test_columns_are_those_of_the_result(written):

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from exudyn.FEM import FEMinterface
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
-from models import STEEL, block_beam, disc_fem
+from models import STEEL, block_beam, disc_fem, disc_rotor
 from point_rotors import ring_rotor
+from spool_models import spool_with_growth
 from test_hermitian_zeros import thin_below_forty, zeros_of_eigenvalues
 
 import exudyn_rotor
@@ -36,6 +37,7 @@ from exudyn_rotor import (
     rolling_bearing_response,
     select_modes,
     separation_margins,
+    stability,
     stability_level_one,
     stability_threshold,
     steady_state,
@@ -243,6 +245,11 @@ def limit_that_a_finer_rotor_has_elsewhere(_):
     stability_threshold(rotor.reduce(0), first - 1e-3, first + 1e-3, **given)
 
 
+def spool_on_damped_bearings(_):
+    rotor, speed, supports = spool_with_growth()
+    stability(rotor, [speed], supports=supports, accuracy=None)
+
+
 def second_forward_mode_that_is_unstable_first(_):
     rotor = ring_rotor(0.3, 0.2, 10.0).with_interface("left", range(5))
     rotor = rotor.with_interface("right", range(5, 10)).reduce(0)
@@ -268,14 +275,15 @@ PLACES = {
     "prestress/static_solution.py:_in_equilibrium": (
         stress_out_of_balance, UserWarning, "not in equilibrium"),
     "prestress/static_solution.py:_warn_of_yield": (
-        stress_beyond_yield, UserWarning, "above yield_stress",
-    ),
+        stress_beyond_yield, UserWarning, "above yield_stress"),
     "linear/models/rotor/eccentricity.py:warn_of_eccentricity": (
         eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
     ),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
         native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone",
     ),
+    "reduction/mode_pairs.py:lowest_with_pairs": (
+        lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
     "strength/field.py:warn_without_static": (
         stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress",
     ),
@@ -292,23 +300,19 @@ PLACES = {
         proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
     ),
     "linear/models/linear_model.py:warn_of_structural_damping": (
-        campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it",
-    ),
+        campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it"),
     "evaluation/level_one.py:_warn_of_others": (
-        second_forward_mode_that_is_unstable_first, UserWarning, "another mode",
-    ),
+        second_forward_mode_that_is_unstable_first, UserWarning, "another mode"),
     "linear/stability/thresholds.py:_warn_of_basis": (
-        limit_that_a_finer_rotor_has_elsewhere, UserWarning, "is not known",
-    ),
+        limit_that_a_finer_rotor_has_elsewhere, UserWarning, "is not known"),
+    "linear/stability/uneven_mesh.py:warn_of_uneven_mesh": (
+        spool_on_damped_bearings, UserWarning, "only because the mesh"),
     "linear/models/basis/basis_error.py:warn": (
-        campbell_with_one_mode, UserWarning, "errs by about",
-    ),
+        campbell_with_one_mode, UserWarning, "errs by about"),
     "solid/units.py:check_model_units": (
-        small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm",
-    ),
+        small_rotor_in_millimetres, UserWarning, "few rotors are that heavy; lengths in mm"),
     "solid/ngsolve_model.py:_prepare_mesh": (
-        curved_elements, UserWarning, "are replaced by mid nodes",
-    ),
+        curved_elements, UserWarning, "are replaced by mid nodes"),
     "linear/response/refinement.py:resolved_peak": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width",
     ),

@@ -17,6 +17,8 @@ from exudyn_rotor.units import Units
 HERTZ = 1.0 / (2.0 * np.pi)
 # of the largest amplitude: what a spectrogram shows [dB]
 _RANGE = 60.0
+# share of the largest amplitude up to which a cascade goes, and how much further it is drawn
+_LEAST, _BEYOND = 1e-2, 1.2
 # largest change of the time step, relative: rounding of what a file holds
 _EVEN = 1e-3
 
@@ -65,12 +67,13 @@ class Spectra(Result):
         ax : matplotlib.axes.Axes, optional
             A new figure without a window by default.
         highest : float, optional
-            Highest frequency in the picture [rad/s]; all by default.
+            Highest frequency in the picture [rad/s]; by default a fifth above the last one with a
+            hundredth of the largest amplitude (in a spectrogram a thousandth), and all `orders`.
         orders : array_like, optional
             Multiples of the spin speed to draw as lines.
         """
         orders = checks.array(orders, "orders", shape=(None,))
-        inside, most = self._inside(highest)
+        inside, most = self._inside(highest, _LEAST, np.abs(orders).max(initial=0.0))
         ax = plotting.axes_or_new(ax)
         base = HERTZ * self.speeds
         step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
@@ -100,9 +103,9 @@ class Spectra(Result):
 
         Parameters as of :meth:`plot`.
         """
-        inside, most = self._inside(highest)
-        ax = plotting.axes_or_new(ax)
         floor = 10.0 ** (-_RANGE / 20.0)
+        inside, most = self._inside(highest, floor, 1.0)
+        ax = plotting.axes_or_new(ax)
         sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
         mesh = ax.pcolormesh(
             self.times, HERTZ * self.frequencies[inside], 20.0 * np.log10(sizes).T,
@@ -134,12 +137,18 @@ class Spectra(Result):
             lines.append(f"{time:10.4g}{speed:12.5g}{frequency:16.5g}{amplitude:12.4g}")
         return "\n".join(lines)
 
-    def _inside(self, highest: float | None) -> tuple[np.ndarray, float]:
-        """Return which frequencies are shown, and the largest of their amplitudes."""
-        inside = np.ones(len(self.frequencies), dtype=bool)
-        if highest is not None:
-            highest = checks.number(highest, "highest", "rad/s", above=0.0)
-            inside = np.abs(self.frequencies) <= highest
+    def _inside(self, highest: float | None, least: float, order: float) -> tuple:
+        """Return which frequencies are shown, and the largest of their amplitudes.
+
+        Without `highest`, up to the last with the share `least` and to `order` times the speed.
+        """
+        sizes, apart = self.amplitudes.max(axis=0), np.diff(self.frequencies).max()
+        if highest is None:
+            last = np.abs(self.frequencies[sizes >= least * sizes.max()]).max()
+            last = _BEYOND * max(last, order * np.abs(self.speeds).max(), apart)
+        else:
+            last = checks.number(highest, "highest", "rad/s", above=0.0)
+        inside = np.abs(self.frequencies) <= last
         if np.count_nonzero(inside) < 2:
             raise ValueError(
                 f"highest: needs two frequencies or more below it, got {highest}; their spacing is "

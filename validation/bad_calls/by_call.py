@@ -258,6 +258,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Stability", "tolerance"): v.POSITIVE.but("zero"),
     ("stability", "speeds"): v.SERIES,
     ("Stability.growth_of", "family"): v.WORD,
+    ("Stability.least_stable_of", "family"): v.WORD,
     ("stability_level_one", "at"): v.INTERFACES,
     ("stability_level_one", "speed"): v.POSITIVE,
     ("stability_map", "labels"): v.Kind(),

@@ -33,6 +33,7 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
     "*.coefficients": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.current_for": lambda w: {"force": 100.0, "place": 1e-5},
     "*.eccentricity_ratio": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
+    "*.film_coefficients": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.equilibrium": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.film_use": lambda w: {"displacement": [1e-5, 0.0]},
     "*.forces": lambda w: {"motion": np.full(12, 1e-5), "rate": np.full(12, 1e-3)},
@@ -217,6 +218,7 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
         "velocity": [0.0, 1e-3],
     },
     "Stability.growth_of": lambda w: {"family": "lateral"},
+    "Stability.least_stable_of": lambda w: {"family": "lateral"},
     "SteadyState.interface_motion": lambda w: {"interface": "left"},
     "SteadyState.state": lambda w: {},
     "StressField.at": lambda w: {

@@ -4,6 +4,16 @@ from validation.mutations.mutation import mutations
 
 ADVICE = [
     *mutations(
+        "advice/candidate.py",
+        "test_advice_bearings.py",
+        (
+            "resonances of controllers",
+            "alone if alone.size < self.source.size else self.source",
+            "self.source",
+        ),
+        ("scene looked at outside the speeds", "scene.at(speed)", "scene.at(0.0)"),
+    ),
+    *mutations(
         "advice/run_measures.py",
         "test_full_run_check.py::test_a_journal_out_of_its_film_fails_the_check",
         ("journal in other axes", "place @ axes[:, :2]", "place[:2]"),
@@ -132,7 +142,7 @@ ADVICE = [
         "test_advice_linear.py::test_critical_speeds_of_a_rigid_rotor",
         (
             "slope over the square of the speed",
-            "(0.75 * request.high**2)",
+            "(request.high**2 - middle**2)",
             "(1.0 * request.high**2)",
         ),
     ),
@@ -190,6 +200,8 @@ ADVICE = [
         ("stretch by the speed", "np.outer(terms.h, omega**2)", "np.outer(terms.h, omega)"),
         ("stretch of the modes added", "forces[:, count:] -= solid", "forces[:, count:] += solid"),
         ("static stress counted twice", "left - speed**2 * stretch", "left"),
+        ("damping hastens the static stretch", "-= np.outer(damping", "+= np.outer(damping"),
+        ("delay without the factor of 2", "growth = 2.0 * speed", "growth = speed"),
         (
             "loads at interfaces left out",
             "forces[:, :count] += columns @ values",

@@ -309,6 +309,23 @@ BEARINGS = [
         ("pads of a scene go the other way", "= -radius * seat.axes", "= radius * seat.axes"),
     ),
     *mutations(
+        "bearings/film/film.py",
+        "test_film_properties.py",
+        (
+            "journal sought on one side",
+            "for ratio, turn in _STARTS",
+            "for ratio, turn in _STARTS[:1]",
+        ),
+    ),
+    *mutations(
+        "bearings/tilting_pad.py",
+        "test_tilting_pad_limits.py",
+        ("pads overshoot", "> -0.5 * ahead", "> -np.inf"),
+        ("pads pressed too thin absent", "if thin_end > small:", "if False:"),
+        ("light pads absent", "if low < even < high else tried", "if False else tried"),
+        ("nothing goes where no pad holds", "_HELD * max(", "1e-300 * max("),
+    ),
+    *mutations(
         "bearings/tilting_pad.py",
         "test_tilting_pad.py",
         ("pads held", "total += Z - np.outer(Z @ t, t @ Z) /", "total += Z + 0.0 * t @ t /"),
@@ -380,11 +397,14 @@ BEARINGS = [
         "linear/response/rolling_motion.py",
         "test_rolling_bearing_response.py",
         ("unbalance grows with the speed", "speed**2 * self.unbalance", "speed * self.unbalance"),
+        ("small unbalances stay doubled", "arange(6.0, -0.5, -0.5)", "arange(6.0, 0.5, -0.5)"),
+        ("sweep goes on with harmonics at rest", "rest.speed == 0.0:", "rest.speed < 0.0:"),
     ),
     *mutations(
         "linear/response/rolling_response.py",
         "test_rolling_bearing_response.py",
         ("weight lifts", "BaseAcceleration(-across)", "BaseAcceleration(across)"),
         ("folded harmonics turn the other way", "a.conj() if turned else a", "a"),
+        ("balanced rotors are not strained", "else own * np.array", "else 0.0 * np.array"),
     ),
 ]

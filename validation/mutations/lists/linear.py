@@ -180,6 +180,23 @@ LINEAR = [
     ),
     *mutations(
         "linear/modal/tracking.py",
+        "test_nodal_diameters.py::test_waves_that_take_turns_are_not_joined",
+        ("waves of a standing mode are joined", "joined[1:] &= jump", "joined[1:] |= jump"),
+        ("ν never passes zero", "np.where(together <=", "np.where(together <= 0.0 *"),
+        ("the spin does not move waves", "change + steepest + _ROUGH", "change + _ROUGH"),
+    ),
+    *mutations(
+        "linear/modal/whirl.py",
+        "test_nodal_diameters.py",
+        (
+            "modes with many nodal diameters named by what little is fitted",
+            "unseen |= self._not_fitted(vectors, energy, total) & ~stands",
+            "pass",
+        ),
+        ("fields that cancel each other count", "np.maximum(whole, fitted)", "whole"),
+    ),
+    *mutations(
+        "linear/modal/tracking.py",
         "test_campbell_frames.py::test_columns_ascend_and_tracked_columns_follow_the_modes",
         (
             "conjugate motions are not looked at",
@@ -215,14 +232,29 @@ LINEAR = [
         "test_seen_from_outside.py",
         ("of two equal frequencies any one", "(1.0 - _EVEN)", "(1.0 + _EVEN)"),
         (
+            "copies of a defective eigenvalue as waves",
+            "_DEPENDENT * lengths[:, 0])",
+            "0.0 * lengths[:, 0])",
+        ),
+        ("both senses of waves alike", "_gram(moved, seen) +", "_gram(moved, abs(seen)) +"),
+        (
             "of two equal frequencies that against the spin",
             "np.where(speed < 0.0, -1, 1)",
             "np.where(speed < 0.0, 1, -1)",
         ),
+    ),
+    *mutations(
+        "linear/modal/one_sense.py",
+        "test_seen_from_outside.py test_campbell_frames.py",
         (
             "slow growth is a copy of a free motion",
             "in (group[zero], group[~zero])",
             "in (group,)",
+        ),
+        (
+            "repeated modes as they come",
+            "for index, columns in each:",
+            "for index, columns in each[:0]:",
         ),
     ),
     *mutations(

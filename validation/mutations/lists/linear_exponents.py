@@ -41,7 +41,7 @@ LINEAR_EXPONENTS = [
         ),
         ("slips of shared motions left out", "seen(slips)", "0.0 * seen(slips)"),
         ("real motions with their factor", "* np.exp(-0.5j", "* np.exp(-0.0j"),
-        ("motions without forces", "forced += np.linalg", "forced -= np.linalg"),
+        ("motions without forces", "forced += accelerations(", "forced -= accelerations("),
         (
             "changes between exponents that are one",
             "| (sizes <= ENOUGH * radii)",

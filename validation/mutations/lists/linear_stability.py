@@ -30,6 +30,17 @@ LINEAR_STABILITY = [
         ),
     ),
     *mutations(
+        "linear/stability/threshold_search.py",
+        "test_threshold_search.py::test_the_limit_of_a_motion_on_uneven_supports_takes_few_solutions",
+        ("no other motion grows at a limit", "if self.unstable(beyond):", "if False:"),
+    ),
+    *mutations(
+        "linear/stability/growth.py",
+        "test_threshold_search.py::test_the_limit_of_a_motion_on_uneven_supports_takes_few_solutions",
+        ("secants away from the limit", "here - excess / rise", "here + excess / rise"),
+        ("the most stable motion is followed", "int(np.argmax(growth", "int(np.argmin(growth"),
+    ),
+    *mutations(
         "linear/stability/stability_map.py",
         "test_basis_error.py::test_errors_of_a_map_of_stability_are_those_of_its_points",
         (

@@ -4,6 +4,12 @@ from validation.mutations.mutation import mutations
 
 REDUCTION = [
     *mutations(
+        "reduction/mode_pairs.py",
+        "test_mode_pairs.py",
+        ("pairs by their frequency alone", "_ALIKE = 0.7", "_ALIKE = 0.0"),
+        ("pairs must not differ at all", "_ALIKE = 0.7", "_ALIKE = 0.99999"),
+    ),
+    *mutations(
         "reduction/inertial_modes.py",
         "test_basis_error.py::test_inertia_forces_along_the_axis_bend_a_blade_across_its_mode",
         ("loads along the axis forgotten", "speed * along]", "0.0 * along]"),
