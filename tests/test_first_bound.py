@@ -107,6 +107,16 @@ def test_shared_motions_that_are_wrong_are_seen():
         assert first_bound(system, every, pairs, wrong, radii) > 10.0 * right
 
 
+def test_motions_that_are_none_together_are_not_judged():
+    """A column of zeros is singular on every processor; two equal ones are on some."""
+    system = two_motions(0.4)
+    every, pairs, groups = given(system, _chosen_by_hill(system, TOLERANCE, True))
+    shapes = every.shapes.copy()
+    shapes[..., [pairs[0][0], pairs[1][0]]] = 0.0
+    every = replace(every, shapes=shapes)
+    assert first_bound(system, every, pairs, groups, np.ones(len(every.values))) == np.inf
+
+
 def in_conjugate_pairs(size: float, count: int = 2, pairs: int = 2) -> tuple[np.ndarray, ...]:
     """Return λ and F of real motions and of pairs, with harmonics −1, 0 and 1 at 33 angles.
 

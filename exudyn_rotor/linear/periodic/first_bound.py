@@ -157,7 +157,7 @@ def _remainder(
     try:
         rest = np.linalg.solve(P, -np.concatenate([slip, forced / scale], axis=1))
     except np.linalg.LinAlgError:
-        rest = np.full_like(P, np.inf)
+        rest = np.full_like(P, np.nan)  # no shares of motions: told by the caller
     half = slice(count, len(columns))
     F = rest[..., : len(columns)].astype(complex)
     F[..., half] += 1j * rest[..., len(columns) :]
