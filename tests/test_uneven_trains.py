@@ -17,6 +17,7 @@ from exudyn_rotor import (
     linear_model,
     stability,
 )
+from exudyn_rotor.linear.models.trains.turning import Turning
 from exudyn_rotor.linear.periodic.exponents import exponents
 
 CROSS = np.array([[0.0, 1e6, 0.0], [-1e6, 0.0, 0.0], [0.0, 0.0, 0.0]])
@@ -108,3 +109,12 @@ def test_growth_by_bearings_is_not_laid_to_the_mesh():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert not stability(one, [speed], supports=crossed, accuracy=None).stable[0]
+
+
+def test_free_motions_without_rigid_coordinates_count_whole():
+    """Two masses on a rod: five free motions, whose frequencies are rounding, and the axial one."""
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    made = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    turning = Turning.of(linear_model(made))
+    assert sorted(turning.waves) == [-1, -1, 0, 0, 1, 1]
+    np.testing.assert_allclose(np.sort(turning.weights), [0.5, 1, 1, 1, 1, 1], rtol=1e-12)
