@@ -71,49 +71,48 @@ def stress_beyond_yield(beam):
     beam.prestress(yield_stress=1.0, speed=100.0)
 
 
-def motion_with_few_harmonics(_):
-    mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
-    balls = RollingBearing(
-        interface="seat", count=8, pitch_radius=0.03, element_radius=0.006, stiffness=7e9
-    )
-    given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": 1e-6}
-    with patch.object(rolling_motion, "_MOST_UNKNOWNS", 40):
-        rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [0.0], **given)
-
-
-def unstable_motion_on_rolling_bearings(_):
+def mass_on_balls(speed, tolerance=1e-2, **bearing):
     mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
     balls = RollingBearing(
         interface="seat", count=8, pitch_radius=0.0326, element_radius=0.006, stiffness=7e9,
-        clearance=1e-5, damping=600.0,
+        **bearing,
     )  # fmt: skip
-    given = {"supports": balls, "gravity": [0.0, -9.81, 0.0]}
-    rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [680.0], **given)
+    given = {"supports": balls, "gravity": [0.0, -9.81, 0.0], "tolerance": tolerance}
+    rolling_bearing_response(mass.with_interface("seat", [0]).reduce(0), [speed], **given)
 
 
-def eccentric_rotor_in_a_linear_analysis(beam):
-    rotor = ring_rotor(0.1, 0.1, 2.0).add_point_mass([0.1, 0, 0], 1.0)
-    rotor = rotor.with_interface("all", list(range(10)))
+def motion_with_few_harmonics(_):
+    with patch.object(rolling_motion, "_MOST_UNKNOWNS", 40):
+        mass_on_balls(0.0, tolerance=1e-6)
+
+
+def unstable_motion_on_rolling_bearings(_):
+    mass_on_balls(680.0, clearance=1e-5, damping=600.0)
+
+
+def ring():
+    return ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
+
+
+def eccentric_rotor_in_a_linear_analysis(_):
+    rotor = ring().add_point_mass([0.1, 0, 0], 1.0)
     campbell(rotor.reduce(0), [0.0, 10.0], supports=[Support("all", 1e6, tilt_stiffness=1e4)])
 
 
-def proposal_beyond_the_formulation(beam):
-    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
-    propose(rotor.reduce(0), speeds=100.0, tilt=0.3)
+def proposal_beyond_the_formulation(_):
+    propose(ring().reduce(0), speeds=100.0, tilt=0.3)
 
 
 def run_beyond_its_assumptions(beam):
     mbs = exu.SystemContainer().AddSystem()
-    reduced = ring_rotor(0.1, 0.1, 2.0).reduce(0)
-    body = add_rotor(mbs, reduced, spin=10.0, modal_coordinates=[0.1, 0.0])
+    body = add_rotor(mbs, ring().reduce(0), spin=10.0, modal_coordinates=[0.1, 0.0])
     mbs.Assemble()
     check_run(body)
 
 
 def energy_of_a_coarse_record(beam):
     mbs = exu.SystemContainer().AddSystem()
-    ring = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10))).reduce(0)
-    body = add_rotor(mbs, ring, initial_velocity=[1.0, 0.0, 0.0])
+    body = add_rotor(mbs, ring().reduce(0), initial_velocity=[1.0, 0.0, 0.0])
     body.start_recording()
     add_supports(body, Support("all", 1e5, 50.0, tilt_stiffness=1e4))
     mbs.Assemble()
@@ -218,19 +217,15 @@ def full_body_asked_for_connections(beam):
 
 
 def peak_between_few_speeds(_):
-    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
     supports = [Support("all", 2e4, 1.0, tilt_stiffness=1e4)]  # critical at 100 rad/s
     unbalances = [Unbalance("all", 1e-4)]
-    unbalance_response(rotor, [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
+    unbalance_response(ring(), [50.0, 95.0, 150.0], unbalances, supports=supports).peak()
 
 
 def response_below_the_operating_range(_):
-    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", list(range(10)))
-    supports = [Support("all", 2e4, 100.0, tilt_stiffness=1e4)]
-    given = {"supports": supports, "accuracy": None}
-    response = unbalance_response(
-        rotor, np.linspace(10.0, 240.0, 24), Unbalance("all", 1e-4), **given
-    )
+    given = {"supports": Support("all", 2e4, 100.0, tilt_stiffness=1e4), "accuracy": None}
+    speeds = np.linspace(10.0, 240.0, 24)
+    response = unbalance_response(ring(), speeds, Unbalance("all", 1e-4), **given)
     separation_margins(response, (150.0, 200.0))
 
 
