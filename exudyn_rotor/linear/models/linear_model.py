@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import exudyn
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.controlled_support import Controlled
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
@@ -119,61 +120,79 @@ def linear_model(
     checks.choice(about, "about", ABOUT)
     if dense is not None:
         checks.flag(dense, "dense")
-    if foundation is not None:
-        checks.instance(foundation, "foundation", Foundation)
-        if not isinstance(target, ReducedRotor | SolidRotor):
-            raise ValueError(
-                "foundation: is for a rotor; a linear model has its own, and to a scene "
-                "add_foundation adds one"
-            )
+    _check_foundation(target, foundation)
+    if linear or controlled:
+        _check_takes_supports(target)
     if isinstance(target, exudyn.MainSystem):
-        if linear or controlled:
-            raise ValueError("supports: are for a rotor; a scene has its own connectors")
-        if isinstance(body, list | tuple):
-            train, level = scene_train(target, body)
-            return LinearTrain.of(train, level)
-        how = "the rotor in the scene, which add_rotor returned; a list of several"
-        return RememberingScene.of(LinearScene.of(target, reduced_body(body, how=how), about=about))
+        return _of_scene(target, body, about)
     if body is not None:
         raise TypeError(
             "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
             f"{checks.shown(body)}"
         )
     if isinstance(target, RotorTrain):
-        if linear or controlled:
-            raise ValueError("supports: a RotorTrain has its own; leave them out")
         return LinearTrain.of(target, stiffening)
     if isinstance(target, MODELS):
-        if linear or controlled:
-            raise ValueError("supports: a linear model has its own; leave them out")
         return target
-    if isinstance(target, ReducedRotor):
-        if controlled:
-            return ControlledRotor.of(target, linear, controlled, stiffening, foundation)
-        return _founded(LinearRotor.of(target, linear, stiffening), foundation)
-    how = (
-        "needs a ReducedRotor, a SolidRotor, a linear model, a RotorTrain, or an exudyn.MainSystem "
-        "with body=…"
-    )
-    if not isinstance(target, SolidRotor):
-        raise TypeError(f"target: {how}, got {checks.shown(target)}")
-    if stiffening == "auto":
-        target = with_chosen_prestress(target, None)
-    if dense or (dense is None and 3 * target.node_count <= DENSE_SIZE):
-        if controlled:
-            return ControlledRotor.of(target, linear, controlled, stiffening, foundation)
-        return _founded(LinearRotor.of_solid(target, linear, stiffening), foundation)
+    if not isinstance(target, ReducedRotor | SolidRotor):
+        raise TypeError(
+            "target: needs a ReducedRotor, a SolidRotor, a linear model, a RotorTrain, or an "
+            f"exudyn.MainSystem with body=…, got {checks.shown(target)}"
+        )
+    if isinstance(target, SolidRotor):
+        if stiffening == "auto":
+            target = with_chosen_prestress(target, None)
+        small = 3 * target.node_count <= DENSE_SIZE
+        if not (small if dense is None else dense):
+            _check_for_full_rotor(target, foundation, controlled)
+            return FullRotor.of(target, linear, stiffening).with_spin()
+    if controlled:
+        return ControlledRotor.of(target, linear, controlled, stiffening, foundation)
+    made = LinearRotor.of if isinstance(target, ReducedRotor) else LinearRotor.of_solid
+    model = made(target, linear, stiffening)
+    return model if foundation is None else RotorOnFoundation.of(model, foundation)
+
+
+def _check_foundation(target: Target, foundation: Foundation | None) -> None:
+    if foundation is None:
+        return
+    checks.instance(foundation, "foundation", Foundation)
+    if not isinstance(target, ReducedRotor | SolidRotor):
+        raise ValueError(
+            "foundation: is for a rotor; a linear model has its own, and to a scene "
+            "add_foundation adds one"
+        )
+
+
+def _check_takes_supports(target: Target) -> None:
+    """Refuse supports beside a target that has its own."""
+    if isinstance(target, exudyn.MainSystem):
+        raise ValueError("supports: are for a rotor; a scene has its own connectors")
+    if isinstance(target, RotorTrain):
+        raise ValueError("supports: a RotorTrain has its own; leave them out")
+    if isinstance(target, MODELS):
+        raise ValueError("supports: a linear model has its own; leave them out")
+
+
+def _check_for_full_rotor(
+    rotor: SolidRotor, foundation: Foundation | None, controlled: Sequence[Controlled]
+) -> None:
+    """Refuse what a rotor solved for its lowest modes cannot stand on."""
     if foundation is not None or controlled:
         raise ValueError(
-            f"target: a SolidRotor of {3 * target.node_count} degrees of freedom on a foundation "
+            f"target: a SolidRotor of {3 * rotor.node_count} degrees of freedom on a foundation "
             "or magnetic bearings: give the reduced rotor, rotor.reduce(…), whose error the "
             "analyses estimate, or linear_model(rotor, …, dense=True), which takes all nodes"
         )
-    return FullRotor.of(target, linear, stiffening).with_spin()
 
 
-def _founded(model: LinearRotor, foundation: Foundation | None) -> LinearModel:
-    return model if foundation is None else RotorOnFoundation.of(model, foundation)
+def _of_scene(
+    mbs: exudyn.MainSystem, body: RotorBody | Sequence[RotorBody] | None, about: str
+) -> LinearModel:
+    if isinstance(body, list | tuple):
+        return LinearTrain.of(*scene_train(mbs, body))
+    how = "the rotor in the scene, which add_rotor returned; a list of several"
+    return RememberingScene.of(LinearScene.of(mbs, reduced_body(body, how=how), about=about))
 
 
 def warn_of_structural_damping(model: LinearModel, what: str) -> None:
