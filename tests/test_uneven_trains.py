@@ -1,4 +1,4 @@
-"""Growth of trains of uneven rotors: that of an asymmetric one, and what a mesh feigns."""
+"""Growth of trains of uneven rotors: that of an asymmetric one, and spurious growth by a mesh."""
 
 import warnings
 from dataclasses import replace

@@ -253,12 +253,12 @@ def _classified(
 
 
 def _decays(modes: FloquetModes) -> np.ndarray:
-    """Return which motions decay by more than rounding can feign, shape (k,)."""
+    """Return which motions decay by more than rounding, shape (k,)."""
     return modes.values.real < -_rounding(modes)
 
 
 def _rounding(modes: FloquetModes) -> np.ndarray | float:
-    """Return what rounding can feign in real parts, shape (k,) or one for all."""
+    """Return the error of real parts by rounding, shape (k,) or one for all."""
     return modes.resolution if modes.bounds is None else modes.bounds
 
 
@@ -290,7 +290,7 @@ def _computed(
 def _splits(
     solved: list[_Solved], speeds: np.ndarray, content: WhirlContent, space: Space
 ) -> np.ndarray:
-    """Return :attr:`Campbell.splits`; supports that differ in their directions have no pairs."""
+    """Return :attr:`Campbell.splits`; anisotropic supports have no pairs."""
     if np.any(speeds):
         alike = all(len(entry.modes.orders) == 1 for entry in solved)
     else:  # supports that stand still differ from turning ones at a speed only

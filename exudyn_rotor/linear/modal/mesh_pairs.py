@@ -1,7 +1,7 @@
-"""Pairs of modes in two planes that an uneven mesh or shaft splits.
+"""Pairs of modes in two planes that an uneven mesh or an asymmetric shaft splits.
 
-On isotropic supports a round rotor bends in all planes alike. An uneven one has two frequencies, in
-two planes that turn with it, up to speeds that are small against their difference; above, its modes
+On isotropic supports a round rotor bends in all planes alike. Any other has two frequencies, in two
+planes that turn with it, up to speeds that are small against their difference; above, its modes
 whirl, as those of a round one.
 """
 

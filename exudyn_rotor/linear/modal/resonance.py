@@ -313,7 +313,7 @@ def _turning(
 
 
 def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]:
-    """Return resonances, of each pair that an uneven rotor splits the lower one.
+    """Return resonances, of each pair that an asymmetric rotor splits the lower one.
 
     Those of a pair are two phases of one motion: combined, all that is seen from outside turns one
     way in time, ``exp(ipΩt)``, or the other, which independent motions cannot do.

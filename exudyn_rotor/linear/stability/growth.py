@@ -34,7 +34,7 @@ _FASTEST = 100.0  # revolutions' rate beyond which decay does not count for it
 class Growth(NamedTuple):
     """Exponents at one speed, descending in their real parts.
 
-    `bounds` (n,) are real parts that rounding and truncation can feign [1/s]; `names` are inertial
+    `bounds` (n,) are spurious real parts by rounding and truncation [1/s]; `names` are inertial
     frequencies [rad/s], whirl codes and nodal diameters, each (n,), or empty. `critical` is the
     least stable motion, None by Floquet's method; `motions` are all, where they are kept.
     """
@@ -48,7 +48,7 @@ class Growth(NamedTuple):
 
     @property
     def excess(self) -> float:
-        """Largest real part above what rounding and truncation can feign.
+        """Largest real part above its bound.
 
         Neutral motions, which never exceed it, count only where there are no others: as the largest
         they would hide how stable the others are, and root finding would be slow.
@@ -197,7 +197,7 @@ def _drifts(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:
 def held_space(model: LinearModel, fastest: float, modes: int | None, residual: float) -> Space:
     """Return where exponents are found: a spin that nothing holds follows θ = Ωt.
 
-    It is neutral, which round-off would feign to be unstable.
+    It is neutral, and would be unstable by round-off.
 
     Raises
     ------

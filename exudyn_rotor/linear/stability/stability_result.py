@@ -42,9 +42,9 @@ class Stability(Result):
     base : ndarray, shape (s,)
         Frequency of the coefficients [rad/s], 0 where they are constant.
     bounds : ndarray, as exponents
-        Real parts that rounding, of the matrices and of the eigensolver, and harmonics left out can
-        feign [1/s], from the condition of each exponent; of motions that stand still in space also
-        what the equations neglect of a rotor off its axis.
+        Largest spurious real part [1/s], by rounding of the matrices and of the eigensolver and by
+        harmonics left out, from the condition of each exponent; of motions that stand still in
+        space also by what the equations neglect of a rotor off its axis.
     frequencies_inertial : ndarray, as exponents
         Frequency of the motion's strongest wave seen from outside [rad/s], not modulo `base`; by
         Floquet's method, where Hill's does not converge, modulo `base`.
@@ -251,8 +251,8 @@ class Stability(Result):
         Below, the least stable motion of each family over all speeds: an undamped torsion, say, is
         the least stable of all motions at every speed, and would hide which lateral one is.
 
-        A family whose growth is below what its bound can feign has '±' and the bound, but for
-        rounding of the last digits, which is 0. Where all are neutral no motion is named.
+        A family whose growth is below its bound has '±' and the bound, but for rounding of the last
+        digits, which is 0. Where all are neutral no motion is named.
 
         `units` are those of :meth:`plot`.
         """

@@ -5,10 +5,10 @@ centre of mass, ``sᵀMs = 1``. The centrifugal field does not resist it, at any
 a rotation of the whole keeps its potential, so ``K2 − C`` acts on the rest of x only.
 
 *Decoupled*: nothing else resists the spin either when the whole steady state turns about the axis.
-Linear terms of supports feign a stiffness by first order in the eccentricity, which the forces of
-the steady state cancel. The translations of supports then act on the rest of x only: lateral motion
-is that of a rotor driven at constant speed, and the spin is neutral, or on a torsion spring of its
-own.
+Linear terms of supports have a spurious stiffness of first order in the eccentricity, which the
+forces of the steady state cancel. The translations of supports then act on the rest of x only:
+lateral motion is that of a rotor driven at constant speed, and the spin is neutral, or on a torsion
+spring of its own.
 
 *Coupled*: springs at an arm off the axis, or a torsion spring that turns with the rotor, hold the
 spin. All of their forces act on it, and so does their steady force F under the rotor's own

@@ -32,10 +32,10 @@ class RotorTrain:
     links : sequence of Link, optional
         Between rotors.
     largest_unevenness : float, optional
-        A rotor of another ratio than 1, or any beside gears and uneven supports that stand still,
-        counts as axisymmetric, by its mean over a turn, where no larger share of its matrices and
-        of the motions of its places, as slow motions see them, differs around the axis: that is
-        the mesh.
+        Share of a rotor's matrices, and of the motions of its interfaces, that may differ around
+        the axis, as that of a mesh does; weighted by what slow motions see. Up to it a rotor of
+        another ratio than 1, or any beside gears or anisotropic supports at rest, counts as
+        axisymmetric, by its mean over a turn.
     positions : mapping of str to array_like, each (3,), optional
         Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
         checked. Without them a rotor stands where its links put it.

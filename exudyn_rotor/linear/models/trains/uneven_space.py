@@ -1,8 +1,8 @@
-"""Growth that the mesh of one rotor of a train feigns while the meshes of others are left out.
+"""Spurious growth by the mesh of one rotor of a train while the meshes of others are left out.
 
 Rotors of ratio 1 keep what differs around their axis, others count as axisymmetric up to an
-unevenness u. That leaves an error of the order of u² of rates: growth within it which even rotors
-do not have is no instability, and seen over the speed of another rotor it is another one.
+unevenness u. That leaves an error of exponents of the order of u². Growth within it that even
+rotors do not have is no instability: over the speed of another rotor it would be another one.
 """
 
 from __future__ import annotations
@@ -55,5 +55,5 @@ class UnevenSpace(WholeSpace):
         changes = fold(found.values[:, None] - values, abs(system.base))
         change = np.abs(changes[linear_sum_assignment(np.abs(changes))].real)
         error = left_out**2 * (np.abs(found.values) + abs(speed))
-        feigned = np.where(growing, np.minimum(change, error), 0.0)
-        return replace(found, bounds=found.bounds + feigned), system
+        spurious = np.where(growing, np.minimum(change, error), 0.0)
+        return replace(found, bounds=found.bounds + spurious), system
