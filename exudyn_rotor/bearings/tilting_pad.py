@@ -23,7 +23,6 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, Law, Linearised
@@ -33,16 +32,13 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
+from exudyn_rotor.bearings.pad_tilt import shift_of_pad
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
 _HELD = 1e-6  # of its stiffness: what goes where no pad holds the journal
 _CLOSE = 1e-9  # of the load: it stops there
-_TILTS = 26  # tried, between those at which an edge is as thin as the grid resolves
-_SMALL = 1e-9  # of the largest moment, or of a force: none
-_BARELY = 1e-3  # of μ Ω L (R/c)³: the stiffness of a film about to vanish
-_NEAR, _STILL = 8, 1e-12  # steps from the last tilt, and what of the radius counts as none
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -259,7 +255,7 @@ class _Pads:
         pairs = list(zip(self.films, self.tangents, strict=True))
         shifts = np.array(
             [
-                _shift(film, place, t, self.speed, last)
+                shift_of_pad(film, place, t, self.speed, last)
                 for (film, t), last in zip(pairs, self.shifts, strict=True)
             ]
         )
@@ -336,63 +332,3 @@ class _OfPads(Linearised):
             whirl = self.bearing.whirl_ratio * abs(speed)
             return state.impedance(whirl, self.bearing.pad_mass).real
         return state.coefficients[self.pad][self.index]
-
-
-def _shift(film: OilFilm, place: np.ndarray, t: np.ndarray, speed: float, last: float) -> float:
-    """Return s of a pad without a moment about its pivot; NaN where no tilt makes it carry.
-
-    Sought near the `last` one, unless that is NaN, by Newton's method; else, and where this leaves
-    the film, over all tilts.
-    """
-    u = film.grid.u.reshape(-1, 2)
-    room = film.grid.offset.ravel() - u @ place - film.thinnest
-    lever = u @ t
-    low = np.max(-room[lever > 0.0] / lever[lever > 0.0], initial=-np.inf)
-    high = np.min(-room[lever < 0.0] / lever[lever < 0.0], initial=np.inf)
-    pressed = ValueError(
-        f"load: presses the film of a pad below {film.thinnest:.3g} m, which its grid does not "
-        "resolve; give more nodes, or a smaller load"
-    )
-    if not low < high:
-        raise pressed
-
-    empty = None
-
-    def at(s: float) -> FilmState:
-        nonlocal empty  # cells of the last tilt
-        state = film._state(place - s * t, np.zeros(2), speed, empty)
-        empty = state.solution.empty
-        return state
-
-    unit = film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
-    for _ in range(_NEAR):
-        if not low < last < high:  # or NaN
-            break
-        state = at(last)
-        rise = t @ state.coefficients()[0] @ t
-        carried = np.linalg.norm(state.force)
-        if not (rise > _BARELY * unit and carried > _SMALL * unit * film.clearance):
-            break
-        step = float(t @ state.force / rise)
-        last -= step
-        if abs(step) < _STILL * film.radius and low < last < high:
-            return last
-
-    def moment(s: float) -> float:
-        return float(t @ at(s).force)
-
-    # beside that of a film whose edges are equally thick, next to which a light pad is
-    even = float((place - film.pads[0].center) @ t)
-    tried = np.linspace(low, high, _TILTS)
-    tried = np.sort(np.append(tried, even)) if low < even < high else tried
-    found = np.array([moment(s) for s in tried])
-    small = _SMALL * np.abs(found).max()
-    rises = np.flatnonzero((found[:-1] < -small) & (found[1:] > small))
-    if not len(rises):
-        thin_end = found[0] if speed > 0.0 else -found[-1]  # where the film narrows the most
-        if thin_end > small:
-            raise pressed
-        return np.nan
-    found = brentq(moment, tried[rises[0]], tried[rises[0] + 1], xtol=1e-13 * film.radius)
-    held = at(found).coefficients()[0]
-    return found if t @ held @ t > 0.0 else np.nan  # where no pressure is left

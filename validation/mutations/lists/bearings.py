@@ -321,9 +321,13 @@ BEARINGS = [
         "bearings/tilting_pad.py",
         "test_tilting_pad_limits.py",
         ("pads overshoot", "> -0.5 * ahead", "> -np.inf"),
+        ("nothing goes where no pad holds", "_HELD * max(", "1e-300 * max("),
+    ),
+    *mutations(
+        "bearings/pad_tilt.py",
+        "test_tilting_pad_limits.py",
         ("pads pressed too thin absent", "if thin_end > small:", "if False:"),
         ("light pads absent", "if low < even < high else tried", "if False else tried"),
-        ("nothing goes where no pad holds", "_HELD * max(", "1e-300 * max("),
     ),
     *mutations(
         "bearings/tilting_pad.py",
