@@ -145,12 +145,7 @@ def rolling_bearing_response(
     [[200.  40.]
      [460.  70.]]
     """
-    checks.instance(target, "target", (ReducedRotor, SolidRotor))
-    if isinstance(target, SolidRotor) and 3 * target.node_count > DENSE_SIZE:
-        raise ValueError(
-            f"target: needs a SolidRotor of up to {DENSE_SIZE} degrees of freedom, got "
-            f"{3 * target.node_count}; give the reduced rotor, rotor.reduce(…)"
-        )
+    _check_target(target)
     values = ascending_from_zero(speeds, "speeds")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)
@@ -162,14 +157,11 @@ def rolling_bearing_response(
     bearings = [one for one in given if isinstance(one, RollingBearing)]
     passes = _passes(bearings)
     springs = list(map(_spring, bearings))
-    stood_for = [
-        Support(one.interface, spring, one.damping)
-        for one, spring in zip(bearings, springs, strict=True)
+    linear = [
+        *map(_linear_support, bearings, springs),
+        *(one for one in given if not isinstance(one, RollingBearing)),
     ]
-    rest = [one for one in given if not isinstance(one, RollingBearing)]
-    model = linear_model(
-        target, supports=[*stood_for, *rest], foundation=foundation, stiffening=stiffening
-    )
+    model = linear_model(target, supports=linear, foundation=foundation, stiffening=stiffening)
     warn_of_left_out_stiffening(model, values.max())
     observed = places(model, checked_places(at))
     across = target.axis.plane.T @ gravity
@@ -193,6 +185,15 @@ def rolling_bearing_response(
     found = _result(problem, observed, values, solved)
     _warn_of_instability(found)
     return found
+
+
+def _check_target(target: ReducedRotor | SolidRotor) -> None:
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
+    if isinstance(target, SolidRotor) and 3 * target.node_count > DENSE_SIZE:
+        raise ValueError(
+            f"target: needs a SolidRotor of up to {DENSE_SIZE} degrees of freedom, got "
+            f"{3 * target.node_count}; give the reduced rotor, rotor.reduce(…)"
+        )
 
 
 def _explained(
@@ -275,6 +276,11 @@ def _spring(bearing: RollingBearing) -> float:
     return float(0.5 * np.trace(contacts(bearing, deep, 0.0)[2]))
 
 
+def _linear_support(bearing: RollingBearing, spring: float) -> Support:
+    """Return the spring k₀ and the damping in place of a bearing; the rest is its force."""
+    return Support(bearing.interface, spring, bearing.damping)
+
+
 def _result(
     problem: RollingProblem,
     observed: Sequence[Place],
@@ -282,19 +288,8 @@ def _result(
     solved: Sequence[SteadyMotion],
 ) -> RollingBearingResponse:
     """Return the motions (s, p, h, 6) of places, and loads of elements."""
-    rows = np.array([one.motion for one in observed])
-    stands = np.array([one.stands for one in observed])
     kept = [one.balance.rest.coordinates(one.balance.forces(one.q)) for one in solved]
-    motions = []
-    for speed, answer in zip(speeds, kept, strict=True):
-        motion: dict[tuple[int, int], np.ndarray] = {}
-        for k in {k for k, _ in answer}:
-            seen = {n: rows @ x for (j, n), x in answer.items() if j == k}
-            for n, a in (in_frame(seen, stands, "inertial") if speed else seen).items():
-                turned = k == 0 and n < 0
-                order = (0, -n) if turned else (k, n)
-                motion[order] = motion.get(order, 0.0) + (a.conj() if turned else a)
-        motions.append(motion)
+    motions = [_seen(answer, observed, speed) for speed, answer in zip(speeds, kept, strict=True)]
     orders, motion = _stacked(motions)
     motion = np.swapaxes(motion, 1, 2)
     motion[:, [one.is_node for one in observed], :, 3:] = np.nan
@@ -317,6 +312,20 @@ def _result(
         basis=kept_basis(problem.model),
         beside=problem.model.beside if isinstance(problem.model, ExtendedRotor) else (),
     )
+
+
+def _seen(coordinates: Harmonics, observed: Sequence[Place], speed: float) -> Harmonics:
+    """Return the harmonics of places in the inertial frame, (p, 6) each; with k = 0, n ≥ 0."""
+    rows = np.array([one.motion for one in observed])
+    stands = np.array([one.stands for one in observed])
+    motion: dict[tuple[int, int], np.ndarray] = {}
+    for k in {k for k, _ in coordinates}:
+        seen = {n: rows @ x for (j, n), x in coordinates.items() if j == k}
+        for n, a in (in_frame(seen, stands, "inertial") if speed else seen).items():
+            turned = k == 0 and n < 0
+            order = (0, -n) if turned else (k, n)
+            motion[order] = motion.get(order, 0.0) + (a.conj() if turned else a)
+    return motion
 
 
 def _stacked(motions: Sequence[Harmonics]) -> tuple[np.ndarray, np.ndarray]:
