@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -180,12 +180,8 @@ def check_run(
     """
     checks.instance(body, "body", (RotorBody, FullRotorBody), "add_rotor returns one")
     body.check_assembled()
-    asked = any(each is not None for each in (reduced, solid, nodes))
-    if isinstance(body, FullRotorBody) and asked:
-        raise ValueError(
-            f"body: rotor {body.name!r} is a full body, without an error of modes; leave reduced, "
-            "solid and nodes out"
-        )
+    if isinstance(body, FullRotorBody):
+        _check_no_modes(body, (reduced, solid, nodes))
     if reduced is not None:
         _check_same(body, checks.instance(reduced, "reduced", ReducedRotor))
     if proposal is not None:
@@ -195,10 +191,7 @@ def check_run(
     checks.flag(warn, "warn")
     known = _limits(checks.tolerance(accuracy, "accuracy"), limits)
     at_nodes = _nodes(body, reduced, solid, nodes)
-    if isinstance(body, FullRotorBody):
-        measures = FullMeasures(body, recorded_states(body))
-    else:
-        measures = Measures(body, body.recorded())
+    measures = _measures(body)
     record = measures.record
     if np.all(np.isfinite(record.q)) and np.all(np.isfinite(record.q_t)):
         made = list(rows(measures, reduced, proposal))
@@ -213,11 +206,26 @@ def check_run(
     return result
 
 
+def _measures(body: RotorBody | FullRotorBody) -> Measures | FullMeasures:
+    if isinstance(body, FullRotorBody):
+        return FullMeasures(body, recorded_states(body))
+    return Measures(body, body.recorded())
+
+
 def _messages(result: RunCheck, ran: bool) -> Iterator[str]:
     if ran and not result.complete:
         yield result.gap()
     for row in result.failed:
         yield (f"{row.name} {row.value:.3g} exceeds {row.limit:.3g} ({row.meaning}): {row.advice}")
+
+
+def _check_no_modes(body: FullRotorBody, given: Sequence[object]) -> None:
+    """Refuse what is for the error of modes."""
+    if any(each is not None for each in given):
+        raise ValueError(
+            f"body: rotor {body.name!r} is a full body, without an error of modes; leave reduced, "
+            "solid and nodes out"
+        )
 
 
 def _check_same(body: RotorBody, reduced: ReducedRotor) -> None:

@@ -280,28 +280,33 @@ class ContactBalance:
         contacts with their mean stiffness.
         """
         _, g, slopes = self.contacts(self.values(c))
-        ghat, mean = self._spectrum(g), scipy.linalg.block_diag(*slopes.mean(axis=(0, 1)))
-        N, (A, B), inside = self.reach[1], self.points, set(self.orders)
+        mean = scipy.linalg.block_diag(*slopes.mean(axis=(0, 1)))
         size = np.linalg.norm(c[[order != (0, 0) for order in self.orders]])
         size = max(size, _STILL * np.linalg.norm(c))
         if size == 0.0:
             return 0.0, 0.0
         largest = max(np.abs(_on(mean, H, H)).max() for *_, H in self._receptances.values())
+        squares = [0.0, 0.0]
+        beyond = self._beyond(self._spectrum(g), _UNSEEN * tolerance * size / largest)
+        for (k, n), q in beyond.items():
+            moved = _on(mean, self.rest.receptance(k, n)[0], q)
+            squares[int(abs(n) > self.reach[1])] += np.linalg.norm(moved) ** 2
+        return tuple(np.sqrt(squares) / size)
+
+    def _beyond(self, spectrum: np.ndarray, least: float) -> dict[tuple[int, int], np.ndarray]:
+        """Return the motions (d,) beyond K and N by g; by its harmonics there above the least."""
+        (A, B), inside = self.points, set(self.orders)
         beyond = {order: q for order, q in self.given.items() if order not in inside}
-        sizes = np.abs(ghat).max(axis=-1) * largest
+        sizes = np.abs(spectrum).max(axis=-1)
         for k in range(-(A // 2 - 1), A // 2):
             for n in range(-((B - 1) // 2), (B - 1) // 2 + 1):
-                if (k, n) not in inside and sizes[k % A, n % B] <= _UNSEEN * tolerance * size:
+                if (k, n) not in inside and sizes[k % A, n % B] <= least:
                     continue
                 for p, H in self.rest.receptance(k, n).items():
                     if (k, n + p) not in inside:
-                        more = H @ ghat[k % A, n % B]
+                        more = H @ spectrum[k % A, n % B]
                         beyond[k, n + p] = beyond.get((k, n + p), 0.0) + more
-        squares = [0.0, 0.0]
-        for (k, n), q in beyond.items():
-            moved = _on(mean, self.rest.receptance(k, n)[0], q)
-            squares[int(abs(n) > N)] += np.linalg.norm(moved) ** 2
-        return tuple(np.sqrt(squares) / size)
+        return beyond
 
 
 def _on(slopes: np.ndarray, H: np.ndarray, q: np.ndarray) -> np.ndarray:

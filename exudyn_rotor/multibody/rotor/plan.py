@@ -111,17 +111,10 @@ def laid_out(
     sign = frame.sign if setup.marker_body else 1
     locks = Locks.of(formulation, place.rotation @ direction, frame.spin, sign)
     skew = setup.marker_body and locks.normal is not None
-    if setup.locking == "mass" and skew:
-        raise ValueError(
-            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
-            "use locking='constraints', translation='free', or marker_body=False"
-        )
+    by_mass = _is_held_by_mass(setup.locking, locks, skew)
     # gravity on the marker body exerts no moment about e by the deflection Sζ; a free spin needs it
     in_equations = not setup.marker_body or (
         formulation.has_spin and formulation.translation_count == 0
-    )
-    by_mass = setup.locking == "mass" or (
-        setup.locking == "auto" and not locks.varying and not skew
     )
     # a rotor all on its axis has no inertia about it, and its locked spin still needs one
     spin_inertia = invariants.Theta or np.trace(invariants.J) or invariants.mass
@@ -149,3 +142,13 @@ def laid_out(
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
         **more,
     )
+
+
+def _is_held_by_mass(locking: str, locks: Locks, skew: bool) -> bool:
+    """Return whether masses hold locked coordinates, which they cannot in a skew plane."""
+    if locking == "mass" and skew:
+        raise ValueError(
+            "locking='mass' cannot hold the rotor in a plane that is skew to the inertial axes; "
+            "use locking='constraints', translation='free', or marker_body=False"
+        )
+    return locking == "mass" or (locking == "auto" and not locks.varying and not skew)
