@@ -160,7 +160,13 @@ def candidate(
     return _of_scene(target, body, supports, interfaces, axial, speed)
 
 
-def _of_rotor(reduced, body, supports, interfaces, axial) -> Candidate:
+def _of_rotor(
+    reduced: ReducedRotor,
+    body: RotorBody | None,
+    supports: Sequence[Support] | Support | None,
+    interfaces: Sequence[str] | None,
+    axial: bool | None,
+) -> Candidate:
     known = supports is not None
     source = linear_model(reduced, body=body, supports=supports if known else ())
     attached = None
@@ -205,7 +211,14 @@ def _acts_along(support: Support) -> bool:
     return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)
 
 
-def _of_scene(mbs, body, supports, interfaces, axial, speed) -> Candidate:
+def _of_scene(
+    mbs: exudyn.MainSystem,
+    body: RotorBody | None,
+    supports: Sequence[Support] | Support | None,
+    interfaces: Sequence[str] | None,
+    axial: bool | None,
+    speed: float,
+) -> Candidate:
     reduced_body(body, how="a scene needs what add_rotor returned")
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")

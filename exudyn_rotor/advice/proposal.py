@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
-from exudyn_rotor.advice.mode_choice import GROWTH, Truncation, choose_modes
+from exudyn_rotor.advice.mode_choice import choose_modes
+from exudyn_rotor.advice.reasons import HERTZ, level_reasons, mode_reasons, step_reason, unmet
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.spin_coupling import spin_coupling_reasons
 from exudyn_rotor.advice.step_size import Step, choose_step
-from exudyn_rotor.advice.stiffening_level import Level, choose_level
+from exudyn_rotor.advice.stiffening_level import choose_level
 from exudyn_rotor.advice.warning import AssumptionWarning
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -25,7 +26,6 @@ from exudyn_rotor.reduction.truncation import keep_modes
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.theory.stiffening import LEVELS
 
-_HERTZ = 2.0 * np.pi
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
 _GAIN = 1.3  # in step size from which a frame that follows pays: its steps cost a tenth more
 
@@ -256,9 +256,9 @@ def propose(
     chosen = choose_modes(given, request)
     level = choose_level(given, request, chosen.kept)
     translation, why, step = _translation(given, request, spin)
-    for message in _failing(given, request, chosen, level, tilt):
+    for message in unmet(given, request, chosen, level, tilt):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
-    hertz = given.frequencies / _HERTZ
+    hertz = given.frequencies / HERTZ
     return Proposal(
         translation=translation,
         spin=spin,
@@ -272,10 +272,10 @@ def propose(
         accuracy=request.accuracy,
         reasons=(
             why,
-            *_mode_reasons(given, request, chosen),
-            *_level_reasons(request, level),
+            *mode_reasons(given, request, chosen),
+            *level_reasons(request, level),
             *spin_coupling_reasons(given, request, spin),
-            _step_reason(request, step),
+            step_reason(request, step),
         ),
     )
 
@@ -324,76 +324,3 @@ def _translation(given: Candidate, request: Request, spin) -> tuple[str, str, St
         )
         return "free", why, follows
     return "none", "one speed: all motion is in the modes, and the matrices are constant", step
-
-
-def _mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
-    held = "on its supports" if given.supported else "by its own flexibility, supports not known"
-    lines = [
-        f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
-        f"{request.highest / _HERTZ:.4g} Hz of the rotor frame",
-        f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
-        f"of interfaces {held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
-    ]
-    if chosen.missing is not None:
-        lines.append(
-            "modes: static responses to loads at the interfaces, which those given do not hold, "
-            f"change the largest of it by {chosen.missing:.2g}"
-        )
-    elif chosen.top > request.allowed:
-        lines.append(
-            f"modes: the highest fifth of those given adds {chosen.top:.2g}; with free modes, what "
-            "lies beyond them is of that order: give more, or craig_bampton_modes"
-        )
-    return lines
-
-
-def _level_reasons(request: Request, level: Level) -> list[str]:
-    estimate = "by" if level.known else "by about"
-    return [
-        f"stiffening: beyond 'tilt' frequencies change {estimate} {level.full:.2g}, of "
-        f"{request.accuracy:g}; no level costs time in a step"
-    ]
-
-
-def _step_reason(request: Request, step: Step) -> str:
-    if np.isnan(step.speed):
-        return (
-            f"step: ωh = {request.highest * step.size:.3g} at the end of the band, so periods are "
-            f"too long by {request.allowed:g} of themselves there"
-        )
-    return (
-        f"step: changes the response at {step.speed:.4g} rad/s, to a load at {step.frequency:.4g} "
-        f"rad/s in the rotor frame, by {request.allowed:g}; a resonance is near, or a motion that "
-        "is slow in space"
-    )
-
-
-def _failing(
-    given: Candidate, request: Request, chosen: Truncation, level: Level, tilt: float | None
-) -> list[str]:
-    messages = []
-    missing = chosen.missing if given.supported else None
-    if missing is not None and missing > request.allowed:
-        messages.append(
-            f"the {given.frequencies.size} flexible modes given miss {missing:.2g} of the "
-            f"response, above half the accuracy {request.accuracy:g}: reduce the rotor with more "
-            "modes, or with craig_bampton_modes, and ask again"
-        )
-    if given.frequencies.size and given.frequencies.max() < request.highest:
-        messages.append(
-            f"all {given.frequencies.size} flexible modes given lie in the band up to "
-            f"{request.highest / _HERTZ:.4g} Hz of the rotor frame, and more may: reduce the rotor "
-            "with more modes and ask again"
-        )
-    if tilt is not None and tilt**2 > request.accuracy:
-        messages.append(
-            f"a tilt of {tilt:.3g} rad makes an error of its square, {tilt**2:.2g}, above the "
-            f"accuracy {request.accuracy:g}: one fixed axis does not suffice, use Exudyn's 3D body"
-        )
-    if level.missing:
-        messages.append(
-            f"flexible modes soften falsely: frequencies change by about {level.full:.2g}, above "
-            f"the accuracy {request.accuracy:g}; reduce the rotor with prestress=True and ask "
-            "again, which allows stiffening='full'"
-        )
-    return messages

@@ -127,15 +127,11 @@ def stability(
             solved = sweep(task, values, executor=workers, progress=progress, label="stability")
     exponents, base = (np.array([getattr(s, name) for s in solved]) for name in ("values", "base"))
     names = ("frequencies_inertial", "whirl_codes", "nodal_diameters")
-    periodic = np.where(base > 0.0, base, values)
-    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-        multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])
-    multipliers[periodic == 0.0] = np.nan
     basis = basis_made()
     result = Stability(
         speeds=values,
         exponents=exponents,
-        multipliers=multipliers,
+        multipliers=_multipliers(exponents, np.where(base > 0.0, base, values)),
         growth=exponents.real.max(axis=1),
         stable=np.array([entry.excess for entry in solved]) <= 0.0,
         base=base,
@@ -148,6 +144,14 @@ def stability(
     _warn_of_basis(basis, result)
     warn_of_uneven_mesh(model, result)
     return result
+
+
+def _multipliers(exponents: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """Return the factors of motions over a period of the frequencies `base`; NaN without one."""
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        multipliers = np.exp(2.0 * np.pi * exponents / base[:, None])
+    multipliers[base == 0.0] = np.nan
+    return multipliers
 
 
 def _warn_of_basis(basis: BasisError, result: Stability) -> None:

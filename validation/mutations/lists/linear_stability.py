@@ -130,8 +130,8 @@ LINEAR_STABILITY = [
         "test_stability.py",
         (
             "multipliers over half a period",
-            "multipliers = np.exp(2.0 * np.pi * exponents / periodic[:, None])",
-            "multipliers = np.exp(np.pi * exponents / periodic[:, None])",
+            "multipliers = np.exp(2.0 * np.pi * exponents / base[:, None])",
+            "multipliers = np.exp(np.pi * exponents / base[:, None])",
         ),
     ),
     *mutations(

@@ -105,14 +105,11 @@ class Spin:
         # by rotation about the axis
         at_arm = [u[:3] - skew(offset) @ u[3:] for u in turned]
         probed = [_stiffnesses(support) for support in supports]
-        turning = [support.frame == "rotor" for support in supports]
-        coupled = _held_off_center(
-            [each for each, turns in zip(probed, turning, strict=True) if not turns],
-            [u[:2] for u, turns in zip(turned, turning, strict=True) if not turns],
-            invariants.mass,
-        ) or any(
-            turns and _couples(each, u, invariants.mass)
-            for each, turns, u in zip(probed, turning, at_arm, strict=True)
+        known = list(zip(supports, probed, turned, at_arm, strict=True))
+        standing = [(K, u[:2]) for one, K, u, _ in known if one.frame != "rotor"]
+        turning = [(K, u) for one, K, _, u in known if one.frame == "rotor"]
+        coupled = _held_off_center(standing, invariants.mass) or any(
+            _couples(K, u, invariants.mass) for K, u in turning
         )
         twisted = any(np.any(np.array(each)[:, 5]) for each in probed)
         unmoved = np.zeros(6)
@@ -162,10 +159,14 @@ def _couples(stiffnesses: Sequence[np.ndarray], about_axis: np.ndarray, mass: fl
 
 
 def _held_off_center(
-    stiffnesses: Sequence[Sequence[np.ndarray]], turned: Sequence[np.ndarray], mass: float
+    standing: Sequence[tuple[Sequence[np.ndarray], np.ndarray]], mass: float
 ) -> bool:
-    """Return True if springs that stand still hold the spin by their distance from each other."""
-    moved = np.array(turned)
+    """Return True if springs that stand still hold the spin by their distance from each other.
+
+    `standing` has their stiffness at some speeds, and their displacement by the spin, (2,).
+    """
+    stiffnesses = [K for K, _ in standing]
+    moved = np.array([u for _, u in standing])
     varies = any(each[0] is not each[-1] for each in stiffnesses)
     for index in range(len(_PROBED) if varies else 1):
         # what repels, as a seal at high speed, holds nothing

@@ -88,31 +88,13 @@ class RotorTrain:
     driven: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        rotors = checks.mapping(self.rotors, "rotors", "ReducedRotor")
-        if not rotors:
-            raise ValueError("rotors: needs at least one rotor, got none")
-        for name, rotor in rotors.items():
-            if ":" in checks.label(name, "rotors"):
-                raise ValueError(f"rotors: needs names without a colon, got {name!r}")
-            how = "reduce a SolidRotor by its method reduce(…)"
-            checks.instance(rotor, f"rotors[{name!r}]", ReducedRotor, how)
-        ratios = checks.mapping(self.ratios, "ratios", "float")
-        if set(ratios) != set(rotors):
-            raise ValueError(
-                f"ratios: needs one for each of the rotors {_listed(rotors)}, got {_listed(ratios)}"
-            )
-        ratios = {name: checks.number(r, f"ratios[{name!r}]") for name, r in ratios.items()}
-        if not all(ratios.values()):
-            raise ValueError(
-                f"ratios: needs numbers other than 0, got {ratios}; give a rotor that stands still "
-                "as a foundation"
-            )
-        supports = checks.mapping(self.supports, "supports", "sequence of Support")
-        kept = {}
-        for name, given in supports.items():
+        rotors = _checked_rotors(self.rotors)
+        ratios = _checked_ratios(self.ratios, rotors)
+        supports = {}
+        for name, given in checks.mapping(self.supports, "supports", "sequence of Support").items():
             _known(name, rotors, "supports")
-            kept[name] = given_supports(given)
-            check_interfaces(kept[name], rotors[name].interfaces)
+            supports[name] = given_supports(given)
+            check_interfaces(supports[name], rotors[name].interfaces)
         links = checks.instances(self.links, "links", Link)
         for link in links:
             for name, interface in link.ends:
@@ -130,8 +112,8 @@ class RotorTrain:
         uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
         for name, value in {
             "rotors": checks.read_only_mapping(rotors),
-            "ratios": checks.read_only_mapping({name: ratios[name] for name in rotors}),
-            "supports": checks.read_only_mapping(kept),
+            "ratios": checks.read_only_mapping(ratios),
+            "supports": checks.read_only_mapping(supports),
             "links": links,
             "largest_unevenness": uneven,
             "positions": checks.read_only_mapping(positions),
@@ -158,6 +140,36 @@ class RotorTrain:
         unit = self.ratios[rotor]
         ratios = {name: 1.0 if name == rotor else r / unit for name, r in self.ratios.items()}
         return replace(self, ratios=ratios)
+
+
+def _checked_rotors(given: Mapping[str, ReducedRotor]) -> Mapping[str, ReducedRotor]:
+    rotors = checks.mapping(given, "rotors", "ReducedRotor")
+    if not rotors:
+        raise ValueError("rotors: needs at least one rotor, got none")
+    how = "reduce a SolidRotor by its method reduce(…)"
+    for name, rotor in rotors.items():
+        if ":" in checks.label(name, "rotors"):
+            raise ValueError(f"rotors: needs names without a colon, got {name!r}")
+        checks.instance(rotor, f"rotors[{name!r}]", ReducedRotor, how)
+    return rotors
+
+
+def _checked_ratios(
+    given: Mapping[str, float], rotors: Mapping[str, ReducedRotor]
+) -> dict[str, float]:
+    """Return the ratios in the order of the rotors."""
+    ratios = checks.mapping(given, "ratios", "float")
+    if set(ratios) != set(rotors):
+        raise ValueError(
+            f"ratios: needs one for each of the rotors {_listed(rotors)}, got {_listed(ratios)}"
+        )
+    ratios = {name: checks.number(ratios[name], f"ratios[{name!r}]") for name in rotors}
+    if not all(ratios.values()):
+        raise ValueError(
+            f"ratios: needs numbers other than 0, got {ratios}; give a rotor that stands still "
+            "as a foundation"
+        )
+    return ratios
 
 
 def _listed(names: Mapping[str, object]) -> str:

@@ -43,23 +43,13 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
         with other axes, or differs in its level of stiffening; and for anything in the scene that
         is no support, gear mesh or flexible coupling of theirs.
     """
+    _check_all_rotors(mbs, bodies)
     for body in bodies:
-        check_body(mbs, body)
+        _check_alike(bodies[0], body)
     named = {body.name: body for body in bodies}
-    if len(named) < len(bodies) or len(bodies) < 2:
-        raise ValueError(
-            f"body: needs two rotors or more, each once, got {[body.name for body in bodies]}"
-        )
-    given = {int(body.objects["physics"]) for body in bodies}
-    left = [name for number, name in rotors_in(mbs).items() if number not in given]
-    if left:
-        raise ValueError(f"body: leaves out the rotors {left} of this scene; give all of them")
-    first = bodies[0]
-    for body in bodies:
-        _check_alike(first, body)
     links = _links(named)
     _check_nothing_else(mbs, bodies)
-    speed = spin_at_start(first)[1]
+    speed = spin_at_start(bodies[0])[1]
     train = RotorTrain(
         {name: body.selection.source for name, body in named.items()},
         {name: spin_at_start(body)[1] / speed for name, body in named.items()},
@@ -71,12 +61,25 @@ def scene_train(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> tuple[Ro
         },
         driven=[name for name, body in named.items() if _is_driven(body)],
     )
-    return train, first.stiffening
+    return train, bodies[0].stiffening
 
 
 def _is_driven(body: RotorBody) -> bool:
     """Return whether θ(t) is prescribed, and is the rotor's mean rotation."""
     return not body.formulation.has_spin and body.formulation.drive == "rigid"
+
+
+def _check_all_rotors(mbs: exudyn.MainSystem, bodies: Sequence[RotorBody]) -> None:
+    """Refuse bodies that are not all rotors of the scene, each once."""
+    for body in bodies:
+        check_body(mbs, body)
+    names = [body.name for body in bodies]
+    if len(set(names)) < len(names) or len(names) < 2:
+        raise ValueError(f"body: needs two rotors or more, each once, got {names}")
+    given = {int(body.objects["physics"]) for body in bodies}
+    left = [name for number, name in rotors_in(mbs).items() if number not in given]
+    if left:
+        raise ValueError(f"body: leaves out the rotors {left} of this scene; give all of them")
 
 
 def _check_alike(first: RotorBody, body: RotorBody) -> None:
