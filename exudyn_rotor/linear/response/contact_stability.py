@@ -101,10 +101,11 @@ def _small_enough(
     """
     steps = int(np.ceil(period / step))
     found = near.largest_exponent(period, steps)
-    for halvings in range(_HALVINGS + 1):
+    most = steps * 2**_HALVINGS
+    while True:
         finer = near.largest_exponent(period, 2 * steps)
         by_step = finer - found
-        if halvings == _HALVINGS or abs(by_step) <= 0.5 * _SURE * abs(finer):
+        if steps == most or abs(by_step) <= 0.5 * _SURE * abs(finer):
             return period / steps, found, by_step
         steps, found = 2 * steps, finer
 

@@ -5,9 +5,9 @@ Both are steady motions: they are reached in time only where the rotor is stable
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -22,7 +22,7 @@ from exudyn_rotor.linear.models.linear_model import (
     linear_model,
     warn_of_left_out_stiffening,
 )
-from exudyn_rotor.linear.models.protocol import LinearModel, Space
+from exudyn_rotor.linear.models.protocol import LinearModel
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.response.basis_check import (
@@ -39,16 +39,19 @@ from exudyn_rotor.linear.response.harmonic_loads import (
 )
 from exudyn_rotor.linear.response.places import (
     At,
-    Motion,
-    Place,
     checked_places,
     collected,
-    in_frame,
     places,
 )
 from exudyn_rotor.linear.response.refinement import refined
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
 from exudyn_rotor.linear.response.run_start import kept_basis
+from exudyn_rotor.linear.response.steady_tasks import (
+    HarmonicTask,
+    Observation,
+    Solved,
+    UnbalanceTask,
+)
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero, checked_speeds, sweep
@@ -157,24 +160,24 @@ def unbalance_response(
     load = unbalance_load(model, unbalances, own)
     basis = BasisError.of(model, accuracy)
     space = model.space(_MODES, fastest, loads=[load], residual=residual)
-    observation = _Observation.of(observed, frame, tolerance, model)
-    task = _UnbalanceTask(space.prepared(values[values != 0.0]), load, observation)
+    observation = Observation.of(observed, frame, tolerance, model)
+    task = UnbalanceTask(space.prepared(values[values != 0.0]), load, observation)
     workers = None if space.is_shared else executor
     given = {"executor": workers, "progress": progress, "label": "unbalance response"}
     solved = sweep(task, values, **given)
     if refine:
 
-        def solve(added: np.ndarray) -> list[_Solved]:
+        def solve(added: np.ndarray) -> list[Solved]:
             return sweep(replace(task, space=space.prepared(added)), added, **given)
 
         values, solved = refined(solve, values, solved)
     labels = tuple(one.label for one in observed)
     found = collected([one.motion for one in solved], observed, tolerance, model.radius)
 
-    def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
+    def better(finer: LinearModel, observation: Observation) -> Callable[[float], Solved]:
         load = unbalance_load(finer, unbalances, own)
         space = finer.space(_MODES, fastest, loads=[load])
-        return _UnbalanceTask(space, load, observation)
+        return UnbalanceTask(space, load, observation)
 
     constant = space.at(fastest).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
@@ -253,8 +256,8 @@ def harmonic_response(
     fastest = max(values[-1], abs(speed))
     basis = BasisError.of(model, accuracy)
     space = model.space(_MODES, fastest, loads=list(load.values()), residual=residual)
-    observation = _Observation.of(observed, frame, tolerance, model)
-    task = _HarmonicTask(space.prepared([speed]), speed, load, observation)
+    observation = Observation.of(observed, frame, tolerance, model)
+    task = HarmonicTask(space.prepared([speed]), speed, load, observation)
     workers = None if space.is_shared else executor
     given = {"executor": workers, "progress": progress, "label": "harmonic response"}
     solved = sweep(task, values, **given)
@@ -263,9 +266,9 @@ def harmonic_response(
     labels = tuple(one.label for one in observed)
     found = collected([one.motion for one in solved], observed, tolerance, model.radius)
 
-    def better(finer: LinearModel, observation: _Observation) -> Callable[[float], _Solved]:
+    def better(finer: LinearModel, observation: Observation) -> Callable[[float], Solved]:
         space = finer.space(_MODES, fastest, loads=list(load.values())).prepared([speed])
-        return _HarmonicTask(space, speed, total(loads, finer), observation)
+        return HarmonicTask(space, speed, total(loads, finer), observation)
 
     constant = space.at(speed).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
@@ -276,11 +279,11 @@ def harmonic_response(
 
 def _basis_errors(
     basis: BasisError,
-    observation: _Observation,
+    observation: Observation,
     at: Sequence[At] | None,
     values: np.ndarray,
-    solved: Sequence[_Solved],
-    task: Callable[[LinearModel, _Observation], Callable[[float], _Solved]],
+    solved: Sequence[Solved],
+    task: Callable[[LinearModel, Observation], Callable[[float], Solved]],
     constant: bool,
 ) -> np.ndarray | None:
     """Return relative errors (s, p) by the basis; None where they are not known."""
@@ -299,83 +302,7 @@ def _basis_errors(
     return errors
 
 
-@dataclass(frozen=True, eq=False)
-class _Solved:
-    """Harmonics (p, 6) of what is looked at, and (k,) of the coordinates if they are kept."""
-
-    motion: Motion
-    coordinates: Motion
-
-
-@dataclass(frozen=True, eq=False)
-class _Observation:
-    """What is looked at: rows (p, 6, k) of the places, which of them stand (p,), and how."""
-
-    rows: np.ndarray
-    stands: np.ndarray
-    frame: str
-    tolerance: float
-    keeps: bool
-
-    @classmethod
-    def of(
-        cls, observed: Sequence[Place], frame: str, tolerance: float, model: LinearModel
-    ) -> _Observation:
-        rows = np.array([one.motion for one in observed])
-        stands = np.array([one.stands for one in observed])
-        return cls(rows, stands, frame, tolerance, kept_basis(model) is not None)
-
-    def solved(
-        self, space: Space, speed: float, loads: Mapping[int, np.ndarray], rate: float
-    ) -> _Solved:
-        """Return the steady motion."""
-        harmonics = space.steady_motion(speed, loads, rate, self.tolerance)
-        seen = {n: self.rows @ x for n, x in harmonics.items()}
-        if speed != 0.0:  # at θ = 0 the axes are the same
-            seen = in_frame(seen, self.stands, self.frame)
-        return _Solved(seen, harmonics if self.keeps else {})
-
-
-@dataclass(frozen=True, eq=False)
-class _UnbalanceTask:
-    """Steady motion at one speed; picklable but for a full model."""
-
-    space: Space
-    load: np.ndarray
-    observation: _Observation
-
-    def __call__(self, speed: float) -> _Solved:
-        if speed == 0.0:  # no load, and nothing that would have to hold the rotor
-            places, rows, size = self.observation.rows.shape
-            still = {0: np.zeros(size)} if self.observation.keeps else {}
-            return _Solved({0: np.zeros((places, rows))}, still)
-        loads = {0: speed**2 * self.load + 0j}
-        solved = self.observation.solved(self.space, float(speed), loads, 0.0)
-        return replace(solved, motion=_folded(solved.motion))
-
-
-@dataclass(frozen=True, eq=False)
-class _HarmonicTask:
-    """Steady motion at one frequency; picklable but for a full model."""
-
-    space: Space
-    speed: float
-    loads: Mapping[int, np.ndarray]
-    observation: _Observation
-
-    def __call__(self, frequency: float) -> _Solved:
-        return self.observation.solved(self.space, self.speed, self.loads, float(frequency))
-
-
-def _folded(motion: Motion) -> Motion:
-    """Return a real periodic motion by its harmonics n ≥ 0: ``Re Σ a_n exp(inΩt)``."""
-    folded: dict[int, np.ndarray] = {}
-    for n, a in motion.items():
-        folded[abs(n)] = folded.get(abs(n), 0.0) + (a if n > 0 else a.conj())
-    return folded
-
-
-def _kept(model: LinearModel, solved: Sequence[_Solved]) -> dict[str, object]:
+def _kept(model: LinearModel, solved: Sequence[Solved]) -> dict[str, object]:
     """Return what a response keeps beside its motion: the level, and what runs begin with."""
     level = {"stiffening": model.stiffening}
     if isinstance(model, RememberingScene):  # runs begin with films at rest

@@ -30,7 +30,7 @@ from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.linear.periodic.periodic_system import Terms
-from exudyn_rotor.linear.stability.growth import GrowthAt, held_space
+from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, held_space
 from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -109,18 +109,7 @@ def sensitivity(
     held = held_space(model, speed, None, _RESIDUAL)
     found = GrowthAt(held, "auto", _TOLERANCE, WhirlContent.of(model))(speed)
     if found.excess > 0.0:
-        heard, where = found.names[0][found.least_stable], ""
-        if found.critical is not None:
-            shape = found.critical.vectors
-            moves = [
-                np.linalg.norm(shape[:, model.own_rows(index)]) for index in range(len(bearings))
-            ]
-            where = f", in which most moves the controller of {bearings[np.argmax(moves)][0]!r},"
-        raise ValueError(
-            f"supports: unstable at {speed:g} rad/s: a motion of {heard:.4g} rad/s{where} grows by "
-            f"{found.values.real.max():.4g} 1/s, and there is no sensitivity of an unstable loop; "
-            "see stability(…), change the controller"
-        )
+        raise _unstable(found, model, [name for name, _ in bearings], speed)
     space = model.space(len(values), values[-1])
     own = np.abs(found.names[0][np.abs(found.values.real) > found.bounds])
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
@@ -146,6 +135,25 @@ def _bearings(
         for one in each
         if isinstance(one, MagneticBearing)
     ]
+
+
+def _unstable(
+    found: Growth, model: ControlledRotor | LinearTrain, names: Sequence[str], speed: float
+) -> ValueError:
+    """Return the error of an unstable loop: frequency, growth, and the controller that moves most.
+
+    `names` are those of the bearings, in the order of the model's coordinates.
+    """
+    heard, where = found.names[0][found.least_stable], ""
+    if found.critical is not None:
+        shape = found.critical.vectors
+        moves = [np.linalg.norm(shape[:, model.own_rows(index)]) for index in range(len(names))]
+        where = f", in which most moves the controller of {names[np.argmax(moves)]!r},"
+    return ValueError(
+        f"supports: unstable at {speed:g} rad/s: a motion of {heard:.4g} rad/s{where} grows by "
+        f"{found.values.real.max():.4g} 1/s, and there is no sensitivity of an unstable loop; "
+        "see stability(…), change the controller"
+    )
 
 
 def _of_axis(

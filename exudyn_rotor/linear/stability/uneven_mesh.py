@@ -1,9 +1,9 @@
 """Growth that a rotor has only because its mesh is not quite axisymmetric.
 
-At constant speed the drive feeds what the damping of bearings pushes around: of a motion
-``e^{iωt}`` in the rotor frame the part across the axis moves at ω ± Ω in inertial axes, and damping
-of the part at ω − Ω drives it where ω < Ω. Torsion and axial motion have such a part where the mesh
-differs around the axis, by an unevenness u; they grow by no more than some u² of their rates.
+Of a motion ``e^{iωt}`` in the rotor frame the part across the axis has the frequencies ω ± Ω in
+inertial axes. Where ω < Ω, dampers of the bearings destabilise the part with ω − Ω: the drive that
+holds the speed gives the energy. Torsion and axial motion have a part across the axis where the
+mesh differs around the axis, by an unevenness u; they grow by no more than some u² of their rates.
 """
 
 from __future__ import annotations

@@ -201,7 +201,7 @@ FOUNDATIONS = [
         ),
     ),
     *mutations(
-        "linear/response/base_response.py",
+        "linear/response/shaken_rotor.py",
         "test_base_motion.py",
         ("ground turns with the rotor", "R.transpose(0, 2, 1) + self", "R + self"),
         ("first moment of the record left out", "12.0 * moment", "0.0 * moment"),

@@ -89,7 +89,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/response/steady_response.py",
+        "linear/response/steady_tasks.py",
         "test_response.py",
         (
             "unbalance pulls in proportion to the speed",
