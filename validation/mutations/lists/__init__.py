@@ -16,6 +16,7 @@ from validation.mutations.lists.multibody_rotor import MULTIBODY_ROTOR
 from validation.mutations.lists.pictures import PICTURES
 from validation.mutations.lists.prestress import PRESTRESS
 from validation.mutations.lists.reduction import REDUCTION
+from validation.mutations.lists.rolling_bearings import ROLLING_BEARINGS
 from validation.mutations.lists.solid import SOLID
 from validation.mutations.lists.solvers import SOLVERS
 from validation.mutations.lists.strength import STRENGTH
@@ -30,6 +31,7 @@ ALL = (
     *PRESTRESS,
     *REDUCTION,
     *BEARINGS,
+    *ROLLING_BEARINGS,
     *DRIVES,
     *FOUNDATIONS,
     *MULTIBODY_ROTOR,
