@@ -22,7 +22,7 @@ FOUNDATIONS = [
         ("supports push the foundation the other way", "np.eye(6), -R]", "np.eye(6), R]"),
     ),
     *mutations(
-        "linear/models/links.py",
+        "linear/models/fourier_terms.py",
         _SCENE,
         (
             "motion of the foundation not carried into the rotor's frame",

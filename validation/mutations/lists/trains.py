@@ -67,7 +67,7 @@ TRAINS = [
         ("links push as they pull", "[[1.0, -1.0], [-1.0, 1.0]]", "[[1.0, 1.0], [1.0, 1.0]]"),
     ),
     *mutations(
-        "linear/models/links.py",
+        "linear/models/fourier_terms.py",
         _TESTS + "test_uneven_rotor_at_a_whole_ratio_against_the_monodromy_matrix",
         ("damping where places turn with a rotor", "1j * n * X", "-1j * n * X"),
     ),

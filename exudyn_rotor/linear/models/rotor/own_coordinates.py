@@ -27,7 +27,8 @@ from exudyn_rotor.bearings.controlled_support import (
 )
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.links import Element, join_turning, stacked, turned_terms
+from exudyn_rotor.linear.models.fourier_terms import join_turning, stacked, turned_terms
+from exudyn_rotor.linear.models.links import Element
 from exudyn_rotor.linear.models.points import ACROSS
 from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.theory.rotating_axes import axial_skew, into_rotor_frame

@@ -16,7 +16,7 @@ import scipy.linalg
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.links import join, join_turning
+from exudyn_rotor.linear.models.fourier_terms import join, join_turning
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor, add_terms

@@ -26,7 +26,7 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import LITTLE, JournalBearing
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.extended_model import ExtendedModel
-from exudyn_rotor.linear.models.links import add, join
+from exudyn_rotor.linear.models.fourier_terms import add, join
 from exudyn_rotor.linear.models.points import with_pairs
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
 from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates

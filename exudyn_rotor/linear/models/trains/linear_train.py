@@ -16,14 +16,9 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.fourier_terms import add, join, join_turning, stacked
 from exudyn_rotor.linear.models.free_motions import named_motions
-from exudyn_rotor.linear.models.links import (
-    Element,
-    add,
-    join,
-    join_turning,
-    stacked,
-)
+from exudyn_rotor.linear.models.links import Element
 from exudyn_rotor.linear.models.points import radius_of_gyration, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.links import add, whole
+from exudyn_rotor.linear.models.fourier_terms import add, whole
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.models.trains.turning import Turning
 from exudyn_rotor.linear.periodic.periodic_system import Terms
