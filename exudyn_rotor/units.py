@@ -9,7 +9,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 
-_FACTORS = {"rad/s": 1.0, "Hz": 0.5 / np.pi, "rpm": 30.0 / np.pi}
+IN_HERTZ = 0.5 / np.pi  # 1 rad/s
+_FACTORS = {"rad/s": 1.0, "Hz": IN_HERTZ, "rpm": 30.0 / np.pi}
 _KNOWN = {"SI": ("rad/s", "rad/s"), "Hz": ("Hz", "Hz"), "rpm": ("rpm", "Hz")}
 UNITS = tuple(_KNOWN)
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.advice.candidate import Candidate, candidate
 from exudyn_rotor.advice.mode_choice import choose_modes
-from exudyn_rotor.advice.reasons import HERTZ, level_reasons, mode_reasons, step_reason, unmet
+from exudyn_rotor.advice.reasons import level_reasons, mode_reasons, step_reason, unmet
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.spin_coupling import spin_coupling_reasons
 from exudyn_rotor.advice.step_size import Step, choose_step
@@ -25,6 +25,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.reduction.truncation import keep_modes
 from exudyn_rotor.theory.formulation import ConstantSpeed, Formulation, PrescribedMotion
 from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.units import IN_HERTZ
 
 _NO_INERTIA = 1e-12  # share of all moments of inertia: masses on the axis alone
 _GAIN = 1.3  # in step size from which a frame that follows pays: its steps cost a tenth more
@@ -258,7 +259,7 @@ def propose(
     translation, why, step = _translation(given, request, spin)
     for message in unmet(given, request, chosen, level, tilt):
         warnings.warn(message, AssumptionWarning, stacklevel=2)
-    hertz = given.frequencies / HERTZ
+    hertz = IN_HERTZ * given.frequencies
     return Proposal(
         translation=translation,
         spin=spin,

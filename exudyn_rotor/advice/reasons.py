@@ -9,8 +9,7 @@ from exudyn_rotor.advice.mode_choice import GROWTH, Truncation
 from exudyn_rotor.advice.request import Request
 from exudyn_rotor.advice.step_size import Step
 from exudyn_rotor.advice.stiffening_level import Level
-
-HERTZ = 2.0 * np.pi
+from exudyn_rotor.units import IN_HERTZ
 
 
 def mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list[str]:
@@ -18,7 +17,7 @@ def mode_reasons(given: Candidate, request: Request, chosen: Truncation) -> list
     held = "on its supports" if given.supported else "by its own flexibility, supports not known"
     lines = [
         f"modes: {chosen.in_band} lie in the band up to (f + Ω)/2π = "
-        f"{request.highest / HERTZ:.4g} Hz of the rotor frame",
+        f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame",
         f"modes: the {given.frequencies.size - chosen.kept.size} left out change the response "
         f"of interfaces {held} by {chosen.error:.2g}, resonances damped by {GROWTH:.0%} at least",
     ]
@@ -73,8 +72,8 @@ def unmet(
     if given.frequencies.size and given.frequencies.max() < request.highest:
         messages.append(
             f"all {given.frequencies.size} flexible modes given lie in the band up to "
-            f"{request.highest / HERTZ:.4g} Hz of the rotor frame, and more may: reduce the rotor "
-            "with more modes and ask again"
+            f"{IN_HERTZ * request.highest:.4g} Hz of the rotor frame, and more may: reduce the "
+            "rotor with more modes and ask again"
         )
     if tilt is not None and tilt**2 > request.accuracy:
         messages.append(

@@ -8,7 +8,7 @@ from exudyn_rotor.multibody.rotor.record import Record
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.theory.axis import SpinAxis
 
-_MOST = 400
+_MOST = 400  # instants of a run that are looked at
 
 
 def instants(record: Record, most: int = _MOST) -> np.ndarray:

@@ -28,7 +28,7 @@ from exudyn_rotor.units import Units
 
 MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross-coupling
 _MULTIPLES = np.linspace(0.0, 10.0, 11)  # of the anticipated cross-coupling
-_LEAST_DECREMENT = 0.1
+_LEAST_DECREMENT = 0.1  # log decrement, API 617
 _LEAST_RATIO, _LARGE_RATIO = 2.0, 10.0  # of Q₀ to Q_A
 
 

@@ -17,10 +17,9 @@ from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import FRAMES, axes_of
-from exudyn_rotor.units import Units
+from exudyn_rotor.units import IN_HERTZ, Units
 from exudyn_rotor.vtk import write_surface
 
-HERTZ = 1.0 / (2.0 * np.pi)
 _STATIONS = 15  # along the axis
 # of the larger amplitude: an orbit with less of the smaller one is neither forward nor backward
 _STRAIGHT = 0.02
@@ -116,8 +115,8 @@ class MotionShapes(Result):
         lines = ["shape  speed [Hz]  frequency [Hz]  what"]
         for index, label in enumerate(self.labels):
             lines.append(
-                f"{index:5d}{HERTZ * self.speeds[index]:12.5g}"
-                f"{HERTZ * self.frequencies[index]:16.6g}  {label}"
+                f"{index:5d}{IN_HERTZ * self.speeds[index]:12.5g}"
+                f"{IN_HERTZ * self.frequencies[index]:16.6g}  {label}"
             )
         return "\n".join(lines)
 
@@ -180,8 +179,8 @@ class MotionShapes(Result):
         sizes = np.linalg.norm(reach, axis=1)
         sizes = sizes / sizes.max()
         title = (
-            f"{self.labels[index]}\n{HERTZ * self.frequencies[index]:.5g} Hz at a spin of "
-            f"{HERTZ * self.speeds[index]:.5g} Hz"
+            f"{self.labels[index]}\n{IN_HERTZ * self.frequencies[index]:.5g} Hz at a spin of "
+            f"{IN_HERTZ * self.speeds[index]:.5g} Hz"
         )
         places = self.positions + scale * moved
         room = np.array([low, high])

@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.units import Units
+from exudyn_rotor.units import IN_HERTZ, Units
 
-HERTZ = 1.0 / (2.0 * np.pi)
 # of the largest amplitude: what a spectrogram shows [dB]
 _RANGE = 60.0
 # share of the largest amplitude up to which a cascade goes, and how much further it is drawn
@@ -75,10 +74,10 @@ class Spectra(Result):
         orders = checks.array(orders, "orders", shape=(None,))
         inside, most = self._inside(highest, _LEAST, np.abs(orders).max(initial=0.0))
         ax = plotting.axes_or_new(ax)
-        base = HERTZ * self.speeds
+        base = IN_HERTZ * self.speeds
         step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
         scale = 4.0 * step / (most or 1.0)
-        abscissa = HERTZ * self.frequencies[inside]
+        abscissa = IN_HERTZ * self.frequencies[inside]
         ends = abscissa[[-1, 0]]
         rows = []
         for index in np.argsort(-base, kind="stable"):
@@ -108,11 +107,11 @@ class Spectra(Result):
         ax = plotting.axes_or_new(ax)
         sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
         mesh = ax.pcolormesh(
-            self.times, HERTZ * self.frequencies[inside], 20.0 * np.log10(sizes).T,
+            self.times, IN_HERTZ * self.frequencies[inside], 20.0 * np.log10(sizes).T,
             shading="nearest", cmap="viridis", vmin=-_RANGE, vmax=0.0,
         )  # fmt: skip
-        ax.plot(self.times, HERTZ * self.speeds, "--", color="white", lw=0.9, label="spin speed")
-        ax.set_ylim(*_limits(HERTZ * self.frequencies[inside]))
+        ax.plot(self.times, IN_HERTZ * self.speeds, "--", color="white", lw=0.9, label="spin speed")
+        ax.set_ylim(*_limits(IN_HERTZ * self.frequencies[inside]))
         ax.set_xlabel("time [s]")
         ax.set_ylabel(_FREQUENCY)
         ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB of {most:.3g}]")

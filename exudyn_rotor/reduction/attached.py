@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_rotor import checks
 
 Rotor = TypeVar("Rotor")  # ReducedRotor, which holds one of these
-_ORTHONORMAL = 1e-6
+_ORTHONORMAL = 1e-6  # largest entry of ΨᵀMΨ − I of columns that count as orthonormal
 
 
 class Attached(Generic[Rotor]):

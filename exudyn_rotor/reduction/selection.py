@@ -12,7 +12,7 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.formulation import Formulation
 from exudyn_rotor.theory.invariants import Invariants
 
-NEGLIGIBLE = 1e-10
+NEGLIGIBLE = 1e-10  # see `negligible` of select_modes
 _SAME = 1e-6  # share of its scale below which a difference of two bases is round-off
 
 

@@ -11,7 +11,7 @@ from exudyn_rotor.theory.axis import SpinAxis
 _RADIAL = 0.7
 # share of its radius that something must lie beyond a triangle to cover it
 _BEYOND = 1e-3
-_CHUNK = 200
+_CHUNK = 200  # triangles that are looked at together
 
 
 def outer_section(

@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_rotor import checks
 
 State = TypeVar("State")
-_KEPT = 16
+_KEPT = 16  # equilibria of a bearing
 
 
 class Equilibria(Generic[State]):

@@ -33,7 +33,7 @@ from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.threads import meanwhile, one_thread
 from exudyn_rotor.units import Units
 
-_FULL_MODES = 10
+_FULL_MODES = 10  # that are sought of a large SolidRotor by default
 _SLOW = 1.0  # rad/s
 _MOSTLY = 0.9  # share of a motion's energy
 _SAME = 1e-9  # relative distance of frequencies in the inertial frame that is none

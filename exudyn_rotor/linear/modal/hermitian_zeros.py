@@ -23,8 +23,8 @@ from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 NO_EQUATIONS = UnconvergedError, NoEquilibriumError  # of a scene, and of a list of supports
-_BRACKETS = 200
-_SAME = 1e-7
+_BRACKETS = 200  # speeds at which signs of eigenvalues are looked at
+_SAME = 1e-7  # relative distance of speeds that are one
 _BLOCK = 64  # of LAPACK's work, in columns
 Matrix = Callable[[float], np.ndarray]
 Entry = TypeVar("Entry")

@@ -15,7 +15,7 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 
 # share of the largest rigid-body stiffness, per unit mass, that counts as none
 _HELD = 1e-10
-_ALONE = 1.0 - 1e-6
+_ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
 
 
 def free_motions_of_reduced(

@@ -10,9 +10,9 @@ import numpy as np
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.theory.invariants import Invariants
 
-_CORNERS = 8
+_CORNERS = 8  # points of a ring
 ACROSS = np.eye(3)[:, :2]  # a pair along (n1, n2) as a vector
-_LITTLE = 1e-3
+_LITTLE = 1e-3  # of its coordinate: how far a point of a pair moves
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,12 +18,11 @@ from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
-from exudyn_rotor.units import Units
+from exudyn_rotor.units import IN_HERTZ, Units
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
-HERTZ = 1.0 / (2.0 * np.pi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,7 +319,7 @@ class Response(RunStart, ABC):
         marks = checks.count(marks, "marks")
         place, order = self._place(place), self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        draw_polar(ax, HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
+        draw_polar(ax, IN_HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
         ax.set_xlabel(f"in phase, {direction} [µm]")
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -356,7 +355,7 @@ class Response(RunStart, ABC):
         ax = axes_or_new(ax, (5.5, 5.5))
         draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
         nearest = self.abscissa[np.argmin(np.abs(self.abscissa - value))]
-        ax.set_title(f"{self._what} {HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
+        ax.set_title(f"{self._what} {IN_HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
         return ax
 
     def _drawn(self, name: str, place: str, order: int) -> np.ndarray:

@@ -22,9 +22,8 @@ NOT_KNOWN = "error of the basis: not known"
 # share of the frequency that growth counts as at least: its error is then that of the damping ratio
 _DAMPED = 0.01
 _SLOW = 0.1  # share of the spin speed that a frequency counts as at least
-_RANGE = (
-    2.0  # times the fastest speed: modes below are judged where no number of modes is asked for
-)
+# times the fastest speed: modes below are judged where no number of modes is asked for
+_RANGE = 2.0
 _LOWEST = 6  # modes that are judged in any case
 
 

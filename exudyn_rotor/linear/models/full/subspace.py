@@ -30,8 +30,8 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.theory.spin_terms import SpinTerms
 from exudyn_rotor.theory.stiffening import Stiffening
 
-_MOST_ROUNDS = 40
-_MOST_COLUMNS = 600
+_MOST_ROUNDS = 40  # in which the subspace grows
+_MOST_COLUMNS = 600  # that it may have
 # share of the largest residual allowed below which a direction is not worth a column
 _NEGLIGIBLE = 0.1
 

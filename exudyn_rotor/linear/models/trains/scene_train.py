@@ -25,6 +25,7 @@ from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.theory.formulation import ConstantSpeed
 
+# entries of axes, and shares of a speed, by which rounding may set rotors apart
 _PARALLEL, _SAME_SPEED = 1e-9, 1e-9
 _BY_HAND = "give linear analyses a RotorTrain of the reduced rotors"
 

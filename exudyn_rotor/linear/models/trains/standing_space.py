@@ -1,9 +1,10 @@
 """Modes of several rotors by the constant equations of axes that stand still.
 
-Where all rotors are axisymmetric and what is uneven stands still, as unlike bearings and gears do,
-coefficients are constant in inertial axes. A motion ``v exp(λt)`` there has in axes that turn with
-Ω the harmonics of its waves, ``Σ_n P_n v exp((λ − inΩ)t)``, with the projectors P_n on waves of n
-nodal diameters (:mod:`.turning`).
+Where all rotors are axisymmetric, and what is not the same in all directions stands still, as
+anisotropic bearings and gears do, coefficients are constant in inertial axes. There a motion
+``v exp(λt)`` has, in axes that turn with Ω, the harmonics of its waves,
+``Σ_n P_n v exp((λ − inΩ)t)``, with the projectors P_n on waves of n nodal diameters
+(:mod:`.turning`).
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ from exudyn_rotor.linear.periodic.periodic_system import Terms
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.rotating_axes import turning_harmonics
 
-_POINTS = 800
+_POINTS = 800  # of the mesh, at most, by which waves are told
 _GROUP = 5e-2  # frequencies that differ by less may be of one pair, which a mesh splits
 _SEEN = 1e-8  # share of the largest energy below which a mode is not seen
 _RIGID_PAIRS = (
