@@ -8,9 +8,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response.response import Response
-from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.results import numbers, storable
 from exudyn_rotor.units import Units
 
@@ -87,10 +86,7 @@ class UnbalanceResponse(Response):
             For a response of a SolidRotor, of another rotor, or with another foundation or
             controllers, a speed at which it was not computed, or a system that is not assembled.
         """
-        speed = checks.number(speed, "speed", "rad/s")
-        reduced_body(body)
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
-        return self._start(speed, body, angle, speed)
+        return self._start_at_speed(speed, body, angle)
 
     @property
     def _what(self) -> str:

@@ -12,9 +12,8 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.models.basis.basis_error import in_table
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.run_start import RunStart
-from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
+from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.units import Units
 
@@ -172,10 +171,7 @@ class RollingBearingResponse(RunStart):
         TypeError, ValueError
             As :meth:`UnbalanceResponse.state`.
         """
-        speed = checks.number(speed, "speed", "rad/s")
-        reduced_body(body)
-        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
-        return self._start(speed, body, angle, speed)
+        return self._start_at_speed(speed, body, angle)
 
     def _check_harmonics(self) -> None:
         """Let every number of harmonics be."""

@@ -28,7 +28,7 @@ from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.multibody.rotor.start_state import StartState
+from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation
 from exudyn_rotor.reduction.mode_kind import ModeKind
@@ -77,6 +77,13 @@ class RunStart(Result):
         if self.basis is not None:
             checks.choice(self.basis, "basis", BASES)
             self._check_harmonics()
+
+    def _start_at_speed(self, speed: float, body: RotorBody, angle: float | None) -> StartState:
+        """Return the state at a spin speed; by default at the angle with which the rotor starts."""
+        speed = checks.number(speed, "speed", "rad/s")
+        reduced_body(body)
+        angle = spin_at_start(body)[0] if angle is None else checks.number(angle, "angle", "rad")
+        return self._start(speed, body, angle, speed)
 
     def _start(self, value: float, body: RotorBody, angle: float, speed: float) -> StartState:
         """Return the state of a scene at a computed speed or frequency."""
