@@ -21,7 +21,15 @@ from void_films import (
     solve,
 )
 
-from exudyn_rotor import JournalBearing, OilFilm, grooved_pads, linear_model, steady_state
+from exudyn_rotor import (
+    JournalBearing,
+    OilFilm,
+    StartState,
+    grooved_pads,
+    linear_model,
+    recommended_settings,
+    steady_state,
+)
 from exudyn_rotor.bearings.journal_bearing import RememberingLaw
 
 
@@ -220,6 +228,31 @@ def test_a_run_that_begins_again_forgets():
         solve(mbs, 2e-3, 2e-4)
         ends.append(mbs.GetSensorStoredData(sensors[0])[-1, 1:])
     np.testing.assert_array_equal(*ends)
+
+
+def test_a_run_that_goes_on_keeps_its_voids():
+    """Unlike one in a system that is built anew, which has the coordinates alone."""
+    reduced = rotor(eccentric=0.05)
+
+    def run(mbs, begin, end):
+        settings = recommended_settings(end_time=end, step=1e-4, accuracy=1e-8)
+        settings.timeIntegration.startTime = begin
+        settings.timeIntegration.numberOfSteps = round((end - begin) / 1e-4)
+        settings.solution.file.write = False
+        mbs.SolveDynamic(settings, updateInitialValues=True)
+        data = mbs.systemData
+        return np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
+
+    scenes = [scene(reduced, bearings(reduced), spin=SPEED)[:2] for _ in range(3)]
+    (whole, _), (in_parts, _), (anew, body) = scenes
+    one = run(whole, 0.0, 3e-3)[0][:2]
+    state = run(in_parts, 0.0, 2e-3)
+    two = run(in_parts, 2e-3, 3e-3)[0][:2]
+    body.start_from(StartState(*state, 0.0, SPEED))
+    without = run(anew, 2e-3, 3e-3)[0][:2]
+    size = np.abs(one).max()
+    np.testing.assert_allclose(two, one, atol=1e-5 * size)
+    assert np.abs(without - one).max() > 1e-2 * size
 
 
 def test_refused():

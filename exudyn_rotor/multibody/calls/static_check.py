@@ -34,6 +34,7 @@ Body = TypeVar("Body", bound=RotorItems)
 _ROTORS = "exudyn_rotor: rotors whose static solutions are checked"  # key in mbs.sys
 _TURNS = (1.0, 2.5)  # rad by which the rotor is turned
 _SHARE = 1e-3  # of the loads by which forces may change with the angle
+_MOST_TURNED = 1e3  # rad, by which a static solution turns a free spin at most
 _NO_LOAD = 1e-6  # N, N m or N/√kg: below is round-off
 
 
@@ -90,6 +91,28 @@ def check_static(mbs: exudyn.MainSystem) -> None:
                 "solution would hold at one angle only. steady_state(body) finds the motion, "
                 "body.start_from(steady.state()) starts a run from it; for the rotor at rest, "
                 "use spin=0"
+            )
+
+
+def _free_angles(mbs: exudyn.MainSystem) -> dict[tuple[int, str | None], float]:
+    """Return the angle [rad] of every rotor with a free spin, by number and name."""
+    data, angles = mbs.systemData, {}
+    q = np.atleast_1d(data.GetODE2Coordinates())
+    for number, rotor in mbs.sys[_ROTORS].items():
+        known = rotor.mark is not None and mark_of(mbs, exudyn.ObjectIndex(number)) == rotor.mark
+        if known and rotor.spin is not None and rotor.speed is None:
+            angles[number, rotor.name] = float(q[data.GetObjectLTGODE2(number)[rotor.spin]])
+    return angles
+
+
+def _refuse_flung(before: dict, after: dict) -> None:
+    """Raise ValueError where the solver flung a spin about, which nothing but unbalance holds."""
+    for rotor, angle in after.items():
+        turned = abs(angle - before[rotor])
+        if turned > _MOST_TURNED:
+            raise ValueError(
+                f"mbs.SolveStatic: the spin of rotor {rotor[1]!r} is free, and next to nothing "
+                f"holds its angle: the solver turned it by {turned:.2g} rad; use spin=0"
             )
 
 
@@ -152,10 +175,11 @@ def _solve_static(
         return solve(mbs, *given, **options)
     if not mbs.systemIsConsistent and options.get("autoAssemble", True):
         mbs.Assemble()
-    saved = saved_states(mbs)
+    saved, angles = saved_states(mbs), _free_angles(mbs)
     solved = solve(mbs, *given, **options)
     try:
         if solved:
+            _refuse_flung(angles, _free_angles(mbs))
             check_static(mbs)
     except ValueError:
         restore_states(mbs, saved)
