@@ -87,6 +87,11 @@ class Connection(ABC):
         """Axis of the second rotor, shape (3,), in the axes (n1, n2, e) of the first."""
         return np.array([0.0, 0.0, 1.0])
 
+    @property
+    def mean_speed_ratio(self) -> float:
+        """Speed of the second rotor, about :attr:`second_axis`, over that of the first."""
+        return 1.0
+
     @abstractmethod
     def _forces(self, x: np.ndarray, x_t: np.ndarray) -> np.ndarray: ...
 

@@ -24,10 +24,11 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.connection import Connection
+from exudyn_rotor.solid.places import SAME_PLACE
 from exudyn_rotor.theory.rotating_axes import axial_rotation, axial_skew
 
 _ACROSS = (0, 1, 3, 4)  # rows of the two offsets and the two tilts
-_SAME_PLACE, _SAME_AXIS = 1e-6, 1e-6  # m, rad
+_SAME_AXIS = 1e-6  # rad
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -152,7 +153,7 @@ class FlexibleCoupling(Connection):
 
 def check_same_place(apart: np.ndarray) -> None:
     """Refuse ends of shafts that are apart, by a ValueError."""
-    if np.linalg.norm(apart) > _SAME_PLACE:
+    if np.linalg.norm(apart) > SAME_PLACE:
         raise ValueError(
             f"other: the interface of the second rotor is {np.linalg.norm(apart):.4g} m from that "
             "of the first; couplings need both at one place (a small offset is misalignment=…)"

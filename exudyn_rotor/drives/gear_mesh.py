@@ -148,6 +148,11 @@ class GearMesh(Connection):
         """Distance of the axes [m]."""
         return float(self.radii.sum() / cos(self.pressure_angle))
 
+    @property
+    def mean_speed_ratio(self) -> float:
+        """Speed of the second rotor over that of the first, ``−r1/r2``."""
+        return -float(self.radii[0] / self.radii[1])
+
     def _direction(self, flank: int) -> np.ndarray:
         alpha, angle = self.pressure_angle, self.line_angle
         base_helix = atan(tan(self.helix_angle) * cos(alpha))

@@ -20,10 +20,10 @@ from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.mount import Mount
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.places import SAME_PLACE, off_place
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.nodal import skew
 
-SAME_PLACE = 1e-6  # m, between a point of a foundation and its support
 _SINGULAR = 1e-10  # of a matrix scaled to a diagonal of ones
 _UNITS = {"mass": "kg", "damping": "N s/m", "stiffness": "N/m"}
 
@@ -318,8 +318,12 @@ class Foundation:
             participation=None if S is None else rotation @ S,
         )
 
-    def motion(self, name: str, place: ArrayLike) -> np.ndarray:
+    def motion(
+        self, name: str, place: ArrayLike, leeway: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> np.ndarray:
         """Return displacement and rotation (6, k) of what carries the support `name`.
+
+        `leeway` (3,) is by how much a mesh may put its `place` elsewhere, along the axis [m].
 
         Raises
         ------
@@ -332,7 +336,8 @@ class Foundation:
                 f"name: the foundation has no point for the support at {name!r}, only for: "
                 f"{', '.join(self.points)}"
             )
-        apart = np.linalg.norm(self.places.get(name, place) - place)
+        slack = checks.vector(leeway, "leeway", "m")
+        apart = np.linalg.norm(off_place(self.places.get(name, place) - place, slack))
         if apart > SAME_PLACE:
             raise ValueError(
                 f"foundation: its point {name!r} is {apart:.3g} m off the support there, which is "

@@ -96,6 +96,7 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("Foundation.from_modes", "masses"): v.ARRAY.but("two", "fraction"),
     ("Foundation.from_modes", "places"): v.MAPPING,
     ("Foundation.from_solid", "modes"): v.COUNT,
+    ("Foundation.motion", "leeway"): v.VECTOR,
     ("Foundation.motion", "name"): v.KNOWN,
     ("Foundation.motion", "place"): v.VECTOR,
     ("Foundation.with_damping_ratio", "ratio"): v.SHARE.but("zero"),

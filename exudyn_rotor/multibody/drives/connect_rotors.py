@@ -23,9 +23,11 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.sensors import add_function_sensor
 from exudyn_rotor.multibody.supports.seats import Seat
 from exudyn_rotor.multibody.supports.support_connectors import PYTHON
+from exudyn_rotor.solid.places import off_place
 from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion, start_values
 
 _KINDS = exudyn.OutputVariableType
+_SAME_SPEED = 1e-9  # share of a speed by which constant ones may differ
 _SHAFTS = (ConstantSpeed, PrescribedMotion)
 Body = RotorBody | FullRotorBody
 State = Callable[[float, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -175,14 +177,17 @@ def connect_rotors(
         if other_at is not None:
             raise ValueError("other_at: a shaft has no interface; leave it out")
         start_values(other, "spin")
+        _check_speeds(connection, body, other, 1.0)
         ends = [(body, at, first)]
     else:
         second = _checked_end(other, other_at, "other", "other_at")
         if other.mbs is not body.mbs or other is body:
             raise ValueError("other: needs another rotor of the same system")
-        connection.law.check_places(
-            first.axes.T @ (second.place - first.place), first.axes.T @ second.axes[:, 2]
-        )
+        apart = off_place(second.place - first.place, first.leeway, second.leeway)
+        axis = first.axes.T @ second.axes[:, 2]
+        connection.law.check_places(first.axes.T @ apart, axis)
+        sense = float(np.sign(axis @ connection.second_axis))
+        _check_speeds(connection, body, other.formulation.spin, sense)
         ends = [(body, at, first), (other, other_at, second)]
     parts = [InterfaceCoordinates.of(*end) for end in ends]
     state = _state(parts, other, first, connection.law.second_axis)
@@ -205,6 +210,20 @@ def _checked_end(body: Body, at: str, argument: str, place: str) -> Seat:
         )
     check_turning_interface(body, at, place)
     return Seat.of(body, at, None)
+
+
+def _check_speeds(connection: Connection, body: Body, other: object, sense: float) -> None:
+    """Refuse constant speeds between which a connection winds up; `sense` is of the second axis."""
+    own = body.formulation.spin
+    if not (isinstance(own, ConstantSpeed) and isinstance(other, ConstantSpeed)):
+        return
+    expected = sense * connection.mean_speed_ratio * own.speed
+    if abs(other.speed - expected) > _SAME_SPEED * max(abs(other.speed), abs(expected)):
+        raise ValueError(
+            f"other: its constant speed of {other.speed:g} rad/s would wind up the connection to "
+            f"rotor {body.name!r} at {own.speed:g} rad/s without bound; prescribe "
+            f"{expected!r} rad/s, or leave one spin free"
+        )
 
 
 def _state(

@@ -97,7 +97,8 @@ def add_supports(
         depends on the spin.
     base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
         What carries them: a foundation, by its point of the interface's name; a marker at the place
-        of the interface; a rigid body, which gets such a marker; the ground by default. Forces act
+        of the interface, along the axis to a hundredth of its radius, as a mesh may shift it; a
+        rigid body, which gets such a marker; the ground by default. Forces act
         along the inertial axes, also where the base tilts.
 
     Returns

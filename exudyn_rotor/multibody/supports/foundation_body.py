@@ -120,7 +120,7 @@ def foundation_marker(
     base: SceneFoundation, name: str, place: np.ndarray, axes: np.ndarray
 ) -> exudyn.MarkerIndex:
     """Add a rigid marker of a point at its place [m], with these axes as columns."""
-    motion = base.foundation.motion(name, place)
+    motion = base.foundation.points[name]
     return virtual_marker(base.mbs, base.objects["marker_body"], place, motion, axes)
 
 

@@ -21,12 +21,13 @@ from exudyn_rotor.multibody.rotor.marker_body import append_nodes, virtual_nodes
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.foundation_body import SceneFoundation, foundation_marker
+from exudyn_rotor.solid.places import SAME_PLACE, leeway, off_place
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import axes_of
 
-_SAME_PLACE = 1e-6  # m, between a marker of the base and the bearing's place
 _KINDS = exudyn.OutputVariableType
 _REFERENCE = exudyn.ConfigurationType.Reference
+_ROUNDING = 1e-12  # of the coordinates of a place
 _HIDDEN = {"show": False, "showMarkerNodes": False}
 Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
@@ -35,13 +36,15 @@ Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 class Seat:
     """Where a support is, checked, before anything is added.
 
-    `name` is that of the interface, `place` is inertial [m], `axes` (n1, n2, e) in inertial axes;
-    `base` is what carries it, with its reference position and orientation.
+    `name` is that of the interface, `place` is inertial [m], `axes` (n1, n2, e) in inertial axes,
+    `leeway` by how much the mesh may put it elsewhere along e [m]; `base` is what carries it, with
+    its reference position and orientation.
     """
 
     name: str
     place: np.ndarray
     axes: np.ndarray
+    leeway: np.ndarray
     base: Base | None
     origin: np.ndarray
     orientation: np.ndarray
@@ -50,9 +53,12 @@ class Seat:
     def of(cls, body: RotorItems, name: str, base: Base | Mapping[str, Base] | None) -> Seat:
         """Return the place of an interface on its base."""
         setup = body.plan.setup.placement
-        on_axis = body.axis.project(body.selection.source.interfaces[name].reference)
+        interface = body.selection.source.interfaces[name]
+        on_axis = body.axis.project(interface.reference)
         place = setup.position + setup.rotation @ on_axis
         axes = body.standing_axes
+        free = leeway(interface.radius, axes[:, 2])
+        at_rest = np.zeros(3), np.eye(3)
         if isinstance(base, Mapping):
             if name not in base:
                 raise ValueError(
@@ -61,35 +67,39 @@ class Seat:
                 )
             base = base[name]
         if base is None:
-            return cls(name, place, axes, None, np.zeros(3), np.eye(3))
+            return cls(name, place, axes, free, None, *at_rest)
         if isinstance(base, SceneFoundation):
             if base.mbs is not body.mbs:
                 raise ValueError("base: this foundation is in another mbs")
-            base.foundation.motion(name, place)
-            return cls(name, place, axes, base, np.zeros(3), np.eye(3))
+            base.foundation.motion(name, place, free)
+            return cls(name, place, axes, free, base, *at_rest)
         checks.instance(base, "base", (exudyn.MarkerIndex, exudyn.ObjectIndex, SceneFoundation))
+        _refuse_missing(body.mbs, base)
+        _refuse_own(body, name, base)
         origin, orientation = _reference(body.mbs, base)
-        apart = np.linalg.norm(origin - place)
-        if isinstance(base, exudyn.MarkerIndex) and apart > _SAME_PLACE:
+        apart = np.linalg.norm(off_place(origin - place, free))
+        if isinstance(base, exudyn.MarkerIndex) and apart > SAME_PLACE:
             raise ValueError(
                 f"base: the marker {int(base)} is {apart:.3g} m off the interface {name!r}, which "
                 f"is at {place.tolist()}; put it there, or give the rigid body itself"
             )
-        return cls(name, place, axes, base, origin, orientation)
+        return cls(name, place, axes, free, base, origin, orientation)
 
     def marker(self, mbs: exudyn.MainSystem) -> exudyn.MarkerIndex:
         """Add a marker of the base at the place, with the axes (n1, n2, e)."""
         if isinstance(self.base, SceneFoundation):
             return foundation_marker(self.base, self.name, self.place, self.axes)
         turn = self.orientation.T @ self.axes
+        shift = self.orientation.T @ (self.place - self.origin)
+        shift[np.abs(shift) <= _ROUNDING * np.abs([self.place, self.origin]).max()] = 0.0
         if isinstance(self.base, exudyn.MarkerIndex):
             item = mbs.GetMarker(self.base)
-            item["localHT"] = item["localHT"] @ _frame(turn)
-            del item["name"]
+            item["localHT"] = item["localHT"] @ _frame(turn, shift)
+            for given in ("name", "localPosition", "offset"):  # the place is in localHT
+                item.pop(given, None)
             return mbs.AddMarker(item)
         number = mbs.AddObject(ObjectGround()) if self.base is None else self.base
-        local = _frame(turn, self.orientation.T @ (self.place - self.origin))
-        return mbs.AddMarker(MarkerBodyRigid(bodyNumber=number, localHT=local))
+        return mbs.AddMarker(MarkerBodyRigid(bodyNumber=number, localHT=_frame(turn, shift)))
 
 
 def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
@@ -100,10 +110,7 @@ def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
 
 def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarray]:
     """Return the reference position and orientation of a marker or a rigid body."""
-    count = mbs.systemData.NumberOfMarkers(), mbs.systemData.NumberOfObjects()
     is_marker = isinstance(base, exudyn.MarkerIndex)
-    if not 0 <= int(base) < count[0 if is_marker else 1]:
-        raise ValueError(f"base: this system has no {base}")
     try:
         kinds = _KINDS.Position, _KINDS.RotationMatrix
         if is_marker:
@@ -119,6 +126,26 @@ def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarr
     if is_marker and "localHT" not in mbs.GetMarker(base):
         raise ValueError(f"base: {base} is no rigid marker with a frame of its own (localHT)")
     return np.asarray(values[0]), np.reshape(values[1], (3, 3))
+
+
+def _refuse_missing(mbs: exudyn.MainSystem, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
+    is_marker = isinstance(base, exudyn.MarkerIndex)
+    count = mbs.systemData.NumberOfMarkers() if is_marker else mbs.systemData.NumberOfObjects()
+    if not 0 <= int(base) < count:
+        raise ValueError(f"base: this system has no {base}")
+
+
+def _refuse_own(body: RotorItems, name: str, base: exudyn.MarkerIndex | exudyn.ObjectIndex) -> None:
+    """Refuse what moves with the rotor itself: between the two nothing would ever act."""
+    item = {"bodyNumber": base}
+    if isinstance(base, exudyn.MarkerIndex):
+        item = body.mbs.GetMarker(base)
+    own = {"bodyNumber": body.objects, "nodeNumber": body.nodes}
+    if any(int(item[kind]) in map(int, own[kind].values()) for kind in own.keys() & item.keys()):
+        raise ValueError(
+            f"base: {base} belongs to rotor {body.name!r} itself, which cannot carry its own "
+            f"bearing at {name!r}; give what stands beside it, or leave base out for the ground"
+        )
 
 
 def _carrier(

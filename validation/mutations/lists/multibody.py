@@ -4,6 +4,31 @@ from validation.mutations.mutation import mutations
 
 MULTIBODY = [
     *mutations(
+        "multibody/drives/connect_rotors.py",
+        "test_prescribed_speeds.py",
+        ("sense of the second axis lost", "expected = sense * connection", "expected = connection"),
+        ("speeds unchecked", "abs(other.speed - expected) >", "-1.0 >"),
+    ),
+    *mutations(
+        "drives/gear_mesh.py",
+        "test_prescribed_speeds.py",
+        (
+            "gears of the same sense",
+            "return -float(self.radii[0] / self.radii[1])",
+            "return float(self.radii[0] / self.radii[1])",
+        ),
+    ),
+    *mutations(
+        "multibody/supports/seats.py",
+        "test_places.py",
+        (
+            "markers of bases shifted the wrong way",
+            "self.orientation.T @ (self.place - self.origin)",
+            "self.orientation.T @ (self.origin - self.place)",
+        ),
+        ("a rotor carries itself", "_refuse_own(body, name, base)\n", "pass\n"),
+    ),
+    *mutations(
         "multibody/supports/magnetic_connectors.py",
         "test_magnetic_runs.py::test_a_foundation_carries_magnets_and_sensors "
         "test_magnetic_bearing.py::test_scene_and_list_have_the_same_exponents "
@@ -84,6 +109,12 @@ MULTIBODY = [
         ),
         ("mean axes by geometry", "rows = (rotor.mass @ motions).T", "rows = motions.T"),
         ("weight left out", "if np.any(gravity):", "if False:"),
+    ),
+    *mutations(
+        "multibody/calls/static_check.py",
+        "test_steady_state.py::test_a_free_spin_that_the_static_solver_flings_about_is_refused",
+        ("flung by any angle", "if turned > _MOST_TURNED:", "if turned > 1e99:"),
+        ("angle counted from zero", "abs(angle - before[rotor])", "abs(angle)"),
     ),
     *mutations(
         "multibody/calls/static_check.py",

@@ -4,6 +4,16 @@ from validation.mutations.mutation import mutations
 
 SOLID = [
     *mutations(
+        "solid/places.py",
+        "test_places.py",
+        (
+            "any distance is a mesh's",
+            "if np.all(np.abs(parts) <= lengths[known]) else",
+            "if True else",
+        ),
+        ("no distance is a mesh's", "apart - parts @ axes", "apart"),
+    ),
+    *mutations(
         "solid/units.py",
         "test_warnings.py::test_warning_fires",
         ("small rotors in mm", "total_mass > USUAL_MASS", "total_mass > LARGEST_MASS"),

@@ -21,6 +21,7 @@ from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor, add_terms
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
+from exudyn_rotor.solid.places import leeway
 from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
 
 ON_FOUNDATION = "{} (foundation)"
@@ -56,8 +57,9 @@ class RotorOnFoundation(ExtendedRotor):
         """
         axis = plain.rotor.axis
         for support in plain.supports:
-            place = axis.project(plain.rotor.interfaces[support.interface].reference)
-            foundation.motion(support.interface, place)
+            interface = plain.rotor.interfaces[support.interface]
+            place = axis.project(interface.reference)
+            foundation.motion(support.interface, place, leeway(interface.radius, axis.direction))
         if plain.spin is not None and plain.spin.coupled:
             raise ValueError(
                 "foundation: springs that hold the rotor's spin, off its axis or turning with it, "

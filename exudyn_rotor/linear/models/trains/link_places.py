@@ -14,10 +14,9 @@ import numpy as np
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.models.links import Link
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.places import OF_RADIUS, SAME_PLACE
 from exudyn_rotor.theory.rotating_axes import axes_of
 
-_SAME_PLACE = 1e-6  # m
-_OF_RADIUS = 0.01  # share of an interface's radius by which meshes may put it elsewhere
 _OF_DISTANCE = 1e-3  # of the centre distance of gears
 
 
@@ -68,7 +67,7 @@ def _apart(rotors: Mapping[str, ReducedRotor], link: Link) -> np.ndarray:
 
 def _check(rotors: Mapping[str, ReducedRotor], link: Link, off: np.ndarray) -> None:
     radii = (rotors[name].interfaces[interface].radius for name, interface in link.ends)
-    allowed = max(_SAME_PLACE, _OF_RADIUS * max(radii))
+    allowed = max(SAME_PLACE, OF_RADIUS * max(radii))
     what = "both ends need one place"
     if isinstance(link.connection, GearMesh):
         distance = link.connection.center_distance
