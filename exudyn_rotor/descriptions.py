@@ -30,6 +30,7 @@ from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
 from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.summary import directions
 from exudyn_rotor.solid_rotor import SolidRotor
 
 SUPPORTS = (Support, Bearing, MagneticBearing)
@@ -70,6 +71,7 @@ def _reduced(rotor: ReducedRotor) -> str:
         f"centre of mass   {_vector(rotor.center_of_mass)} m",
         f"moments          polar {polar:.6g}, mean transverse {across:.6g} kg m² about it",
         f"spin axis        direction {_vector(e)}, point {_vector(rotor.axis.point)} m",
+        f"across the axis  {directions(rotor.axis)}",
         f"modes            {len(rotor.rigid_kinds)} rigid, {elastic.size} flexible{span}",
         f"prestress        {'none' if known.K2 is None else 'of the static state at speed'}",
     ]

@@ -43,13 +43,14 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes
     return checks.instance(ax, "ax", Axes, "make some with matplotlib.pyplot.subplots()")
 
 
-def save(drawn: Axes | Figure, path: str | PathLike) -> None:
-    """Write the figure of some axes, or a figure; a name without an ending gets '.png'.
+def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
+    """Write the figure of axes, or of an array of them, or a figure.
 
-    A file of that name is replaced only by a complete one.
+    A name without an ending gets '.png'. A file of that name is replaced only by a complete one.
     """
-    checks.instance(drawn, "drawn", (Axes, Figure))
-    made = drawn if isinstance(drawn, Figure) else drawn.figure
+    one = drawn.flat[0] if isinstance(drawn, np.ndarray) and drawn.size else drawn
+    checks.instance(one, "drawn", (Axes, Figure))
+    made = one if isinstance(one, Figure) else one.figure
     target, content = checks.path(path), io.BytesIO()
     if not target.suffix:
         target = target.with_suffix(".png")

@@ -73,13 +73,13 @@ class SolidRotor(FiniteElementRotor):
     >>> springs = np.kron([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]], np.eye(3))
     >>> rotor = SolidRotor.from_matrices(
     ...     np.eye(9), 1e6 * springs, [[0, 0, 0], [0, 0, 0.5], [0, 0, 1]], axis="z",
-    ...     interfaces={"disc": [1]},
-    ... )
+    ...     interfaces={"disc": [1]})
     >>> print(rotor.add_point_mass([0, 0, 0.9], 0.5).summary())
     nodes            3
     mass             3.5 kg (lumped mass matrix)
     centre of mass   [0, 0, 0.57143] m
     spin axis        direction [0, 0, 1], point [0, 0, 0] m
+    across the axis  n1 [1, 0, 0], n2 [0, 1, 0]
     rigid motions    1 of 6 free (grounded)
     part             1: 3 nodes, 3.5 kg, 0 × 0 × 1 m about (0, 0, 0.5) m
     interface        disc: 1 nodes, centre [0, 0, 0.5] m, on the axis

@@ -32,6 +32,7 @@ def write_surface(
     triangles : ndarray of int, shape (t, 3) or (t, 6)
         Nodes that are in none are left out.
     values : mapping of str to ndarray, each (n,) or (n, c)
+        '.vtk' holds no spaces in their names; '_' stands there for each.
 
     Raises
     ------
@@ -54,6 +55,8 @@ def write_surface(
         raise ImportError(
             'VTK files need the package meshio: python -m pip install "exudyn-rotor[vtk]"'
         ) from error
+    if target.suffix == ".vtk":  # whose names end at a space
+        values = {name.replace(" ", "_"): array for name, array in values.items()}
     used, cells = np.unique(triangles, return_inverse=True)
     kind = "triangle" if triangles.shape[1] == 3 else "triangle6"
     mesh = meshio.Mesh(

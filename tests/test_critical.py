@@ -222,7 +222,21 @@ def test_wrong_input_is_refused(masses):
         critical_speeds(masses, nodal_diameters=[5])
     with pytest.raises(ValueError, match="no such interface"):
         critical_speeds(masses, supports=[Support("left", 1.0)])
-    assert "critical speeds of order 1" in critical_speeds(masses).table()
+    assert "undamped critical speeds of order 1" in critical_speeds(masses).table()
+
+
+def test_tables_tell_that_there_are_none():
+    rotor = point_mass().reduce(0)
+    support = Support("at", 1e4)  # 100 rad/s
+    found = critical_speeds(rotor, supports=support, max_speed=50.0, nodal_diameters=[1])
+    assert found.table().splitlines()[2] == "  none"
+    over = critical_speed_map(rotor, "at", [1e2, 1e4], max_speed=50.0)
+    soft, stiff = over.table().splitlines()[2:4]
+    assert "10 backward" in soft
+    assert "10 forward" in soft
+    assert stiff.split() == ["10000", "none"]
+    low, high = over.plot().get_xlim()
+    assert low < 1e2 < 1e4 < high
 
 
 def test_scene_has_the_critical_speeds_of_its_rotor():

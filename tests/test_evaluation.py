@@ -248,6 +248,19 @@ def test_threshold_of_a_jeffcott_rotor(coupling, damping, axis):
     assert found.log_decrement[0] == pytest.approx(2 * np.pi * ratio / np.sqrt(1 - ratio**2))
 
 
+@pytest.mark.parametrize("damping", [2.0, 20.0])
+def test_picture_of_level_one_has_threshold_and_limit_in_it(damping):
+    """Q₀ on the line, also where it is a part of the first step; the limit not on the frame."""
+    found = level_one(5e3, damping)
+    ax = found.plot()
+    line = ax.lines[0]
+    assert np.interp(1e-6 * found.threshold, *line.get_data()) == pytest.approx(0.0, abs=1e-12)
+    low, high = ax.get_ylim()
+    assert low < -0.01 * (high - low)
+    assert high > 0.1 + 0.01 * (high - low)
+    pyplot.close(ax.figure)
+
+
 def test_anisotropic_bearings_raise_the_threshold():
     """Forward and backward whirl share the forces: Q₀² = (c ω̄)² + (Δk/2)² for k ± Δk/2.
 

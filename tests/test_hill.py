@@ -9,6 +9,7 @@ from exponent_methods import floquet_exponents
 from models import disc_rotor
 from scipy.optimize import linear_sum_assignment
 from test_stability import anisotropic, mathieu, random_system
+from transformed import transformed
 
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
@@ -297,3 +298,19 @@ def test_motions_by_slow_ones_are_those_of_large_truncations(seed, eccentric, mo
     apart = np.abs(fold(found[:, None] - expected, abs(system.base)))
     rows, columns = linear_sum_assignment(apart)
     assert np.all(apart[rows, columns] < 1e-8 * np.maximum(-expected[columns].real, system.speed))
+
+
+def test_motions_that_became_one_are_sought_in_a_larger_truncation(monkeypatch):
+    """Of those near their exponents none is sought by slow ones, as of a shaft with keyways.
+
+    ``ÿ + 0.2ẏ + k y = 0`` in axes that turn by 2θ against those of x.
+    """
+    k, damping = np.diag([20.0, 70.0]), 0.2 * np.eye(2)
+    system, exact = transformed(3.0, damping, k, {2: np.full((2, 2), 0.1)}, turns=2)
+    lost, original = [None] * 2, hill._followed
+    monkeypatch.setattr(hill, "_LONG", 0)
+    monkeypatch.setattr(hill, "_followed", lambda *a: lost.pop() if lost else original(*a))
+    found = motions(system, "hill", 1e-9)
+    assert not lost
+    apart = np.abs(fold(found.values[:, None] - exact, abs(system.base)))
+    assert np.all(apart.min(axis=1) < 1e-7)

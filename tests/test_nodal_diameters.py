@@ -87,5 +87,24 @@ def test_waves_that_take_turns_are_not_joined():
     whole = np.ones((7, 4), dtype=bool)
     joined = joined_in_space(speeds, rotor, inertial, whole.astype(int), whole)
     assert np.argwhere(~joined).tolist() == [[3, 0]]
-    # where n is not known, such a jump may be a wave with four nodal diameters
-    assert joined_in_space(speeds, rotor, inertial, -whole.astype(int), whole)[:, 1:].all()
+    unknown = joined_in_space(speeds, rotor, inertial, -whole.astype(int), whole)
+    assert np.argwhere(~unknown).tolist() == [[3, 0]]
+
+
+def test_waves_of_blades_that_take_turns_are_not_joined():
+    """ν + 2Ω, then ν + Ω: a step of the spin changes waves with four nodal diameters by more.
+
+    A forward wave with two of them passes ν = 0; of a whirl at no whole number of the spin, as of
+    another rotor of a train, nothing is told.
+    """
+    speeds = np.array([0.0, 240.0, 360.0, 480.0, 600.0])
+    blade, wave = np.array([1080.0, 1130.0, 1180.0, 1260.0, 1350.0]), 2.0 * speeds - 1000.0
+    other = 500.0 + 0.1 * speeds
+    rotor = np.column_stack([blade, np.abs(wave), other])
+    seen = blade + np.array([2.0, 2.0, 2.0, 1.0, 1.0]) * speeds
+    inertial = np.column_stack([seen, np.full(5, 1000.0), other + 1.37 * speeds])
+    whole = np.ones((5, 3), dtype=bool)
+    assert abs(seen[3] - seen[2]) < 4.0 * 120.0  # which such a wave could
+    for sign in (1.0, -1.0):
+        joined = joined_in_space(sign * speeds, rotor, inertial, -whole.astype(int), whole)
+        assert np.argwhere(~joined).tolist() == [[3, 0]]

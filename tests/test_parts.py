@@ -42,6 +42,15 @@ def test_loose_parts_are_told_and_taken_if_asked_for(count):
     assert all(np.ptp(rotor.nodes[part, 2]) == pytest.approx(0.1) for part in parts)
 
 
+def test_place_of_a_part_is_the_middle_of_its_box():
+    """Wherever its nodes are dense."""
+    nodes = [[0, 0, z] for z in (0.0, 0.1, 0.2, 1.0)]
+    text = SolidRotor.from_matrices(np.eye(12), 1e6 * np.eye(12), nodes, "z").summary()
+    assert "0 × 0 × 1 m about (0, 0, 0.5) m" in text
+    point = SolidRotor.from_matrices(np.eye(3), np.eye(3), np.zeros((1, 3)), "z").summary()
+    assert "0 × 0 × 0 m about (0, 0, 0) m" in point
+
+
 def test_parts_that_touch_need_glue():
     with pytest.raises(ValueError, match="falls into 2 parts that nothing connects: 'steel': "):
         SolidRotor.from_ngsolve(boxes(2, 0.0), MATERIALS, "z", order=1)

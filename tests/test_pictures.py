@@ -155,6 +155,15 @@ def test_files_for_paraview(tmp_path):
     np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
 
 
+def test_old_files_for_paraview_have_no_spaces_in_names(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    modes().to_vtk(tmp_path / "modes.vtk")
+    read = meshio.read(tmp_path / "modes.vtk")
+    name = f"3 {modes().labels[3]}, order 0, real".replace(" ", "_")
+    expected = modes().displacement(3, 0.0)[np.unique(modes().triangles)]
+    np.testing.assert_allclose(read.point_data[name], expected, atol=1e-12)
+
+
 def test_stress_in_the_order_of_paraview(tmp_path):
     meshio = pytest.importorskip("meshio")
     nodes = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]]

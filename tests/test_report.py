@@ -22,6 +22,7 @@ from exudyn_rotor import (
     Link,
     RotorTrain,
     ShortJournalBearing,
+    SolidRotor,
     Support,
     Unbalance,
     add_rotor,
@@ -145,6 +146,19 @@ def test_rotor_supports_and_model_are_described(written, ring):
     assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
     assert "Foundation(1 coordinates, 47.75 to 47.75 Hz, points: mid)" in text
     assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", *["Linear model"] * 2]
+
+
+@pytest.mark.parametrize(
+    ("axis", "told"),
+    [
+        ("x", "n1 [0, 1, 0], n2 [0, 0, 1]"),
+        ([0.0, -0.6, 0.8], "n1 [1, 0, 0], n2 [0, 0.8, 0.6]"),  # n1 × n2 is the axis
+    ],
+)
+def test_directions_across_the_axis_are_told(written, axis, told):
+    """Those in which supports and motions are, which are others than x and y in general."""
+    rotor = SolidRotor.from_matrices(np.eye(3), 1e6 * np.eye(3), [[0.0, 0.0, 0.0]], axis)
+    assert written([rotor, rotor.reduce(3)]).count(told) == 2
 
 
 def test_every_model_of_a_campbell_diagram_is_described(written):

@@ -126,6 +126,18 @@ def test_pictures_replace_old_ones_when_they_are_complete(tmp_path, monkeypatch)
     assert sorted(os.listdir(tmp_path)) == ["a.SVG", "a.png"]
 
 
+def test_pictures_of_several_axes(tmp_path):
+    """As responses and histories return them."""
+    made, axes = pyplot.subplots(2, 2)
+    for drawn in (axes, axes[0], made):
+        plotting.save(drawn, tmp_path / "a")
+        assert (tmp_path / "a.png").stat().st_size > 1000
+        (tmp_path / "a.png").unlink()
+    for wrong in (np.array([]), np.array([1.0]), [axes]):
+        with pytest.raises(TypeError, match="drawn: needs Axes"):
+            plotting.save(wrong, tmp_path / "a")
+
+
 def test_killed_savers_and_a_reader_lose_nothing(tmp_path):
     pairs = savers.killed_pairs(tmp_path, 2)
     assert (pairs.lost, pairs.unreadable) == (0, 0)

@@ -259,7 +259,7 @@ class MotionShapes(Result):
         Parameters
         ----------
         path : str or path-like
-            Ends with '.vtu' or '.vtk'.
+            Ends with '.vtu' or '.vtk', in which '_' stands for spaces of names.
 
         Raises
         ------

@@ -49,7 +49,7 @@ def described_parts(
     mass: sp.csr_array,
     elements: NgsolveElements | None,
 ) -> list[str]:
-    """Return materials, number of nodes, mass, size and place of each part as text."""
+    """Return materials, number of nodes, mass, box and its middle of each part as text."""
     return [_described(part, nodes, mass, elements) for part in parts]
 
 
@@ -83,9 +83,11 @@ def _described(
 ) -> str:
     names = () if elements is None else elements.materials_at(part)
     weight = mass[3 * part].sum()
-    sides = " × ".join(f"{side:.3g}" for side in np.ptp(nodes[part], axis=0))
+    lowest, highest = nodes[part].min(axis=0), nodes[part].max(axis=0)
+    sides = " × ".join(f"{side:.3g}" for side in highest - lowest)
     # a micrometre per metre is precise enough to find a part
-    center = np.round(nodes[part].mean(axis=0) / np.ptp(nodes), 6) * np.ptp(nodes)
+    size = np.ptp(nodes) or 1.0
+    center = np.round(0.5 * (lowest + highest) / size, 6) * size
     place = ", ".join(f"{x:.3g}" for x in center)
     return (
         " and ".join(repr(name) for name in names)

@@ -9,6 +9,7 @@ from exudyn_rotor.solid.parts import described_parts, loose_parts
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid_disc import RigidDisc
 from exudyn_rotor.solid.rotor import FiniteElementRotor
+from exudyn_rotor.theory.axis import SpinAxis
 
 
 def summary(rotor: FiniteElementRotor) -> str:
@@ -20,6 +21,7 @@ def summary(rotor: FiniteElementRotor) -> str:
         f"mass             {rotor.total_mass:.6g} kg ({rotor.mass_kind} mass matrix)",
         f"centre of mass   {_vector(rotor.center_of_mass)} m",
         f"spin axis        direction {_vector(axis.direction)}, point {_vector(axis.point)} m",
+        f"across the axis  {directions(axis)}",
         f"rigid motions    {rotor.rigid_motions} of 6 free ({support})",
     ]
     lines += _part_lines(rotor)
@@ -77,6 +79,11 @@ def _disc_line(rotor: FiniteElementRotor, disc: RigidDisc) -> str:
         f"rigid disc       {disc.mass:.6g} kg at {_vector(disc.center)} m, polar {polar:.5g}, "
         f"transverse {across:.5g} kg m², on {disc.nodes.size} nodes"
     )
+
+
+def directions(axis: SpinAxis) -> str:
+    """Return n1 and n2, in which supports and motions across the axis are told, as text."""
+    return ", ".join(f"n{i} {_vector(column + 0.0)}" for i, column in enumerate(axis.plane.T, 1))
 
 
 def _vector(values: np.ndarray) -> str:

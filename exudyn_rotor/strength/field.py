@@ -209,7 +209,7 @@ class StressField(Result):
         Parameters
         ----------
         path : str or path-like
-            Ends with '.vtu' or '.vtk'.
+            Ends with '.vtu' or '.vtk', in which '_' stands for spaces of names.
         modal_coordinates, speed
             See :meth:`at`.
 

@@ -61,7 +61,7 @@ class CriticalSpeedMap(Result):
     --------
     >>> from exudyn_rotor import CriticalSpeedMap
     >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
-    critical speeds of order 1 [rad/s]
+    undamped critical speeds of order 1 [rad/s]
       stiffness [N/m]
       10000            50 forward
       40000            100 forward
@@ -103,7 +103,10 @@ class CriticalSpeedMap(Result):
             'SI' rad/s.
         """
         shown = Units.of(units)
-        lines = [f"critical speeds of order {self.order:g} [{shown.speed}]", "  stiffness [N/m]"]
+        lines = [
+            f"undamped critical speeds of order {self.order:g} [{shown.speed}]",
+            "  stiffness [N/m]",
+        ]
         errors = self.basis_errors
         reduced = errors is not None and np.nansum(errors) > 0.0
         for i, (stiffness, speeds, codes) in enumerate(
@@ -114,7 +117,7 @@ class CriticalSpeedMap(Result):
                 for speed, code in zip(speeds, codes, strict=True)
                 if code >= 0
             )
-            lines.append(f"  {stiffness:<15.6g}  " + ", ".join(entries))
+            lines.append(f"  {stiffness:<15.6g}  " + (", ".join(entries) or "none"))
             if reduced and not np.all(np.isnan(errors[i])):
                 lines[-1] += f" (basis error up to {in_table(np.nanmax(errors[i]))})"
         if self.stiffening:
@@ -149,10 +152,14 @@ class CriticalSpeedMap(Result):
             drawn = np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan)
             lines = ax.loglog(self.stiffnesses, drawn, marker, color=color, ms=3.5)
             lines[0].set_label(WHIRLS[code])
+        ends = self.stiffnesses.min(), self.stiffnesses.max()
+        if ends[0] < ends[1]:  # also where no critical speed is found
+            room = (ends[1] / ends[0]) ** 0.05
+            ax.set_xlim(ends[0] / room, ends[1] * room)
         if limits is not None:
             excitation.shade_range(ax, limits, shares, shown, across=True)
         ax.set_xlabel("support stiffness [N/m]")
-        ax.set_ylabel(f"critical speed of order {self.order:g} [{shown.speed}]")
+        ax.set_ylabel(f"undamped critical speed of order {self.order:g} [{shown.speed}]")
         ax.grid(alpha=0.3, which="both")
         plotting.legend_above(ax, 4)
         return ax

@@ -62,7 +62,7 @@ class CriticalSpeeds(Result):
     >>> from exudyn_rotor import CriticalSpeeds
     >>> result = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
     >>> print(result.table())
-    critical speeds of order 1
+    undamped critical speeds of order 1
       [rad/s]      [Hz]        n  whirl
       100          15.9155     1  forward
     error of the basis: not known
@@ -114,7 +114,7 @@ class CriticalSpeeds(Result):
         reduced = errors is not None and np.any(errors > 0.0)
         label = "      basis error" if reduced else ""
         lines = [
-            f"critical speeds of order {self.order:g}",
+            f"undamped critical speeds of order {self.order:g}",
             f"  {unit:<11}  [Hz]        n  whirl{label}",
         ]
         for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
@@ -125,6 +125,8 @@ class CriticalSpeeds(Result):
             lines.append(
                 f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}".rstrip()
             )
+        if not self.speeds.size:
+            lines.append("  none")
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
@@ -193,7 +195,7 @@ def critical_speeds(
     >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> print(critical_speeds(rotor, supports=supports, nodal_diameters=[1]).table())
-    critical speeds of order 1
+    undamped critical speeds of order 1
       [rad/s]      [Hz]        n  whirl
       100          15.9155     1  backward
       100          15.9155     1  backward

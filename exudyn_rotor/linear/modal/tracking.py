@@ -19,6 +19,7 @@ _STEEPEST = 4.0
 _LEAST_LIKENESS, _MOST_CHANGES = 0.25, 2.0
 _NO_FREQUENCY = 1e-7  # of the highest: a free motion
 _ROUGH = 1e-6  # of a frequency
+_TELLING = 0.1  # of the spin: roughness by which whole numbers of it are told
 _MOST_ENTRIES = 1_000_000  # of the arrays of speeds that are matched at once
 
 
@@ -49,7 +50,8 @@ def joined_in_space(
 
     A mode that stands in the rotor frame is seen at ``ν + nΩ`` and ``ν − nΩ``. Where the stronger
     of the two becomes the weaker, its frequency seen from outside jumps by ``2nΩ``, while that of
-    one wave changes by ``|Δν| + n|ΔΩ|`` at most; with four for unknown n.
+    one wave changes by ``|Δν| + n|ΔΩ|`` at most. Where n is not known, or there are several, the
+    whole number p of the frequency ``ν + pΩ`` must stay.
 
     Parameters
     ----------
@@ -66,11 +68,34 @@ def joined_in_space(
     steepest = np.maximum(known[1:], known[:-1]) * np.abs(np.diff(speeds))[:, None]
     change, together = np.abs(np.diff(rotor, axis=0)), rotor[1:] + rotor[:-1]
     # where ν may pass zero, it goes on as the conjugate motion
-    change = np.where(together <= 2.0 * steepest, together, change)
+    passes = together <= 2.0 * steepest
+    change = np.where(passes, together, change)
     jump = np.abs(np.diff(inertial, axis=0))
     joined = continued.copy()
     joined[1:] &= jump <= change + steepest + _ROUGH * inertial[1:]
+    unknown = (diameters[1:] < 0) | (diameters[:-1] < 0)
+    joined[1:] &= ~unknown | _stays(speeds, rotor, inertial, passes)
     return joined
+
+
+def _stays(
+    speeds: np.ndarray, rotor: np.ndarray, inertial: np.ndarray, passes: np.ndarray
+) -> np.ndarray:
+    """Return where p of a frequency ``±(ν + pΩ)`` is that of the speed before, or not told.
+
+    It changes its sign where ν passes zero.
+    """
+    spin = speeds[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rough = _ROUGH * (1.0 + (inertial + rotor) / np.abs(spin))
+        orders = (np.stack([inertial, -inertial]) - rotor) / spin
+        whole = np.round(orders)
+        told = (np.abs(orders - whole) <= rough) & (rough < _TELLING)
+    first, second = whole[:, None, :-1], whole[None, :, 1:]
+    same = (first == second) | (passes & (first == -second))
+    same &= told[:, None, :-1] & told[None, :, 1:]
+    every = told.any(axis=0)
+    return same.any(axis=(0, 1)) | ~(every[1:] & every[:-1])
 
 
 @one_thread()

@@ -182,8 +182,15 @@ LINEAR = [
         "linear/modal/tracking.py",
         "test_nodal_diameters.py::test_waves_that_take_turns_are_not_joined",
         ("waves of a standing mode are joined", "joined[1:] &= jump", "joined[1:] |= jump"),
-        ("ν never passes zero", "np.where(together <=", "np.where(together <= 0.0 *"),
+        ("ν never passes zero", "passes = together <= 2.0", "passes = together <= 0.0"),
         ("the spin does not move waves", "change + steepest + _ROUGH", "change + _ROUGH"),
+    ),
+    *mutations(
+        "linear/modal/tracking.py",
+        "test_nodal_diameters.py::test_waves_of_blades_that_take_turns_are_not_joined",
+        ("waves of unknown n are joined", "~unknown | _stays", "True | _stays"),
+        ("p keeps its sign at ν = 0", "(passes & (first == -second))", "(passes & False)"),
+        ("p of untold waves counts", "| ~(every[1:] & every[:-1])", ""),
     ),
     *mutations(
         "linear/modal/whirl.py",
