@@ -80,7 +80,7 @@ def test_films_go_on_as_from_rest_under_their_mean_force():
     for place in places:
         law.hold(True)
         law.law(*place, 0.0, 0.0, 0.0, SPEED)
-    assert held.moves
+    assert held.settles
     held.settle(SPEED)
     mean = np.mean([force for _, force in law.seen], axis=0)
     np.testing.assert_allclose(law.tangent, held.bearing.coefficients(SPEED, -mean), rtol=1e-12)

@@ -7,7 +7,9 @@ is there.
 
 Where a mesh is uneven a journal moves a little under the rotor's weight, twice in a revolution.
 Without the rotor's own unbalance films are then taken about rest under their mean force: the motion
-of ε clearances would change exponents by the order of ε².
+of ε clearances would change exponents by the order of ε². Off its centre the film of a damper would
+change them whatever ε: it carries on the side to which the journal moves. There it has the force of
+small harmonic motions, as in lists. Rolling bearings have the mean stiffness of lists then.
 """
 
 from __future__ import annotations
@@ -21,12 +23,13 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
 from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing
-from exudyn_rotor.bearings.short_journal import ShortJournalBearing
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.short_film import ShortFilmBearing, Tangent
+from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
 _STILL = 1e-4  # of the clearance: a motion whose square does not matter
-Tangent = tuple[np.ndarray, np.ndarray]
 
 
 class HeldLaw:
@@ -108,6 +111,54 @@ class HeldLaw:
     ) -> None:
         self._point = motion, values, gradient
         self.seen.append((motion[:2], np.array(values[:2])))
+
+
+class TangentShortFilm(HeldLaw):
+    """Law of a bearing with a short film that, once held, goes on by its tangent.
+
+    Where the film begins to push it has no second derivative: differences would have a little of
+    both sides.
+
+    Attributes
+    ----------
+    bearing, tangent, seen
+        See :class:`HeldLaw`.
+    """
+
+    bearing: ShortFilmBearing
+
+    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
+        """Take the tangent at a place and velocity (4,); beyond the film the law goes on."""
+        values = self._whole(*motion.tolist(), angle, speed)
+        tangent = self.tangent or self._tangent_at(motion, speed)
+        self._hold_at(motion, values, None if tangent is None else np.hstack(tangent))
+
+    def _tangent_at(self, motion: np.ndarray, speed: float) -> Tangent | None:
+        return self.bearing._law_tangent(motion, speed)
+
+
+class TangentDamper(TangentShortFilm):
+    """Law of a squeeze-film damper that, once held, goes on by its tangent.
+
+    Attributes
+    ----------
+    bearing, tangent, seen
+        See :class:`HeldLaw`.
+    """
+
+    bearing: SqueezeFilmDamper
+
+    def __init__(self, bearing: SqueezeFilmDamper) -> None:
+        super().__init__(bearing)
+        self._rests = False
+
+    def rest(self, rests: bool) -> None:
+        """Let the film have the force of small harmonic motions, or its own."""
+        self._rests, damper = rests, self.bearing
+        self._whole = damper._law_of_small_motions if rests else self._law_of(damper)
+
+    def _tangent_at(self, motion: np.ndarray, speed: float) -> Tangent | None:
+        return super()._tangent_at(np.r_[motion[:2], 0.0, 0.0] if self._rests else motion, speed)
 
 
 class TangentFilm(HeldLaw):
@@ -195,36 +246,58 @@ class HeldBearing:
         """Return the laws of a bearing."""
         pads = isinstance(bearing, TiltingPadBearing)
         parts = bearing.pad_bearings if pads else [bearing]
-        kinds = (TangentFilm if isinstance(one, JournalBearing) else HeldLaw for one in parts)
-        return cls(bearing, tuple(kind(one) for kind, one in zip(kinds, parts, strict=True)))
+        return cls(bearing, tuple(_law_to_hold(one) for one in parts))
 
     @property
-    def moves(self) -> bool:
-        """Whether films have been seen to move so much that their rest is another place."""
-        if not isinstance(self.bearing, ShortJournalBearing | JournalBearing | TiltingPadBearing):
+    def settles(self) -> bool:
+        """Whether lists take it otherwise than where it has been seen, see :meth:`settle`."""
+        if isinstance(self.bearing, RollingBearing):
+            return bool(self.bearing.clearance < 0.0 or np.any(self._forces))
+        if isinstance(self.bearing, SqueezeFilmDamper) and self.bearing.orbit > 0.0:
+            return True
+        if not isinstance(self.bearing, ShortFilmBearing | JournalBearing | TiltingPadBearing):
             return False
         if any(point is None for one in self.laws for point in one.seen):
             return False
         return any(one.moved > _STILL * one._gap() for one in self.laws)
 
     def settle(self, speed: float) -> None:
-        """Let films go on as from rest under the mean of the forces seen.
+        """Let the force go on as in lists.
+
+        Films by rest under the mean of the forces seen; that of a damper by its orbit, or by rest
+        at the mean place, as another spring may carry the weight. Rolling bearings by the mean over
+        the passage of an element.
 
         Raises
         ------
         ValueError, ArithmeticError
             Where there is no equilibrium.
         """
-        forces = [np.mean([force for _, force in one.seen], axis=0) for one in self.laws]
-        load = -np.sum(forces, axis=0)
-        if isinstance(self.bearing, TiltingPadBearing):
+        load = -np.sum(self._forces, axis=0)
+        if isinstance(self.bearing, SqueezeFilmDamper):
+            place = np.mean([place for place, _ in self.laws[0].seen], axis=0)
+            tangents = [self.bearing._coefficients_at(place, speed)]
+        elif isinstance(self.bearing, TiltingPadBearing):
             tangents = self.bearing.film_coefficients(speed, load)
         else:
             tangents = [self.bearing.coefficients(speed, load)]
         for law, tangent in zip(self.laws, tangents, strict=True):
             law.tangent = tangent
 
+    @property
+    def _forces(self) -> np.ndarray:
+        """Mean of the forces seen of every law, shape (l, 2) [N]."""
+        return np.array([np.mean([force for _, force in one.seen], axis=0) for one in self.laws])
+
     def release(self) -> None:
         """Take back what :meth:`settle` did."""
         for law in self.laws:
             law.tangent = None
+
+
+def _law_to_hold(bearing: Bearing) -> HeldLaw:
+    if isinstance(bearing, JournalBearing):
+        return TangentFilm(bearing)
+    if isinstance(bearing, SqueezeFilmDamper):
+        return TangentDamper(bearing)
+    return TangentShortFilm(bearing) if isinstance(bearing, ShortFilmBearing) else HeldLaw(bearing)

@@ -14,11 +14,24 @@ of the bearing, and there alone the film carries (half-Sommerfeld, by Gümbel). 
     I_cc = 3 u/s⁴ + β (s² + 3 u²)/s⁵
     I_cs = 2 v/s⁴ + u² v/((1 − v²) s⁴) + 3 β u v/s⁵.
 
+In the axes d along (a, b) and n across it, with ``w' = d · δ(a, b)`` and ``φ' = n · δ(a, b)/w``, a
+small change has ``u' = d · δ(x, y) + v φ'`` and ``v' = n · δ(x, y) − u φ'``, so that
+
+    δF = −(μ R L³/c²) [ (I_cc w' + w I_cc' − w I_cs φ') d                                  (2)
+                      + (I_cs w' + w I_cs' + w I_cc φ') n ].
+
+Where w = 0 the half that carries is that to which the journal begins to move, and (2) depends on
+the direction. A small harmonic motion about such a place, e, has the mean of a direction and its
+opposite, half of the damping of a film that carries all around,
+
+    D = (μ R L³/c³) π/2 [s² + 3 e eᵀ]/s⁵.                                                  (3)
+
 F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991).
 """
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
 
@@ -28,8 +41,10 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, by_tangent
 
+_REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
 _STEP = 1e-6  # of the clearance, of that tangent
+Tangent = tuple[np.ndarray, np.ndarray]
 
 
 def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
@@ -46,6 +61,54 @@ def film_force(x: float, y: float, vx: float, vy: float, speed: float) -> tuple[
     along = 3.0 * u / s4 + beta * (s2 + 3.0 * u * u) / s5
     across = 2.0 * v / s4 + u * u * v / ((1.0 - v * v) * s4) + 3.0 * beta * u * v / s5
     return across * b - along * a, -along * b - across * a
+
+
+def film_tangent(
+    x: float, y: float, vx: float, vy: float, speed: float, rest: float = 0.0
+) -> np.ndarray:
+    """Return minus the derivatives (2) of :func:`film_force` by place and velocity, shape (2, 4).
+
+    Up to the rate `rest` of w those of small motions, (3).
+    """
+    half = 0.5 * speed
+    a, b = vx + half * y, vy - half * x
+    w = hypot(a, b)
+    if w <= rest:
+        by_rate, by_place = damping_at_rest(x, y), np.zeros((2, 2))
+    else:
+        turn = np.array([[a, -b], [b, a]]) / w
+        u, v = np.array([x, y]) @ turn
+        (along, across), slopes = _integrals(u, v)
+        by_angle = slopes @ (v, -u) + (-across, along)
+        by_rate = turn @ np.column_stack([(along, across), by_angle]) @ turn.T
+        by_place = w * turn @ slopes @ turn.T
+    return np.hstack([by_place + by_rate @ [[0.0, half], [-half, 0.0]], by_rate])
+
+
+def damping_at_rest(x: float, y: float) -> np.ndarray:
+    """Return the damping (3) over ``μ R L³/c³``, for a place over the clearance, shape (2, 2)."""
+    s2 = 1.0 - x * x - y * y
+    place = np.array([x, y])
+    return 0.5 * pi * (s2 * np.eye(2) + 3.0 * np.outer(place, place)) / s2**2.5
+
+
+def _integrals(u: float, v: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return I_cc and I_cs of (1), and their derivatives (2, 2) by u and v."""
+    s2, t2 = 1.0 - u * u - v * v, 1.0 - v * v
+    s = sqrt(s2)
+    s4, s5, s6, s7 = s2**2, s2**2 * s, s2**3, s2**3 * s
+    beta, by_v = 0.5 * pi + atan(u / s), u * v / (s * t2)  # ∂β/∂u = 1/s
+    along = 3.0 * u / s4 + beta * (s2 + 3.0 * u * u) / s5
+    across = 2.0 / s4 + u * u / (t2 * s4) + 3.0 * beta * u / s5  # over v
+    along_u = 4.0 / s4 + 15.0 * u * u / s6 + 3.0 * beta * u * (3.0 * s2 + 5.0 * u * u) / s7
+    along_v = 12.0 * u * v / s6 + by_v * (s2 + 3.0 * u * u) / s5
+    along_v += 3.0 * beta * v * (s2 + 5.0 * u * u) / s7
+    across_u = 11.0 * u / s6 + 2.0 * u / (t2 * s4) + 4.0 * u**3 / (t2 * s6)
+    across_u += 3.0 * beta * (s2 + 5.0 * u * u) / s7
+    across_v = 8.0 * v / s6 + 4.0 * u * u * v / (t2 * s6) + 2.0 * u * u * v / (t2**2 * s4)
+    across_v += 3.0 * u * by_v / s5 + 15.0 * beta * u * v / s7
+    slopes = [[along_u, along_v], [v * across_u, across + v * across_v]]
+    return np.array([along, v * across]), np.array(slopes)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -112,3 +175,18 @@ class ShortFilmBearing(Bearing):
         else:
             fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, THINNEST, _STEP)
         return size * fx, size * fy
+
+    @abstractmethod
+    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
+        """Return stiffness [N/m] and damping [N s/m] of the law, each (2, 2).
+
+        None outside the film. `motion` (4,) is displacement and velocity [m], [m/s].
+        """
+
+    def _film_tangent(self, motion: np.ndarray, speed: float, spin: float) -> Tangent | None:
+        """Return the tangent of a film that turns with `speed`, of a rotor with that of `spin`."""
+        x, y, vx, vy = motion / self.clearance
+        if hypot(x, y) > THINNEST:
+            return None
+        found = self._size / self.clearance * film_tangent(x, y, vx, vy, speed, _REST * abs(spin))
+        return found[:, :2], found[:, 2:]

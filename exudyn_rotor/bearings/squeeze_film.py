@@ -6,10 +6,17 @@ its force is, along the line of centres and against the motion,
 
     F_r = −(μ R L³/c²) 2 ω ε²/(1 − ε²)²,   F_t = −(μ R L³/c²) ω π ε/(2 (1 − ε²)^{3/2}),    (1)
 
-which in linear analyses, about an orbit that is given, is a spring and a damper. L. San Andrés,
-*Modern Lubrication Theory*, Notes 13 (Texas A&M, 2010); J. Vance, *Rotordynamics of Turbomachinery*
-(1988), Sect. 6. Inertia of the oil and air in it are left out: for squeeze Reynolds numbers
-``ρ ω c²/μ`` well below 10.
+which in linear analyses, about an orbit that is given, is a spring and a damper. Without an orbit
+they take the film about rest, at the eccentricity ε at which the spring carries the static load.
+There the film has no stiffness, and damps small harmonic motions along the line of centres by D_r
+and across it by D_t,
+
+    D_r = (μ R L³/c³) π (1 + 2 ε²)/(2 (1 − ε²)^{5/2}),                                     (2)
+    D_t = (μ R L³/c³) π/(2 (1 − ε²)^{3/2}).
+
+L. San Andrés, *Modern Lubrication Theory*, Notes 13 (Texas A&M, 2010); J. Vance, *Rotordynamics of
+Turbomachinery* (1988), Sect. 6; (2) is (3) of :mod:`exudyn_rotor.bearings.short_film`. Inertia of
+the oil and air in it are left out: for squeeze Reynolds numbers ``ρ ω c²/μ`` well below 10.
 """
 
 from __future__ import annotations
@@ -22,7 +29,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.short_film import ShortFilmBearing
+from exudyn_rotor.bearings.short_film import (
+    THINNEST,
+    ShortFilmBearing,
+    Tangent,
+    damping_at_rest,
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -44,9 +56,10 @@ class SqueezeFilmDamper(ShortFilmBearing):
         Of the spring [N/m], relaxed in the centre; 0 for a damper without one.
     orbit : float, optional
         Radius over the clearance of the circular centred orbit about which linear analyses take the
-        film (1), at the spin speed; 0 by default.
+        film (1), at the spin speed; by default 0, rest under the load, (2).
     load : array_like, shape (2,), optional
         Static load on the journal along (n1, n2) [N], which the spring carries; none by default.
+        An orbit is about the centre whatever the load.
 
     Raises
     ------
@@ -105,6 +118,20 @@ class SqueezeFilmDamper(ShortFilmBearing):
         fx, fy = self._film(x, y, vx, vy, 0.0)
         return fx - k * x, fy - k * y
 
+    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
+        found = self._film_tangent(motion, 0.0, speed)
+        return found and (self.centring_stiffness * np.eye(2) + found[0], found[1])
+
+    def _law_of_small_motions(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, float]:
+        """Return the force on the journal [N] as :attr:`law`, of the film by the damping (2)."""
+        place, rate = np.array([x, y]), np.array([vx, vy])
+        ratio = place * min(1.0 / self.clearance, THINNEST / max(hypot(x, y), 1e-300))
+        damping = self._size / self.clearance * damping_at_rest(*ratio)
+        fx, fy = -self.centring_stiffness * place - damping @ rate
+        return float(fx), float(fy)
+
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the spring holds the journal under a static load [m], shape (2,).
 
@@ -133,23 +160,33 @@ class SqueezeFilmDamper(ShortFilmBearing):
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness [N/m] and damping [N s/m] on the orbit (1), each (2, 2).
+        """Return stiffness [N/m] and damping [N s/m] on the orbit (1) or at rest (2), each (2, 2).
 
         Parameters
         ----------
         speed : float
             Of the whirl, which is the spin speed [rad/s].
         load : array_like, shape (2,), optional
-            Refused where the spring does not carry it; else of no influence.
+            On the journal [N]; that of the damper, or none, by default.
 
         Raises
         ------
         TypeError, ValueError
             As :meth:`equilibrium`.
         """
-        self.equilibrium(speed, load)
+        return self._coefficients_at(self.equilibrium(speed, load), speed)
+
+    def _coefficients_at(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return :meth:`coefficients` where the journal rests at a place (2,) [m]."""
+        if hypot(*place) >= self.clearance:
+            raise ValueError(
+                f"place: damper at {self.interface!r}: the journal is {hypot(*place):g} m off its "
+                f"centre, outside the clearance of {self.clearance:g} m"
+            )
+        size, stiffness = self._size / self.clearance, self.centring_stiffness
+        if self.orbit == 0.0:
+            return stiffness * np.eye(2), size * damping_at_rest(*(place / self.clearance))
         s2 = 1.0 - self.orbit**2
-        size = self._size / self.clearance
         film = 2.0 * size * abs(speed) * self.orbit / s2**2
         damping = 0.5 * pi * size / (s2 * sqrt(s2))
-        return (self.centring_stiffness + film) * np.eye(2), damping * np.eye(2)
+        return (stiffness + film) * np.eye(2), damping * np.eye(2)

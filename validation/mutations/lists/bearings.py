@@ -228,6 +228,17 @@ BEARINGS = [
         ("a slow film carries all", "size = self._size * abs(speed)\n", "size = self._size\n"),
     ),
     *mutations(
+        "bearings/short_film.py",
+        "test_kinds_in_scenes_and_lists.py::test_tangents_of_a_short_film_are_those_of_its_force",
+        ("slopes turn the other way", "slopes @ (v, -u) +", "slopes @ (-v, u) +"),
+        ("film's second slope dropped", "w * turn @ slopes", "0.0 * turn @ slopes"),
+    ),
+    *mutations(
+        "bearings/short_film.py",
+        "test_kinds_in_scenes_and_lists.py::test_small_harmonic_motions_off_the_centre",
+        ("damping off the centre alike", "+ 3.0 * np.outer(", "- 3.0 * np.outer("),
+    ),
+    *mutations(
         "bearings/squeeze_film.py",
         "test_dampers_and_stops.py",
         (

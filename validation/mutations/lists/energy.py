@@ -58,7 +58,7 @@ _OF_KINDS = (
     (
         "squeeze-film",
         "bearings/short_film.py",
-        ("squeeze along n1 dropped", "a, b = vx + 0.5", "a, b = 0.0 * vx + 0.5"),
+        ("squeeze along n1 dropped", "a, b = vx + 0.5 *", "a, b = 0.0 * vx + 0.5 *"),
     ),
     (
         "finite-film",

@@ -85,8 +85,9 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             ``'steady'``: for every speed the periodic motion under the scene's loads and the
             rotor's own unbalance is found first, beginning from the current state, e.g. a static
             solution; it matters where bearings are nonlinear. ``'equilibrium'``: the same without
-            the rotor's own unbalance, and films about rest under their mean force, as bearings in
-            a list of supports are linearised.
+            the rotor's own unbalance, and films about rest under their mean force, dampers on
+            their `orbit` and rolling bearings by their mean stiffness, as bearings in a list of
+            supports are linearised.
             ``'given'``: the current state of everything but the rotor, and the rotor undeformed.
 
         Raises

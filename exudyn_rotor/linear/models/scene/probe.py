@@ -10,7 +10,12 @@ from typing import NamedTuple
 import exudyn
 import numpy as np
 
-from exudyn_rotor.bearings.held_law import HeldBearing, TangentFilm
+from exudyn_rotor.bearings.held_law import (
+    HeldBearing,
+    TangentDamper,
+    TangentFilm,
+    TangentShortFilm,
+)
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
@@ -67,7 +72,8 @@ class Probe:
     @property
     def straight(self) -> float:
         """Motion [m] along which the forces are straight enough for their derivatives."""
-        return min(self.step, _STEPS[-1]) if self.films or self.magnets else self.step
+        by_tangents = any(isinstance(law, TangentFilm | TangentShortFilm) for law in self.laws)
+        return min(self.step, _STEPS[-1]) if by_tangents or self.magnets else self.step
 
     @property
     def remembering(self) -> list[TangentFilm]:
@@ -85,6 +91,18 @@ class Probe:
             for film in self.remembering:
                 film.stiff = True
 
+    @contextmanager
+    def resting_dampers(self, rest: bool) -> Iterator[None]:
+        """Let films of dampers have the force of small harmonic motions, if that is asked for."""
+        dampers = [law for law in self.laws if isinstance(law, TangentDamper)]
+        try:
+            for law in dampers:
+                law.rest(rest)
+            yield
+        finally:
+            for law in dampers:
+                law.rest(False)
+
     def at_rest(self) -> Probe:
         """Return the same at the speed 0."""
         return Probe(self.scene, 0.0, self.solver, self.bearings, self.magnets)
@@ -94,14 +112,20 @@ class Probe:
         for law in self.laws:
             law.seen = []
 
+    def see(self, theta: float, y: np.ndarray, y_t: np.ndarray) -> None:
+        """See where bearings are in a motion y (k,) of the rate y_t, at one angle."""
+        T, T1, _ = self.scene.turn(theta)
+        with self.held():
+            self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
+
     @property
-    def moving(self) -> list[HeldBearing]:
-        """Bearings with films that have been seen to move."""
-        return [one for one in self.bearings if one.moves]
+    def settling(self) -> list[HeldBearing]:
+        """Bearings that lists take otherwise than where they have been seen."""
+        return [one for one in self.bearings if one.settles]
 
     @contextmanager
     def settled(self, bearings: Sequence[HeldBearing]) -> Iterator[None]:
-        """Take films about rest under the mean of the forces seen.
+        """Take bearings as lists do under the mean of the forces seen.
 
         Raises
         ------

@@ -23,11 +23,12 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
     equilibrium,
     solved,
 )
+from exudyn_rotor.linear.models.scene.fourier_terms import fourier_terms, scaled_samples
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms, UnconvergedError
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _LEFT_OUT = 3  # harmonics fewer than samples
@@ -45,7 +46,6 @@ _LEAST_SHARE = 2e-3  # of a step
 _MOTION = 1e-7  # tolerance of a motion about which films have coefficients of another kind
 _BESIDE_REST = 1e-5  # one of which the mean force alone counts
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
-_CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
 
 
 class Scene(Protocol):
@@ -69,7 +69,13 @@ def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
     Films that conserve mass have a force in them, but no stiffness and no damping:
     :mod:`.remembering_scene` adds what they have, which depends on the frequency.
     """
-    rest, tolerance = scene.about == "equilibrium", None
+    rest = scene.about == "equilibrium"
+    with probe.resting_dampers(rest):
+        return _equations_about(scene, probe, rest)
+
+
+def _equations_about(scene: Scene, probe: Probe, rest: bool) -> PeriodicSystem:
+    tolerance = None
     if probe.remembering:
         tolerance = _MOTION
     elif rest and probe.films:
@@ -81,11 +87,13 @@ def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
             raise
         tolerance = _MOTION
         system, orders, found = steady_motion(scene, probe, tolerance)
-    moving = probe.moving if rest else []
-    if tolerance is None and not moving:
+    samples, settling = len(orders) + _LEFT_OUT, []
+    if rest:
+        _Search(scene, probe, samples, _MOTION, True).see(found)
+        settling = probe.settling
+    if tolerance is None and not settling:
         return system
-    samples = len(orders) + _LEFT_OUT
-    with probe.settled(moving), probe.without_tangents():
+    with probe.settled(settling), probe.without_tangents():
         while samples <= _MOST_SAMPLES:
             system, resolved = _Search(scene, probe, samples, _MOTION, True).equations(found)
             if resolved:
@@ -315,13 +323,24 @@ class _Search:
         """Return the scene linearised at all angles of the motion, by steps that are for it."""
         self.probe.step = self.probe.velocity_step = None
         self.probe.forget()
+        return [linearised(self.probe, *at) for at in self._motion(Y)]
+
+    def _motion(self, Y: np.ndarray) -> Iterator[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
+        """Return every angle with the motion there, its rate and acceleration."""
         rates = 1j * self.orders[:, None] * self.probe.speed
-        motion = [(self.waves @ (Y * rates**n)).real for n in range(3)]
-        return [linearised(self.probe, *at) for at in zip(self.angles, *motion, strict=True)]
+        motion = ((self.waves @ (Y * rates**n)).real for n in range(3))
+        return zip(self.angles, *motion, strict=True)
+
+    def see(self, found: np.ndarray) -> None:
+        """See where bearings are in a motion by its harmonics."""
+        self.probe.forget()
+        for theta, y, y_t, _ in self._motion(self._start(found)):
+            self.probe.see(theta, y, y_t)
 
     def _system(self, points: list[LinearPoint]) -> tuple[PeriodicSystem, bool]:
         """Return the equations, and whether the samples resolve their coefficients."""
-        terms, resolved = zip(*(_terms(*entry) for entry in _scaled(points)), strict=True)
+        found = (fourier_terms(*entry) for entry in scaled_samples(points))
+        terms, resolved = zip(*found, strict=True)
         speed, rounding = self.probe.speed, self.probe.rounding
         system = PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
         return system, all(resolved)
@@ -332,7 +351,7 @@ class _Search:
         Their Fourier terms n and n + samples are the same: so the angles see them.
         """
         terms = []
-        for X, scale, size in _scaled(points):
+        for X, scale, size in scaled_samples(points):
             spectrum = np.fft.fft(X, axis=0) / self.samples
             kept = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2)) > NOISE * size
             reach = range(2 * self.orders[0], 2 * self.orders[-1] + 1)
@@ -363,27 +382,3 @@ class _Search:
         if self.spin is not None and not self.for_equations:
             most = UNHELD * np.sqrt(self.scene.mass)
             self.spin.check_held(torque, most, self.probe.speed)
-
-
-def _scaled(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
-    """Yield samples of M, D, K (n, k, k), the scale of coordinates, and what counts as zero."""
-    M, D, K = (np.array([point[i] for point in points]) for i in range(3))
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))
-    largest = [np.abs(X * np.outer(scale, scale)).max() for X in (M, D, K)]
-    largest[1] = max(largest[1], np.sqrt(largest[2]))
-    for X, size in zip((M, D, K), largest, strict=True):
-        yield X, scale, size
-
-
-def _terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
-    """Return the Fourier terms of samples over a revolution, and whether these resolve it."""
-    count = len(samples)
-    spectrum = np.fft.fft(samples, axis=0) / count
-    sizes = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2))
-    top = count // 2
-    resolved = bool(sizes[top - 1 : top + 2].max() <= _CONVERGED * largest)
-    terms = {0: spectrum[0].real}
-    for n in range(1, top - 1):
-        if sizes[n] > NOISE * largest:
-            terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
-    return terms, resolved

@@ -1,0 +1,37 @@
+"""Fourier terms of a scene's equations from their samples over a revolution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from exudyn_rotor.linear.models.scene.equilibrium import NOISE
+from exudyn_rotor.linear.models.scene.probe import LinearPoint
+from exudyn_rotor.linear.periodic.periodic_system import Terms
+
+_CONVERGED = 1e-8  # share of the largest entry that the highest harmonics may have
+
+
+def scaled_samples(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    """Yield samples of M, D, K (n, k, k), the scale of coordinates, and what counts as zero."""
+    M, D, K = (np.array([point[i] for point in points]) for i in range(3))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(M[0]), 1e-300))
+    largest = [np.abs(X * np.outer(scale, scale)).max() for X in (M, D, K)]
+    largest[1] = max(largest[1], np.sqrt(largest[2]))
+    for X, size in zip((M, D, K), largest, strict=True):
+        yield X, scale, size
+
+
+def fourier_terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
+    """Return the Fourier terms of samples over a revolution, and whether these resolve it."""
+    count = len(samples)
+    spectrum = np.fft.fft(samples, axis=0) / count
+    sizes = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2))
+    top = count // 2
+    resolved = bool(sizes[top - 1 : top + 2].max() <= _CONVERGED * largest)
+    terms = {0: spectrum[0].real}
+    for n in range(1, top - 1):
+        if sizes[n] > NOISE * largest:
+            terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
+    return terms, resolved
