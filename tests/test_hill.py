@@ -272,6 +272,24 @@ def test_models_with_many_modes_have_four_steps_of_harmonics(size, order, larger
         hill._next(uneven, 100, 1.0, 1e-8, 2)
 
 
+def test_motions_that_lack_nothing_but_cannot_be_followed_take_a_larger_truncation(monkeypatch):
+    """Where a truncation takes long, too: there are no slow motions to look at by themselves."""
+    system = weakly_periodic(0)
+    expected = fold(motions(system, "hill", 1e-10).values, system.base)
+    follow, tried = hill._followed, []
+
+    def late(*given):
+        tried.append(given)
+        return None if len(tried) == 1 else follow(*given)
+
+    monkeypatch.setattr(hill, "_LONG", 0)
+    monkeypatch.setattr(hill, "_followed", late)
+    found = fold(motions(system, "hill", 1e-10).values, system.base)
+    assert len(tried) > 1
+    apart = np.abs(fold(found[:, None] - expected, system.base)).min(axis=1)
+    assert np.all(apart < 1e-9 * system.speed)
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("eccentric", [False, True])
 def test_motions_by_slow_ones_are_those_of_large_truncations(seed, eccentric, monkeypatch):

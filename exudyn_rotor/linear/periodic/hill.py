@@ -149,7 +149,7 @@ def _by_slow_motions(
 
     They are, but for little, in some modes of the mean coefficients: these alone can be solved for
     with many more harmonics. From what that gives, inverse iteration finds motions of all
-    coordinates. None where one is lost or found twice.
+    coordinates. None where one is lost or found twice, and where none lacks harmonics.
     """
     near = _are_near(system, motions)
     if np.all(near):  # two of them became one on the way into larger truncations
