@@ -76,6 +76,17 @@ def test_advice_at_a_peak_is_not_what_was_done_already():
         below.peak("left")
 
 
+def test_a_peak_beside_rest_where_unbalance_moves_nothing():
+    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")
+    point = point.with_interface("at", [0])
+    given = {"supports": [Support("at", 1e4, 20.0)], "own": False}
+    response = unbalance_response(point, [0.0, 95.0, 130.0], Unbalance("at", 1e-5), **given)
+    with pytest.warns(UserWarning, match="too far apart"):
+        speed, size = response.peak()
+    assert 95.0 <= speed <= 130.0
+    assert response.semi_axes()[0][1] <= size <= 2.0 * response.semi_axes()[0][1]
+
+
 def test_a_resonance_without_damping_is_left_out_where_points_are_added():
     """Halving meets it: ω = 100 rad/s is midway between two of the speeds."""
     point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0.0, 0.0, 0.0]], "z")

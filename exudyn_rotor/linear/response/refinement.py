@@ -32,6 +32,7 @@ _NARROWEST = 1e-7
 _MOST_ROUNDS = 30
 _MOST_ADDED = 4000
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
+_STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
 
 
 def refined(
@@ -129,8 +130,8 @@ def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:
     Near a resonance 1/size² is a parabola, for one mode exactly. Three points, the middle one the
     largest.
     """
-    shift = at - at[1]
-    square, slope, middle = np.polyfit(shift, (size[1] / size) ** 2, 2)
+    shift, seen = at - at[1], np.maximum(size, _STILL * size[1])
+    square, slope, middle = np.polyfit(shift, (size[1] / seen) ** 2, 2)
     if square <= 0.0:
         return float(at[1]), float(size[1])
     place = float(np.clip(-0.5 * slope / square, shift[0], shift[2]))
