@@ -10,6 +10,7 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface, HCBstaticModeSelection, KirchhoffMaterial
+from point_rotors import ring_rotor
 
 from exudyn_rotor.reduction.component import ModeBasis, free_modes
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
@@ -253,6 +254,14 @@ def test_direct_and_iterative_craig_bampton_agree(short_shaft, coupling):
     few = craig_bampton_modes(short_shaft, 3, coupling=coupling)
     many = craig_bampton_modes(short_shaft, short_shaft.mass.shape[0] // 3, coupling=coupling)
     np.testing.assert_allclose(few.frequencies[12:], many.frequencies[12:15], rtol=1e-9)
+
+
+def test_the_mean_motion_of_all_nodes_holds_no_deformation():
+    """Of equal masses it is the rigid motion: what is left are the free modes."""
+    rotor = ring_rotor(0.1, 0.05, 2.0).with_interface("all", range(10))
+    modes = craig_bampton_modes(rotor, 3, coupling="RBE3")
+    assert largest_angle(modes.matrix[:, :6], rigid_columns(rotor.nodes)) < 1e-8
+    np.testing.assert_allclose(modes.frequencies[6:], np.sqrt(1e8 / 0.2), rtol=1e-9)
 
 
 @pytest.mark.parametrize("coupling", ["RBE2", "RBE3"])
