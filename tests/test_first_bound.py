@@ -11,6 +11,7 @@ from test_stability import anisotropic
 from transformed import transformed
 
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic import first_bound as first_bound_module
 from exudyn_rotor.linear.periodic.exponents import _chosen_by_hill
 from exudyn_rotor.linear.periodic.first_bound import (
     _remainder,
@@ -218,3 +219,21 @@ def test_motions_in_pairs_that_are_wrong_are_seen(name, wrong):
         values[slow[0]], shapes[..., slow[0]] = values[slow[1]], shapes[..., slow[1]]
     with pytest.raises(UnconvergedError, match="may be off by"):
         checked(system, replace(found, values=values, shapes=shapes), gone, TOLERANCE)
+
+
+@pytest.mark.parametrize("frozen", [0, 2])
+def test_singular_states_tell_nothing_and_do_not_warn(frozen, monkeypatch):
+    """Rounding decides whether a factor of dependent states has a zero."""
+
+    def singular(*_):
+        raise np.linalg.LinAlgError
+
+    system = on_uneven_supports(300.0)
+    every, pairs, groups = given(system, _chosen_by_hill(system, TOLERANCE, True))
+    F = np.full((5, 2 + frozen, 2 + frozen), np.inf, dtype=complex)
+    none = np.zeros(2 + frozen, dtype=complex)
+    assert _Remainder(F, none, np.ones(2), 10.0, none[:2]).smallest().share == np.inf
+    monkeypatch.setattr(np.linalg, "solve", singular)
+    monkeypatch.setattr(first_bound_module, "accelerations", lambda system, M, forces: forces)
+    radii = np.ones(len(every.values))
+    assert first_bound(system, every, pairs, groups, radii) == np.inf

@@ -149,6 +149,8 @@ class _Remainder:
     @cached_property
     def _needed(self) -> tuple[float, np.ndarray]:
         """The share of the radii that is needed, and weights w (2k,) for which it is enough."""
+        if not np.all(np.isfinite(self.F)):
+            return np.inf, np.ones(len(self.values))
         count = len(self.allowed)
         fast, decay = self.F[:, count:, count:], np.inf
         f = np.abs(self.F).max(axis=0)[:count, :count]
@@ -160,7 +162,7 @@ class _Remainder:
             out_of = np.linalg.norm(self.F[:, count:, :count], axis=1).max(axis=0)
             f = np.block([[f, into[:, None]], [out_of, np.zeros(1)]])
             limits = np.append(limits, 0.5 * decay)
-        if not (decay > 0.0 and np.all(np.isfinite(f))):
+        if not decay > 0.0:
             return np.inf, np.ones(len(self.values))
         needed, weights = largest_share(f, limits)
         repeated = np.repeat(weights, [1] * count + [len(self.values) - count] * bool(fast.size))
