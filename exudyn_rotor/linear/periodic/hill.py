@@ -164,6 +164,7 @@ def _by_slow_motions(
     slow = replace(
         slow,
         shapes=np.einsum("ka,haj->hkj", basis, slow.shapes),
+        outer={n: basis @ X for n, X in slow.outer.items()},
         rounding=np.full(len(slow.values), motions.rounding.max()),
         resolution=motions.resolution,
     )
