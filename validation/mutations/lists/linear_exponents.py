@@ -61,6 +61,30 @@ LINEAR_EXPONENTS = [
         ("exponents shared as they come", "apart / told[:, None]", "apart"),
     ),
     *mutations(
+        "linear/periodic/first_bound.py",
+        "test_first_bound.py::test_singular_states_tell_nothing_and_do_not_warn",
+        (
+            "infinite products of singular states",
+            "np.full_like(P, np.nan)",
+            "np.full_like(P, np.inf)",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/remainder.py",
+        "test_first_bound.py::test_singular_states_tell_nothing_and_do_not_warn",
+        ("decay of infinite rests", "if not np.all(np.isfinite(self.F)):", "if False:"),
+    ),
+    *mutations(
+        "linear/periodic/hill.py",
+        "test_hill.py",
+        (
+            "slow motions sought where there are none",
+            "if np.all(near):\n        return",
+            "if 0:\n        return",
+        ),
+        ("harmonics left out of a part", "n: basis @ X for n, X", "n: X for n, X"),
+    ),
+    *mutations(
         "linear/periodic/remainder.py",
         "test_uneven_supports.py",
         (
