@@ -77,11 +77,6 @@ LINEAR_EXPONENTS = [
     *mutations(
         "linear/periodic/hill.py",
         "test_hill.py",
-        (
-            "slow motions sought where there are none",
-            "if np.all(near):\n        return",
-            "if 0:\n        return",
-        ),
         ("harmonics left out of a part", "n: basis @ X for n, X", "n: X for n, X"),
     ),
     *mutations(
