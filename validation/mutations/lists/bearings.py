@@ -239,6 +239,17 @@ BEARINGS = [
         ("damping off the centre alike", "+ 3.0 * np.outer(", "- 3.0 * np.outer("),
     ),
     *mutations(
+        "bearings/short_journal.py",
+        "test_mirror_images.py::test_equilibrium_and_coefficients",
+        ("backwards on the wrong side", "if speed < 0.0:", "if speed < -1e9:"),
+        ("coefficients of one sense", "sense = -1.0 if speed < 0.0", "sense = 1.0 if speed < 0.0"),
+    ),
+    *mutations(
+        "bearings/film/reynolds.py",
+        "test_mirror_images.py::test_equilibrium_and_coefficients",
+        ("voids carried one way", "        if self.speed >= 0.0:", "        if True:"),
+    ),
+    *mutations(
         "bearings/squeeze_film.py",
         "test_dampers_and_stops.py",
         (
