@@ -23,7 +23,7 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque
 from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing
-from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.rolling import RollingBearing, contacts
 from exudyn_rotor.bearings.short_film import ShortFilmBearing, Tangent
 from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
@@ -217,6 +217,23 @@ class TangentFilm(HeldLaw):
         return super()._free(x, y, vx, vy, angle, speed)
 
 
+class TangentContacts(HeldLaw):
+    """Law of a rolling bearing that, once held, goes on by the stiffness of its contacts there.
+
+    Within a step of differences elements begin to carry, some in one direction and others in the
+    next: those that no load presses would have a stiffness that changes as the rotor turns.
+    """
+
+    bearing: RollingBearing
+
+    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
+        """Hold the law at a place and velocity (4,)."""
+        stiffness = contacts(self.bearing, motion[:2], angle)[2]
+        tangent = self.tangent or (stiffness, self.bearing.damping * np.eye(2))
+        values = self._whole(*motion.tolist(), angle, speed)
+        self._hold_at(motion, values, np.hstack(tangent))
+
+
 def tangent_of(state: FilmState) -> Tangent:
     """Return stiffness and damping (2, 2) of the tangent at a place of the journal.
 
@@ -246,7 +263,7 @@ class HeldBearing:
         """Return the laws of a bearing."""
         pads = isinstance(bearing, TiltingPadBearing)
         parts = bearing.pad_bearings if pads else [bearing]
-        return cls(bearing, tuple(_law_to_hold(one) for one in parts))
+        return cls(bearing, tuple(_held_law(one) for one in parts))
 
     @property
     def settles(self) -> bool:
@@ -295,9 +312,11 @@ class HeldBearing:
             law.tangent = None
 
 
-def _law_to_hold(bearing: Bearing) -> HeldLaw:
+def _held_law(bearing: Bearing) -> HeldLaw:
     if isinstance(bearing, JournalBearing):
         return TangentFilm(bearing)
     if isinstance(bearing, SqueezeFilmDamper):
         return TangentDamper(bearing)
-    return TangentShortFilm(bearing) if isinstance(bearing, ShortFilmBearing) else HeldLaw(bearing)
+    if isinstance(bearing, ShortFilmBearing):
+        return TangentShortFilm(bearing)
+    return TangentContacts(bearing) if isinstance(bearing, RollingBearing) else HeldLaw(bearing)

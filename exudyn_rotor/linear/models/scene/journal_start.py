@@ -95,22 +95,24 @@ def _places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
 
 
 def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
-    """Return bearings and their static loads: their own, or on two the weight by the lever rule."""
+    """Return bearings and their static loads: on two the weight by the lever rule, or their own."""
     bearings = [each.support for each in body.supports if isinstance(each.support, Bearing)]
     bearings = [bearing for bearing in bearings if bearing.carries]
     loads = [bearing.load for bearing in bearings]
     if len(bearings) == 2:
-        loads = _weights(body, [bearing.interface for bearing in bearings])
+        weights = _weights(body, [bearing.interface for bearing in bearings])
+        pairs = zip(weights, loads, strict=True)
+        loads = [weight if np.any(weight) else load for weight, load in pairs]
     pairs = zip(bearings, loads, strict=True)
     return [(bearing, load) for bearing, load in pairs if load is not None]
 
 
-def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray | None]:
+def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
     source = body.selection.source
     e = source.axis.direction
     left, right = (source.interfaces[name].reference @ e for name in names)
     if left == right:
-        return [None, None]
+        return [np.zeros(2), np.zeros(2)]
     share = (source.center_of_mass @ e - left) / (right - left)
     weight = source.invariants.mass * (body.standing_axes.T @ body.plan.setup.gravity)[:2]
     return [(1.0 - share) * weight, share * weight]

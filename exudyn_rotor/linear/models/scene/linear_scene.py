@@ -25,14 +25,11 @@ from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.points import Ring, ring_motions, ring_size, with_pairs
 from exudyn_rotor.linear.models.protocol import PointMotions
 from exudyn_rotor.linear.models.scene.journal_start import across
+from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.models.scene.probe import Probe, probing
 from exudyn_rotor.linear.models.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates, nullspace
-from exudyn_rotor.linear.models.scene.steady_motion import (
-    equations_about,
-    motion_at_rest,
-    steady_motion,
-)
+from exudyn_rotor.linear.models.scene.steady_motion import equations_about, steady_motion
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.multibody.rotor.marker_body import around

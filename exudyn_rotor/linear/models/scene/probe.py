@@ -12,6 +12,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.held_law import (
     HeldBearing,
+    TangentContacts,
     TangentDamper,
     TangentFilm,
     TangentShortFilm,
@@ -72,8 +73,9 @@ class Probe:
     @property
     def straight(self) -> float:
         """Motion [m] along which the forces are straight enough for their derivatives."""
-        by_tangents = any(isinstance(law, TangentFilm | TangentShortFilm) for law in self.laws)
-        return min(self.step, _STEPS[-1]) if by_tangents or self.magnets else self.step
+        by_tangent = TangentFilm | TangentShortFilm | TangentContacts
+        known = any(isinstance(law, by_tangent) for law in self.laws)
+        return min(self.step, _STEPS[-1]) if known or self.magnets else self.step
 
     @property
     def remembering(self) -> list[TangentFilm]:

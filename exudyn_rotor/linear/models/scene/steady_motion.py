@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -20,19 +19,20 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
     NOISE,
     SMALLEST,
     UNHELD,
-    equilibrium,
     solved,
 )
 from exudyn_rotor.linear.models.scene.fourier_terms import fourier_terms, scaled_samples
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
+from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised
+from exudyn_rotor.linear.models.scene.searched_scene import Scene
+from exudyn_rotor.linear.models.scene.unloaded import check_elements, check_films, free_in_elements
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _LEFT_OUT = 3  # harmonics fewer than samples
-_REST_SAMPLES = 7  # an odd number: the harmonics are exact at all of them
 _MOST_UNRESOLVED = 48  # samples for motions whose equations stay unresolved
 _ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
@@ -40,26 +40,13 @@ _FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the s
 _FEW_STRIDES = 8  # with many samples
 _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
+_MOST_FREE = 20  # with a journal that nothing presses
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
 _LEAST_SHARE = 2e-3  # of a step
 _MOTION = 1e-7  # tolerance of a motion about which films have coefficients of another kind
 _BESIDE_REST = 1e-5  # one of which the mean force alone counts
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
-
-
-class Scene(Protocol):
-    """What the search needs of a scene beside the members of :class:`SceneCoordinates`."""
-
-    about: str
-
-    @property
-    def interfaces(self) -> tuple[str, ...]: ...
-    @property
-    def unit_unbalance(self) -> np.ndarray: ...
-    @property
-    def structural_damping(self) -> np.ndarray | None: ...
-    def interface_motion(self, name: str) -> np.ndarray: ...
 
 
 def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
@@ -69,6 +56,7 @@ def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
     Films that conserve mass have a force in them, but no stiffness and no damping:
     :mod:`.remembering_scene` adds what they have, which depends on the frequency.
     """
+    check_films(scene, probe)
     rest = scene.about == "equilibrium"
     with probe.resting_dampers(rest):
         return _equations_about(scene, probe, rest)
@@ -119,9 +107,10 @@ def steady_motion(
         search = _Search(scene, probe, samples, tolerance or _AT_REST, tolerance is None)
         try:
             system, found = search.found(found)
-        except UnconvergedError:
+        except UnconvergedError as error:
             if not probe.speed or samples > _MOST_UNRESOLVED:
                 raise
+            check_elements(scene, probe, error)
             search, system, found = _followed(search)
             samples = search.samples
         if system is not None:
@@ -155,34 +144,6 @@ def _followed(search: _Search) -> tuple[_Search, PeriodicSystem | None, np.ndarr
             raise
         finer = replace(search, samples=_MOST_UNRESOLVED)
         return finer, *finer.followed(_FEW_STRIDES)
-
-
-def motion_at_rest(
-    scene: Scene, probe: Probe, tolerance: float, angle: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
-
-    Exact at the start's angle [rad] and those of the same distance from it.
-
-    Raises
-    ------
-    UnconvergedError
-        Where there is no equilibrium.
-    """
-    start = journal_start(scene, 0.0, np.arange(-1, 2))
-    count = _REST_SAMPLES
-    while True:
-        angles = angle + 2.0 * np.pi * np.arange(count) / count
-        orders = np.arange(-(count // 2), count // 2 + 1)
-        values = []
-        for theta in angles:
-            near = values[-1] if values else (np.exp(1j * theta * np.arange(-1, 2)) @ start).real
-            values.append(equilibrium(scene, probe, theta, near, tolerance))
-        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
-        sizes = np.abs(harmonics).max(axis=1)
-        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _REST_SAMPLES:
-            return orders, harmonics
-        count = 2 * count + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +183,9 @@ class _Search:
 
         It begins with those of fewer samples.
         """
-        return self._newton(self._start(start), 0.0, _MOST_ITERATIONS)
+        free = free_in_elements(self.scene, self.probe) is not None
+        most = _MOST_FREE if free else _MOST_ITERATIONS
+        return self._newton(self._start(start), 0.0, most)
 
     def equations(self, found: np.ndarray) -> tuple[PeriodicSystem, bool]:
         """Return the equations about a motion by its harmonics, and whether the angles do."""

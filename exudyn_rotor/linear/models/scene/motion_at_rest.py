@@ -1,0 +1,40 @@
+"""Equilibria of a scene at rest, at all angles of the rotor."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.linear.models.scene.equilibrium import equilibrium
+from exudyn_rotor.linear.models.scene.journal_start import journal_start
+from exudyn_rotor.linear.models.scene.probe import Probe
+from exudyn_rotor.linear.models.scene.searched_scene import Scene
+
+_SAMPLES = 7  # an odd number: the harmonics are exact at all of them
+
+
+def motion_at_rest(
+    scene: Scene, probe: Probe, tolerance: float, angle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
+
+    Exact at the start's angle [rad] and those of the same distance from it.
+
+    Raises
+    ------
+    UnconvergedError
+        Where there is no equilibrium.
+    """
+    start = journal_start(scene, 0.0, np.arange(-1, 2))
+    count = _SAMPLES
+    while True:
+        angles = angle + 2.0 * np.pi * np.arange(count) / count
+        orders = np.arange(-(count // 2), count // 2 + 1)
+        values = []
+        for theta in angles:
+            near = values[-1] if values else (np.exp(1j * theta * np.arange(-1, 2)) @ start).real
+            values.append(equilibrium(scene, probe, theta, near, tolerance))
+        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
+        sizes = np.abs(harmonics).max(axis=1)
+        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _SAMPLES:
+            return orders, harmonics
+        count = 2 * count + 1
