@@ -175,7 +175,7 @@ def scene(kind, image, speed, axis, eccentric=1e-2, **options):
 SCENES = {
     "short, backwards": ("short", -SPEED, SKEW_AXIS, {}),
     "short, free spin": ("short", SPEED, "x", {"spin": "free", "translation": "free"}),
-    "reynolds": ("reynolds", SPEED, SKEW_AXIS, {}),
+    "reynolds": ("reynolds", SPEED, SKEW_AXIS, {"eccentric": 1e-3}),
     "tension": ("tension", -SPEED, "y", {"translation": "free"}),
     "seal": ("seal", SPEED, SKEW_AXIS, {}),
     "squeeze": ("squeeze", SPEED, "z", {}),

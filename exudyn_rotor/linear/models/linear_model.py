@@ -84,7 +84,8 @@ def linear_model(
     about : {'steady', 'equilibrium', 'given'}
         Motion about which a scene is linearised: the periodic motion under its loads and the
         rotor's own unbalance at each speed; that without this unbalance, films at rest under their
-        mean force, as in a list of supports; or its current state with the rotor undeformed.
+        mean force, as in a list of supports; or its current state with the rotor undeformed and
+        journals where the weight by the lever rule, or their bearings' own load, holds them.
     dense : bool, optional
         Whether a SolidRotor is solved in all its coordinates by dense matrices, or for its lowest
         modes; by default dense up to 600 degrees of freedom.

@@ -250,6 +250,25 @@ BEARINGS = [
         ("voids carried one way", "        if self.speed >= 0.0:", "        if True:"),
     ),
     *mutations(
+        "bearings/held_law.py",
+        "test_unloaded_bearings.py::test_contacts_are_linear_by_their_stiffness_once_held",
+        ("held contacts push", "np.hstack([stiffness, self", "np.hstack([-stiffness, self"),
+        ("held bearings undamped", "self.bearing.damping * np.eye(2)]", "0.0 * np.eye(2)]"),
+    ),
+    *mutations(
+        "linear/models/scene/unloaded.py",
+        "test_unloaded_bearings.py",
+        ("films with a supply ask for a load", "given.supply_pressure == 0.0", "True"),
+        ("films in tension ask for a load", 'given.cavitation != "none" and', "True and"),
+        ("loads move no journal", "point.K, -residual)[0]", "point.K, 0.0 * residual)[0]"),
+        ("loose elements are pressed", "bearing.clearance >= 0.0", "bearing.clearance < 0.0"),
+    ),
+    *mutations(
+        "linear/models/scene/journal_start.py",
+        "test_unloaded_bearings.py",
+        ("bearings' own loads forgotten", "weight if np.any(weight) else load", "weight"),
+    ),
+    *mutations(
         "bearings/squeeze_film.py",
         "test_dampers_and_stops.py",
         (

@@ -85,7 +85,8 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             the rotor's own unbalance, and films about rest under their mean force, dampers on
             their `orbit` and rolling bearings by their mean stiffness, as bearings in a list of
             supports are linearised.
-            ``'given'``: the current state of everything but the rotor, and the rotor undeformed.
+            ``'given'``: the current state of everything but the rotor, and the rotor undeformed,
+            journals in their equilibria under the weight or the load of their bearings.
 
         Raises
         ------
