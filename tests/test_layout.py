@@ -85,6 +85,41 @@ def test_every_entry_of_the_listing_exists():
     assert {place(module) for module in MODULES} == set(range(len(entries)))
 
 
+OTHERS_OWN = {"_None", "_asdict", "_call_pardiso", "_getframe", "_name", "_replace"}
+
+
+@cache
+def private_names(entry: str) -> frozenset[str]:
+    """Return the private names that an entry of the listing makes: defined, assigned, quoted."""
+    found = set()
+    for module in (module for module in MODULES if order()[place(module)] == entry):
+        for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+            made = getattr(node, "name", None) or getattr(node, "value", None)
+            if isinstance(node, ast.Attribute | ast.Name) and isinstance(node.ctx, ast.Store):
+                made = node.attr if isinstance(node, ast.Attribute) else node.id
+            found.add(made if isinstance(made, str) else None)
+    return frozenset(name for name in found if name and name.startswith("_"))
+
+
+@pytest.mark.parametrize("module", sorted(MODULES))
+def test_private_names_stay_in_their_entry(module):
+    own = private_names(order()[place(module)]) | OTHERS_OWN
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    used = {
+        node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and getattr(node.value, "id", "") not in ("self", "cls")
+    }
+    used |= {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and _is_own(node.module or "")
+        for alias in node.names
+    }
+    private = {name for name in used if name.startswith("_") and not name.startswith("__")}
+    assert private <= own, private - own
+
+
 @pytest.mark.parametrize("module", sorted(MODULES))
 def test_imports_go_up_the_listing(module):
     assert not {imported for imported in imports(module) if place(imported) > place(module)}

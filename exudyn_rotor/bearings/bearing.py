@@ -17,6 +17,7 @@ from exudyn_rotor.bearings.support import Support
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
+ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -95,6 +96,14 @@ class Bearing(LoadedBearing):
         Scenes need it where the spin is free.
         """
         return None
+
+    @property
+    def clearance_along(self) -> ClearanceAlong:
+        """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
+
+        Unchecked; infinity for a bearing without a clearance.
+        """
+        return self._gap
 
     def film_use(self, displacement: ArrayLike) -> float | None:
         """Return a displacement over the way to the end of the film there; None without a film.

@@ -45,7 +45,7 @@ class HeldLaw:
     """
 
     def __init__(self, bearing: Bearing) -> None:
-        self.bearing, self._gap = bearing, bearing._gap
+        self.bearing, self.clearance_along = bearing, bearing.clearance_along
         self.tangent: Tangent | None = None
         self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
         self._whole = self._law_of(bearing)
@@ -196,7 +196,7 @@ class TangentFilm(HeldLaw):
         if not self._held:
             self.seen.append(None)
             return
-        state = self.bearing.film._state(motion[:2], motion[2:], speed)
+        state = self.bearing.film.law(motion[:2], motion[2:], speed)
         gradient = np.hstack(self.tangent or tangent_of(state))
         values = *state.force.tolist(), -state.torque
         self._hold_at(motion, values, gradient if self.stiff else 0.0 * gradient)
@@ -276,7 +276,7 @@ class HeldBearing:
             return False
         if any(point is None for one in self.laws for point in one.seen):
             return False
-        return any(one.moved > _STILL * one._gap() for one in self.laws)
+        return any(one.moved > _STILL * one.clearance_along() for one in self.laws)
 
     def settle(self, speed: float) -> None:
         """Let the force go on as in lists.

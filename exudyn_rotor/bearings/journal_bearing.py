@@ -73,12 +73,12 @@ class JournalBearing(Bearing):
         return self.film.cavitation == "mass-conserving"
 
     def _reach(self, direction: np.ndarray) -> float:
-        return self.film._reach(direction, self.film.thinnest)
+        return self.film.reach_along(direction, self.film.thinnest)
 
     def _gap(self, direction: np.ndarray | None = None) -> float:
         if direction is None:
             return self.film.clearance
-        return self.film._reach(direction, 0.0)
+        return self.film.reach_along(direction, 0.0)
 
     @property
     def _law(self) -> Law:
@@ -193,10 +193,10 @@ class FilmLaw:
         distance = hypot(x, y)
         if distance <= self._most:
             return self._most
-        return self._film._reach(np.array([x, y]) / distance, self._film.thinnest)
+        return self._film.reach_along(np.array([x, y]) / distance, self._film.thinnest)
 
     def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
-        state = self._film._state(place, rate, speed, self._empty)
+        state = self._film.law(place, rate, speed, self._empty)
         self._empty = state.solution.empty
         return state
 
@@ -240,6 +240,6 @@ class RememberingLaw(FilmLaw):
     def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
         # at once where no time has passed, but for rounding
         duration = max(self._duration, _AT_ONCE * float(self._film.grid.step.min()))
-        state = self._film._state(place, rate, speed, self._empty, 1.0 / duration, self._voids)
+        state = self._film.law(place, rate, speed, self._empty, 1.0 / duration, self._voids)
         self._empty = state.solution.empty
         return state

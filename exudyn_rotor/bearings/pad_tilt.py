@@ -104,7 +104,7 @@ class _TiltingPad:
 
     def _at(self, s: float) -> FilmState:
         place = self._place - s * self._t
-        state = self._film._state(place, np.zeros(2), self._speed, self._empty)
+        state = self._film.law(place, np.zeros(2), self._speed, self._empty)
         self._empty = state.solution.empty
         return state
 

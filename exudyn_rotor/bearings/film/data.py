@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -63,6 +63,11 @@ class FilmData:
     def thinnest(self) -> float:
         """Thickness of the thinnest film that the grid still resolves [m]."""
         return _PEAK * float(self.grid.step.max()) ** 2 * self.clearance
+
+    @property
+    def reach_along(self) -> Callable[[np.ndarray, float], float]:
+        """For bearings: how far that way, of length 1 (2,), to a thickness [m], unchecked."""
+        return self._reach
 
     def _reach(self, direction: np.ndarray, thinnest: float) -> float:
         """Return how far the journal may go that way, of length 1 (2,), to a thickness [m]."""

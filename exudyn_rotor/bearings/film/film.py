@@ -7,6 +7,7 @@ isothermal, laminar, incompressible, without the oil's inertia.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,6 +105,15 @@ class OilFilm(FilmData):
                 "use 'reynolds'"
             )
         return self._state(displacement, velocity, speed)
+
+    @property
+    def law(self) -> Callable[..., FilmState]:
+        """For bearings: :meth:`state` without its checks, also of a film that conserves mass.
+
+        After place, velocity and speed it takes the cells that were empty before, to begin with,
+        the rate [1/s] at which voids grow from the content before, and that content.
+        """
+        return self._state
 
     def equilibrium(self, speed: float, load: ArrayLike) -> FilmState:
         """Return the film that carries a load, by Newton's method with the film's stiffness.

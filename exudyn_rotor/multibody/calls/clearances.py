@@ -60,7 +60,7 @@ class _Watched:
     @cached_property
     def least(self) -> float:
         """Clearance within which the journal touches nowhere [m]."""
-        return self.bearing._gap()
+        return self.bearing.clearance_along()
 
     def place(self, mbs: exudyn.MainSystem) -> np.ndarray:
         """Return the journal's place against the bearing [m], shape (2,)."""
@@ -86,7 +86,7 @@ def noting_outside(
 
     def note(item: int, x: float, y: float) -> None:
         distance = hypot(x, y)
-        if distance >= bearing._gap(np.array([x / distance, y / distance])):
+        if distance >= bearing.clearance_along(np.array([x / distance, y / distance])):
             noted.add(item)
 
     return note
@@ -150,7 +150,7 @@ def _left(mbs: exudyn.MainSystem, watched: _Watched, t: float) -> str | None:
     distance = hypot(*place.tolist())
     if distance < watched.least:
         return None
-    gap = watched.bearing._gap(place / distance)
+    gap = watched.bearing.clearance_along(place / distance)
     if distance < gap:
         return None
     return (

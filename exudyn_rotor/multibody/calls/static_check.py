@@ -34,7 +34,7 @@ Body = TypeVar("Body", bound=RotorItems)
 _ROTORS = "exudyn_rotor: rotors whose static solutions are checked"  # key in mbs.sys
 _TURNS = (1.0, 2.5)  # rad by which the rotor is turned
 _SHARE = 1e-3  # of the loads by which forces may change with the angle
-_MOST_TURNED = 1e3  # rad, by which a static solution turns a free spin at most
+_SLACK = 1e3  # by which forces left may be larger than asked of those at the start
 _NO_LOAD = 1e-6  # N, N m or N/√kg: below is round-off
 
 
@@ -94,26 +94,32 @@ def check_static(mbs: exudyn.MainSystem) -> None:
             )
 
 
-def _free_angles(mbs: exudyn.MainSystem) -> dict[tuple[int, str | None], float]:
-    """Return the angle [rad] of every rotor with a free spin, by number and name."""
-    data, angles = mbs.systemData, {}
-    q = np.atleast_1d(data.GetODE2Coordinates())
-    for number, rotor in mbs.sys[_ROTORS].items():
-        known = rotor.mark is not None and mark_of(mbs, exudyn.ObjectIndex(number)) == rotor.mark
-        if known and rotor.spin is not None and rotor.speed is None:
-            angles[number, rotor.name] = float(q[data.GetObjectLTGODE2(number)[rotor.spin]])
-    return angles
+def _loads_at_start(mbs: exudyn.MainSystem) -> float:
+    """Return the size of the forces at the start of a static solution [N]."""
+    with evaluating(mbs) as solver:
+        solver.ComputeODE2RHS(mbs)
+        return float(np.linalg.norm(solver.GetSystemResidual()))
 
 
-def _refuse_flung(before: dict, after: dict) -> None:
-    """Raise ValueError where the solver flung a spin about, which nothing but unbalance holds."""
-    for rotor, angle in after.items():
-        turned = abs(angle - before[rotor])
-        if turned > _MOST_TURNED:
-            raise ValueError(
-                f"mbs.SolveStatic: the spin of rotor {rotor[1]!r} is free, and next to nothing "
-                f"holds its angle: the solver turned it by {turned:.2g} rad; use spin=0"
-            )
+def _refuse_unbalanced(
+    mbs: exudyn.MainSystem, loads: float, settings: exudyn.SimulationSettings
+) -> None:
+    """Raise ValueError where forces are left that are no error of Newton's method.
+
+    Its relative tolerance is a share of the forces after its first iteration, where these are
+    larger than those at the start: where next to nothing holds a coordinate they may be by 1e6.
+    """
+    newton, left = settings.staticSolver.newton, mbs.sys["staticSolver"].conv.residual
+    reactions = float(np.linalg.norm(mbs.systemData.GetAECoordinates()))
+    loads = max(loads, reactions)  # where constraints move the rotor, these are its loads
+    asked = max(newton.relativeTolerance * loads, newton.absoluteTolerance)
+    if not left <= _SLACK * asked:
+        raise ValueError(
+            f"mbs.SolveStatic: forces of {left:.2g} N are left of {loads:.2g} N, so that this is "
+            "no equilibrium: the first iteration went far off, as where next to nothing holds the "
+            "angle of a free spin (use spin=0 then), or the loads are too large for one step "
+            "(staticSolver.numberOfLoadSteps)"
+        )
 
 
 def _change_with_angle(mbs: exudyn.MainSystem, number: int, rotor: _Spinning) -> float:
@@ -175,11 +181,14 @@ def _solve_static(
         return solve(mbs, *given, **options)
     if not mbs.systemIsConsistent and options.get("autoAssemble", True):
         mbs.Assemble()
-    saved, angles = saved_states(mbs), _free_angles(mbs)
+    saved, loads = saved_states(mbs), _loads_at_start(mbs)
+    settings = given[0] if given else options.get("simulationSettings")
+    known = mbs.sys.get("staticSolver")
     solved = solve(mbs, *given, **options)
     try:
         if solved:
-            _refuse_flung(angles, _free_angles(mbs))
+            if mbs.sys.get("staticSolver") is not known:  # it was stored
+                _refuse_unbalanced(mbs, loads, settings or exudyn.SimulationSettings())
             check_static(mbs)
     except ValueError:
         restore_states(mbs, saved)

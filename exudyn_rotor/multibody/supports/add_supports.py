@@ -155,6 +155,7 @@ def add_supports(
             _check_law(body, _with_law(support))
         elif isinstance(support, Support):
             _check_about_the_axis(body, support)
+    _check_base(body, base)
     seats = [Seat.of(body, support.interface, base) for support in supports]
     sensed = [_seat_of_sensor(body, support, base) for support in supports]
     added = tuple(
@@ -163,6 +164,17 @@ def add_supports(
     )
     body.supports.extend(added)
     return added
+
+
+def _check_base(body: RotorBody | FullRotorBody, base: Base | Mapping[str, Base] | None) -> None:
+    """Refuse a mapping with names that the rotor does not have."""
+    names = body.selection.source.interfaces
+    unknown = [name for name in base if name not in names] if isinstance(base, Mapping) else []
+    if unknown:
+        raise ValueError(
+            f"base: {', '.join(map(repr, unknown))} is no interface of rotor {body.name!r}; it has "
+            f"{', '.join(map(repr, names))}"
+        )
 
 
 def _with_law(bearing: Bearing) -> Bearing:

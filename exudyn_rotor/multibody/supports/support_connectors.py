@@ -118,7 +118,7 @@ def bearing_function(
 ) -> tuple[str, Callable]:
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     brakes, begin = body.formulation.has_spin, _no_memory
-    least, note = bearing._gap() ** 2, noting_outside(body.mbs, bearing)
+    least, note = bearing.clearance_along() ** 2, noting_outside(body.mbs, bearing)
     if isinstance(bearing, JournalBearing) and bearing.remembers:
         law = RememberingLaw(bearing.film, torque=brakes)
         begin = _beginning(body, law, axes)
