@@ -8,6 +8,7 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
@@ -63,7 +64,10 @@ def recommended_settings(
         Decides where nothing moves. It is a force [N], so that without `body` it is that of a rotor
         of a metre and some kilograms: the forces of a rotor of a millimetre are below it, and
         contacts and films would not be iterated. With a `body` of the mass m and the length L it is
-        less by the share ``m L`` of 1 kg m, as forces are that accelerate it through its length.
+        less by the share ``m L`` of 1 kg m, as forces are that accelerate it through its length,
+        and not below what rounding in Exudyn's positions leaves of the forces of linear supports:
+        ten times 2.2e-16 of their stiffness and the distance from the origin. Newton's method ends
+        nowhere below that, and Exudyn takes ever smaller steps. Add the supports before.
     ``newton.numericalDifferentiation.minimumCoordinateSize`` : 0.01, times L/1 m where that is less
         With a `body` only. Exudyn differentiates Python functions by a step of 1e-7 of this [m],
         which has to be small beside the depth of a contact.
@@ -107,11 +111,26 @@ def recommended_settings(
     if body is not None:
         length, mass = _size(body), body.motion.invariants.mass
         newton.absoluteTolerance *= min(1.0, mass * length)
+        newton.absoluteTolerance = max(newton.absoluteTolerance, _rounding(body))
         newton.numericalDifferentiation.minimumCoordinateSize = _COORDINATE * min(1.0, length)
     if isinstance(body, FullRotorBody):
         settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         newton.relativeTolerance = max(_OF_FULL * tolerance, _TIGHTEST)
     return settings
+
+
+def _rounding(body: RotorItems) -> float:
+    """Return what rounding in positions leaves of the forces of linear supports, tenfold [N]."""
+    place = body.plan.setup.placement
+    linear = [each.support for each in body.supports if isinstance(each.support, Support)]
+    matrices = [support.matrices(place.speed)[0] for support in linear]
+    across, about = (
+        max((np.linalg.norm(K[rows, rows], 2) for K in matrices), default=0.0)
+        for rows in (slice(3), slice(3, 6))
+    )
+    ends = [body.axis.project(one.reference) for one in body.selection.source.interfaces.values()]
+    far = max((np.linalg.norm(place.position + place.rotation @ end) for end in ends), default=0.0)
+    return 10.0 * float(np.finfo(float).eps * max(far * across, about))
 
 
 def _size(body: RotorItems) -> float:

@@ -123,6 +123,13 @@ ENERGY = [
         ("small rotors iterate as large ones", "*= min(1.0, mass * length)", "*= 1.0"),
     ),
     *mutations(
+        "multibody/solver_settings.py",
+        "test_far_scenes.py",
+        ("iterated below rounding", "newton.absoluteTolerance, _rounding(body)", "0.0, 1e-12"),
+        ("rounding at the origin alone", "place.position + place.rotation @ end", "end"),
+        ("rounding of tilts left out", "max(far * across, about)", "far * across"),
+    ),
+    *mutations(
         "multibody/supports/turning_base.py",
         "test_friction_on_bases.py",
         ("a turning bore leaves the spin", "angle, speed - w)", "angle, speed)"),

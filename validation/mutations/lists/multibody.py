@@ -221,8 +221,8 @@ MULTIBODY = [
         "test_clearances.py",
         (
             "journals leave a film unseen",
-            "self.film._reach(direction, 0.0)",
-            "self.film._reach(direction, -1.0)",
+            "self.film.reach_along(direction, 0.0)",
+            "self.film.reach_along(direction, -1.0)",
         ),
     ),
     *mutations(
