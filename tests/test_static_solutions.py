@@ -52,3 +52,12 @@ def test_static_solution_by_a_prescribed_displacement_stays():
     mbs.Assemble()
     assert static(mbs)
     assert mbs.systemData.GetAECoordinates() == pytest.approx([2e4])
+
+
+def test_a_full_body_is_told_of_the_reduced_one():
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rings(), spin=40.0, gravity=[0.0, -GRAVITY, 0.0])
+    add_supports(body, [Support(name, 1e6 * np.eye(3)) for name in ("left", "right")])
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"with the reduced rotor, .* steady_state\(body\) finds"):
+        static(mbs)

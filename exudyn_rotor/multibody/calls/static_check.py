@@ -24,6 +24,7 @@ from exudyn_rotor.multibody.evaluation import (
     restore_states,
     saved_states,
 )
+from exudyn_rotor.multibody.full.full_body import FullRotorBody
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.wrapping import wraps_method
@@ -53,6 +54,8 @@ class _Spinning:
         The formulation's unknowns among these coordinates, but for θ.
     speed : float or None
         Prescribed rate of the coordinate of θ at the start [rad/s]; None for a free spin.
+    full : bool
+        Whether it has all nodes, of which there is no steady state.
     """
 
     name: str | None
@@ -60,6 +63,7 @@ class _Spinning:
     spin: int | None
     unknowns: tuple[int, ...]
     speed: float | None
+    full: bool
 
 
 def watched(body: Body) -> Body:
@@ -72,7 +76,12 @@ def watched(body: Body) -> Body:
     speed = None if form.has_spin else sign * start_values(form.spin, "spin")[1]
     known = body.mbs.sys.setdefault(_ROTORS, {})
     known[int(body.objects["physics"])] = _Spinning(
-        body.name, body.mark, spin, tuple(int(i) for i in unknowns), speed
+        body.name,
+        body.mark,
+        spin,
+        tuple(int(i) for i in unknowns),
+        speed,
+        isinstance(body, FullRotorBody),
     )
     return body
 
@@ -84,13 +93,16 @@ def check_static(mbs: exudyn.MainSystem) -> None:
             continue
         share = _change_with_angle(mbs, number, rotor)
         if share > _SHARE:
+            before = (
+                "with the reduced rotor, add_rotor(mbs, rotor.reduce(…)), " if rotor.full else ""
+            )
             raise ValueError(
                 f"mbs.SolveStatic: rotor {rotor.name!r} spins, and {100.0 * share:.2g} % of the "
                 "loads on it change with its angle (gravity across the axis, forces that stand "
                 "still, supports that are not alike in all directions), so that this static "
-                "solution would hold at one angle only. steady_state(body) finds the motion, "
-                "body.start_from(steady.state()) starts a run from it; for the rotor at rest, "
-                "use spin=0"
+                f"solution would hold at one angle only; {before}steady_state(body) finds the "
+                "motion, body.start_from(steady.state()) starts a run from it; for the rotor at "
+                "rest, use spin=0"
             )
 
 

@@ -115,6 +115,8 @@ MULTIBODY = [
         "test_static_solutions.py",
         ("forces left, of any size", "if not left <= _SLACK * asked:", "if left < 0.0:"),
         ("forces left in any equilibrium", "<= _SLACK * asked", "<= 1e-9 * asked"),
+        ("reactions of constraints no loads", "loads = max(loads, reactions)", "loads += 0.0"),
+        ("full bodies sent to steady_state", "if rotor.full else", "if False else"),
     ),
     *mutations(
         "multibody/calls/static_check.py",
