@@ -100,6 +100,7 @@ def draw_surface(
     ax: Axes3D | None = None,
     *,
     room: ArrayLike | None = None,
+    undeformed: ArrayLike | None = None,
 ) -> Axes3D:
     """Draw nodal values on a surface.
 
@@ -118,6 +119,9 @@ def draw_surface(
         default.
     room : array_like, shape (p, 3), optional
         Points between which the picture reaches, where that is more than the surface [m].
+    undeformed : array_like, shape (n, 3), optional
+        Nodes of the body at rest, whose extents a picture without axes tells, where `positions` are
+        displaced ones [m].
 
     Raises
     ------
@@ -147,6 +151,10 @@ def draw_surface(
     # edges of the faces' own colour close the gaps between them
     faces = Poly3DCollection(positions[corners], facecolors=colors, edgecolors=colors, lw=0.3)
     points = positions[np.unique(corners)]
+    body = points
+    if undeformed is not None:
+        body = checks.array(undeformed, "undeformed", "m", shape=positions.shape)
+        body = body[np.unique(corners)]
     if room is not None:
         points = np.vstack([points, checks.array(room, "room", "m", shape=(None, 3))])
     if ax is not None:
@@ -154,7 +162,7 @@ def draw_surface(
         ax.add_collection3d(faces)
         _frame(ax, points)
         if _is_long(points):
-            ax.set_title(_extents(points), fontsize="small")
+            ax.set_title(_extents(body, points), fontsize="small")
         for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
             axis.labelpad = 8.0  # given axes are small
         ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
@@ -164,7 +172,7 @@ def draw_surface(
     ax.add_collection3d(faces)
     place = _fit(ax, *_frame(ax, points))
     if _is_long(points):
-        made.text(0.02, 0.03, _extents(points))
+        made.text(0.02, 0.03, _extents(body, points))
     made.colorbar(mapped, cax=made.add_axes(place), label=label)
     pyplot.sca(ax)
     return ax
@@ -225,9 +233,10 @@ def _is_long(points: np.ndarray) -> bool:
     return width < length / _LONG
 
 
-def _extents(points: np.ndarray) -> str:
-    low, high = points.min(axis=0), points.max(axis=0)
-    longest = np.argmax(high - low)
+def _extents(body: np.ndarray, points: np.ndarray) -> str:
+    """Return where a body begins and ends that lies across a picture of `points`."""
+    low, high = body.min(axis=0), body.max(axis=0)
+    longest = np.argmax(np.ptp(points, axis=0))
     others = [f"{high[i] - low[i]:.4g} m in {'xyz'[i]}" for i in range(3) if i != longest]
     along = f"{'xyz'[longest]} from {low[longest]:.4g} m to {high[longest]:.4g} m"
     return f"{along}, left to right; {', '.join(others)}"

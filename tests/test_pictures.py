@@ -1,5 +1,6 @@
 """Shapes of modes and responses, their files; spectra and orbits of runs."""
 
+import re
 from functools import cache
 
 import numpy as np
@@ -131,6 +132,16 @@ def test_pictures_colour_forward_and_backward():
         ax = modes().plot(index)
         assert {line.get_color() for line in ax.lines[:-1]} == {color}
         pyplot.close(ax.figure)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.04])
+def test_captions_tell_the_extents_of_the_rotor_at_rest(share):
+    """Of a shaft along z from 0 to 0.5 m and a disc of 0.3 m, however large its motion is drawn."""
+    figure = modes().plot(3, share=share).figure
+    words = [text.get_text() for text in figure.texts]
+    sizes = r"z from 0 m to 0\.5 m, left to right; 0\.(3|29\d*) m in x, 0\.(3|29\d*) m in y"
+    assert any(re.fullmatch(sizes, line) for line in words), words
+    pyplot.close(figure)
 
 
 @pytest.mark.parametrize("frame", ["inertial", "rotor"])

@@ -39,6 +39,7 @@ def draw_motion(
     sizes: np.ndarray,
     orbits: Sequence[Orbit],
     room: np.ndarray,
+    undeformed: np.ndarray,
     title: str,
     ax: Axes3D | None,
 ) -> Axes3D:
@@ -48,7 +49,8 @@ def draw_motion(
     :func:`exudyn_rotor.plotting.draw_surface`.
     """
     new = ax is None
-    ax = draw_surface(positions, triangles, sizes, "displacement / largest", ax, room=room)
+    given = {"room": room, "undeformed": undeformed}
+    ax = draw_surface(positions, triangles, sizes, "displacement / largest", ax, **given)
     ax.collections[-1].set(alpha=_ALPHA, linewidth=0.0)
     ax.computed_zorder = False
     for orbit in orbits:

@@ -184,7 +184,7 @@ class MotionShapes(Result):
         )
         places = self.positions + scale * moved
         room = np.array([low, high])
-        return draw_motion(places, self.triangles, sizes, orbits, room, title, ax)
+        return draw_motion(places, self.triangles, sizes, orbits, room, self.positions, title, ax)
 
     def animate(
         self,

@@ -4,6 +4,20 @@ from validation.mutations.mutation import mutations
 
 PICTURES = [
     *mutations(
+        "plotting.py",
+        "test_pictures.py::test_captions_tell_the_extents_of_the_rotor_at_rest",
+        (
+            "the caption tells the size of the picture",
+            "low, high = body.min(axis=0), body.max(axis=0)",
+            "low, high = points.min(axis=0), points.max(axis=0)",
+        ),
+        (
+            "the caption tells the size of the displaced rotor",
+            "body = body[np.unique(corners)]",
+            "body = points",
+        ),
+    ),
+    *mutations(
         "pictures/motion_shapes.py",
         "test_pictures.py::test_orbits_of_whirl_are_circles_of_their_sense "
         "test_pictures.py::test_pictures_colour_forward_and_backward",
