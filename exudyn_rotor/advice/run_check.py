@@ -85,7 +85,8 @@ def check_run(
     proposal : Proposal, optional
         Adds the check of the speed range, and gives the accuracy.
     accuracy : float, optional
-        Relative error of the motion; the proposal's, or 1e-3.
+        Relative error of periods, and of motion that repeats itself; the proposal's, or 1e-3. Free
+        vibrations go out of phase by more, see the notes.
     limits : mapping of str to float, optional
         Limits by name of a check in place of the defaults.
     warn : bool
@@ -109,8 +110,15 @@ def check_run(
 
     ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
     the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
-    what a resonance makes of the modes' error, how forces of stiff supports change with it, how
-    missing modes ring after a sudden start, and how damping delays the static stress of a fast one.
+    what a resonance makes of the modes' error, how missing modes ring after a sudden start, and how
+    damping delays the static stress of a fast one.
+
+    No row adds up errors over a run. A free vibration, such as a sudden start leaves where damping
+    is weak, goes out of phase in every period: by about 2π times the row ``step``, and by about π
+    times ``displacement``, for its frequency errs by half of that. Its instants then err by this
+    phase times its amplitude; motion forced by the spin or by loads does not. To compare instants,
+    begin in the steady state (``body.start_from(steady_state(body).state())``), wait for the start
+    to die down, or ask for an accuracy better by 2π times the number of periods.
 
     ===================  =======  ==================================================================
     name                 limit    meaning

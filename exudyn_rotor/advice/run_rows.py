@@ -113,7 +113,7 @@ def rows(
         yield name, meaning, float(measure(measures)), advice
     yield (
         "step",
-        "relative error of the motion's period",
+        "relative error of every period; free vibrations go out of phase by 2π times that in each",
         measures.step_error(),
         f"the motion has {measures.frequency:.4g} rad/s on average, in its own coordinates; take "
         "smaller steps, whose square the error follows, or start without a jump if it rings",

@@ -4,6 +4,15 @@ from validation.mutations.mutation import mutations
 
 ADVICE = [
     *mutations(
+        "advice/run_measures.py",
+        "test_step_phase.py",
+        (
+            "error of half a period",
+            "float(PERIOD_ERROR * solver.step**2",
+            "float(0.5 * PERIOD_ERROR * solver.step**2",
+        ),
+    ),
+    *mutations(
         "advice/candidate.py",
         "test_advice_bearings.py",
         (
