@@ -115,10 +115,38 @@ def test_every_kind_has_the_exponents_of_its_list(kind):
     assert apart(*models(KINDS[kind]), SPEED) < 1e-6
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "tilts"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_on_a_block_with_a_free_spin(kind):
-    """Moments of tilts turn with the block in a scene, see docs/theory/limits.md."""
+    """Supports against tilts differed by 1.7e-6 of the speed."""
     assert apart(*models(KINDS[kind], BLOCK, free=True), SPEED) < 1e-6
+
+
+TILTING = {
+    "alike": {"tilt_stiffness": 2e4 * np.eye(2)},
+    "crossed": {"tilt_stiffness": TILTS},
+    "rotor frame": {"frame": "rotor", "tilt_stiffness": TILTS, "tilt_damping": TILT_LOSSES},
+    "table": {"tilt_stiffness": ([0.0, 900.0], [TILTS, 2.0 * TILTS.T])},
+}
+
+
+@pytest.mark.parametrize("kind", TILTING)
+def test_static_moments_on_a_block_leave_the_exponents(kind):
+    """20 times the weight: they differed by 2e-6 to 7e-6 of the speed, in proportion to it."""
+
+    def make(name, load):
+        return [Support(name, 0.0, 0.0, **TILTING[kind]), Support(name, 5e6, LOSSES)]
+
+    in_scene, in_list = models(make, BLOCK, gravity=4.0 * HEAVY)
+    before = _tilt_functions(in_scene)
+    assert apart(in_scene, in_list, SPEED) < 1e-6
+    assert _tilt_functions(in_scene) == before
+
+
+def _tilt_functions(model):
+    """Return who evaluates every support's moment."""
+    mbs, name = model.body.mbs, "springForceTorqueUserFunction"
+    items = [mbs.GetObject(number) for one in model.body.supports for number in one.objects]
+    return [str(item[name]) for item in items if name in item]
 
 
 @pytest.mark.parametrize("base", [None, BLOCK], ids=["ground", "block"])

@@ -206,8 +206,9 @@ def tilt_connector(
     about_axis = np.any(K[2]) or np.any(K[:, 2])
     follows = _follows_the_spin(support, ("tilt_stiffness", "tilt_damping"))
     if about_axis or follows or (np.any(D) and seat.base is not None):
-        tilt_of_base = None if seat.base is None else _tilt_reader(base, seat.axes)
-        item.springForceTorqueUserFunction = _varying_torque(body, support, tilt_of_base)
+        item.springForceTorqueUserFunction = varying_torque(
+            body, support, None if seat.base is None else base
+        )
         return mbs.AddObject(item), PYTHON
     if not np.any(D) and np.array_equal(K[:2, :2], K[0, 0] * np.eye(2)):
         item.stiffness = np.kron(np.diag([0.0, 1.0]), K)
@@ -224,30 +225,43 @@ def tilt_connector(
     return mbs.AddObject(item), SYMBOLIC
 
 
-def _varying_torque(body: RotorItems, support: Support, tilt_of_base: Callable | None) -> Callable:
+def varying_torque(body: RotorItems, support: Support, base: exudyn.MarkerIndex | None) -> Callable:
+    """Return the user function of moments against tilts on a base's marker, or on the ground."""
     spin = spin_reader(body)
-    turns = support.frame == "rotor"
+    tilt_of_base = None if base is None else _tilt_reader(base, body.standing_axes)
 
     def torque(mbs, t, item, u, angles, v, omega, stiffness, damping, r0, r1, offset):
         angle, speed = spin(mbs)
         support.check_range(speed)
-        K, D = (X[3:, 3:] for X in support.matrices(speed))
         rate = np.array(_tilt_rate(angles, omega))
         if tilt_of_base is not None:
             a, b = tilt_of_base(mbs)
             rate += omega[2] * np.array([-b, a, 0.0])
-        twist = (angles[2] - angle + np.pi) % (2.0 * np.pi) - np.pi
-        tilt = np.array([angles[0], angles[1], twist])
-        if not turns:
-            moment = K @ tilt + D @ rate
+        tilt = np.array([angles[0], angles[1], twist_of(angles, angle)])
+        moment = moment_of(support, tilt, rate, angle, speed)
+        if support.frame != "rotor":
             moment[2] += moment[1] * tilt[0] - moment[0] * tilt[1]
-            return [0.0, 0.0, 0.0, *moment.tolist()]
-        R = axial_rotation(angle)
-        tilt, rate = tilt @ R, rate @ R
-        rate -= speed * np.array([-tilt[1], tilt[0], 1.0])
-        return [0.0, 0.0, 0.0, *(R @ (K @ tilt + D @ rate)).tolist()]
+        return [0.0, 0.0, 0.0, *moment.tolist()]
 
     return torque
+
+
+def moment_of(
+    support: Support, tilt: np.ndarray, rate: np.ndarray, angle: float, speed: float
+) -> np.ndarray:
+    """Return stiffness and damping times tilts (3,) [rad] and their rates, along (n1, n2, e)."""
+    K, D = (X[3:, 3:] for X in support.matrices(speed))
+    if support.frame != "rotor":
+        return K @ tilt + D @ rate
+    R = axial_rotation(angle)
+    tilt, rate = tilt @ R, rate @ R
+    rate -= speed * np.array([-tilt[1], tilt[0], 1.0])
+    return R @ (K @ tilt + D @ rate)
+
+
+def twist_of(angles: Numbers, angle: float) -> float:
+    """Return by how much a marker turns about the axis beyond the spin angle [rad]."""
+    return float((angles[2] - angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def _tilt_reader(base: exudyn.MarkerIndex, axes: np.ndarray) -> Callable:

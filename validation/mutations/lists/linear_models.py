@@ -325,6 +325,14 @@ LINEAR_MODELS = [
         ),
     ),
     *mutations(
+        "multibody/supports/held_tilts.py",
+        "test_kinds_in_scenes_and_lists.py::test_static_moments_on_a_block_leave_the_exponents",
+        ("static moments turn with the block", "if not self._held:", "if True:"),
+        ("tilts of the block forgotten", "first - second", "first"),
+        ("rates of tilts the other way", "+ 2.0 * speed", "- 2.0 * speed"),
+        ("moments stay held", "_FUNCTION, function)", "_FUNCTION, each.torque)"),
+    ),
+    *mutations(
         "multibody/supports/linear_laws.py",
         "test_rolling_bearing.py::test_a_run_at_a_speed_starts_near_and_turns_its_cage",
         ("cages stay held", "        let(False)", "        let(True)"),

@@ -20,6 +20,7 @@ from exudyn_rotor.bearings.held_law import (
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.supports.held_tilts import HeldTilts, held_tilts
 from exudyn_rotor.multibody.supports.linear_laws import linear_laws
 from exudyn_rotor.multibody.supports.magnetic_connectors import TangentMagnets, tangent_magnets
 from exudyn_rotor.theory.formulation import ConstantSpeed
@@ -46,9 +47,10 @@ class Probe:
         solver: exudyn.MainSolverStatic,
         bearings: tuple[HeldBearing, ...],
         magnets: tuple[TangentMagnets, ...],
+        tilts: tuple[HeldTilts, ...],
     ) -> None:
         self.scene, self.speed, self.solver = scene, speed, solver
-        self.bearings, self.magnets = bearings, magnets
+        self.bearings, self.magnets, self.tilts = bearings, magnets, tilts
         self.mbs = scene.body.mbs
         self.laws = [law for bearing in bearings for law in bearing.laws]
         self.films = [law for law in self.laws if isinstance(law, TangentFilm)]
@@ -107,7 +109,7 @@ class Probe:
 
     def at_rest(self) -> Probe:
         """Return the same at the speed 0."""
-        return Probe(self.scene, 0.0, self.solver, self.bearings, self.magnets)
+        return Probe(self.scene, 0.0, self.solver, self.bearings, self.magnets, self.tilts)
 
     def forget(self) -> None:
         """Forget where bearings have been seen."""
@@ -151,7 +153,7 @@ class Probe:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Hold laws of bearings, and what carries pads, from the next state on."""
+        """Hold laws of bearings and supports, and what carries pads, from the next state on."""
         self._hold(True)
         try:
             yield
@@ -160,7 +162,7 @@ class Probe:
 
     def _hold(self, held: bool) -> None:
         self._held, self._carried = held, None
-        for law in (*self.laws, *self.magnets):
+        for law in (*self.laws, *self.magnets, *self.tilts):
             law.hold(held)
 
     def constraints(self, theta: float) -> np.ndarray:
@@ -283,9 +285,10 @@ def probing(scene: SceneCoordinates, speed: float, cage: float | None = None) ->
     with (
         linear_laws(body, cage) as bearings,
         tangent_magnets(body) as magnets,
+        held_tilts(body) as tilts,
         evaluating(body.mbs) as solver,
     ):
-        yield Probe(scene, speed, solver, bearings, magnets)
+        yield Probe(scene, speed, solver, bearings, magnets, tilts)
 
 
 def _carriers_of_pads(scene: SceneCoordinates) -> np.ndarray:
