@@ -286,6 +286,19 @@ def test_a_nearly_isotropic_support_takes_hills_way_to_the_same_result():
         )
 
 
+@pytest.mark.parametrize("split", [1e-10, 1e-9, 1e-8])
+def test_nearly_circular_motions_are_one_forward_and_one_backward(split):
+    """Seen from a rotor both planes hold ν − Ω and ν + Ω: two motions, which have one of each."""
+    nu, speeds = 100.0, np.linspace(7.0, 93.0, 8)
+    for axes in (np.eye(2), np.array([[0.6, -0.8], [0.8, 0.6]])):
+        stiffness = np.eye(3) * 9e4
+        stiffness[:2, :2] = nu**2 * axes @ np.diag([1.0, 1.0 + split]) @ axes.T
+        found = campbell(point_mass(), speeds, supports=[Support("at", stiffness)], frame="rotor")
+        for speed, seen in zip(speeds, found.frequencies_rotor, strict=True):
+            expected = np.sort([nu - speed, nu + speed, 300.0])
+            np.testing.assert_allclose(seen, expected, rtol=nu * split)
+
+
 @pytest.mark.parametrize("ratio", [1.0, 1.3], ids=["constant", "periodic"])
 def test_campbell_and_stability_have_the_same_exponents(ratio):
     """Each to its tolerance, 1e-10 of Ω or of |λ|; real pairs are known by their less damped half.

@@ -245,15 +245,22 @@ def _apart(
     values = merged(solution.values, solution.states, resolution)
     lengths = np.linalg.norm(solution.shapes.reshape(-1, len(values)), axis=0)
     shapes = solution.shapes / lengths
-    for group in repeated(values, resolution):
+    groups = list(repeated(values, resolution))
+    for group in groups:
         mixed = min(resolution, _MIXED * solution.bounds[group].max())
         for few in (group[part] for part in repeated(values[group], mixed)):
             shapes[:, :, few] = _unmixed(shapes[:, :, few], orders)
     if solution.pairs is not None:
         return values, shapes, *solution.pairs
     center = np.flatnonzero(orders == 0)[0]
-    share = np.sum(np.abs(shapes[center]) ** 2, axis=0)
-    spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(shapes) ** 2)
+    # motions in two planes at nearly one frequency are ranked as the waves that they hold together;
+    # in ascending order, so that all copies of a family rank as copies of one wave
+    waves = shapes.copy()
+    for group in groups:
+        ascending = group[np.argsort(values[group].imag, kind="stable")]
+        waves[:, :, ascending] = _unmixed(shapes[:, :, ascending], orders)
+    share = np.sum(np.abs(waves[center]) ** 2, axis=0)
+    spread = np.einsum("h,hcj->j", np.abs(orders), np.abs(waves) ** 2)
     upper = np.flatnonzero(values.imag >= 0.0)
     ranked = upper[np.lexsort((spread[upper], -np.round(share[upper], 6)))]
     pairs = one_of_each_pair(values, shapes, ranked, solution.step * speed, resolution)
