@@ -87,6 +87,10 @@ class GrowthAt:
         order = descending(fold(modes.values, growth.base))
         return growth._replace(motions=modes.columns(order))
 
+    def system(self, speed: float) -> PeriodicSystem | None:
+        """Return the equations; None of a large rotor."""
+        return self.space.at(speed) if isinstance(self.space, WholeSpace) else None
+
     def at_all(self, speeds: Sequence[float]) -> list[Growth]:
         """Return the growth at speeds; eigenproblems in threads where any may make equations."""
         if isinstance(self.space, WholeSpace) and self.space.can_be_sent:

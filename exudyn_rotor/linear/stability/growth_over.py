@@ -13,6 +13,7 @@ from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.basis.basis_error import BasisError
 from exudyn_rotor.linear.models.linear_model import Target, linear_model
 from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, check_options, held_space
 
 Supports = Sequence[Support] | Support
@@ -56,6 +57,10 @@ class GrowthOver:
         """Return the growth, with the names of the motions if asked for."""
         raise NotImplementedError
 
+    def system(self, value: float) -> PeriodicSystem | None:
+        """Return None: growths alone are known."""
+        return None
+
     def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
         """Return None: a second growth tells the rates of exponents."""
         return None
@@ -97,6 +102,9 @@ class OverSpeed(GrowthOver):
 
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)
+
+    def system(self, value: float) -> PeriodicSystem | None:
+        return self.task.system(value)
 
     def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
         return self.task.rates(growth, value, step)
@@ -141,10 +149,17 @@ class OverParameter(GrowthOver):
         return self.options.method, self.options.tolerance
 
     def growth(self, value: float, named: bool = False) -> Growth:
-        chosen, model = self.options, self._model(value)
-        space = held_space(model, self.speed, chosen.modes, chosen.residual)
+        model = self._model(value)
         content = WhirlContent.of(model) if named else None
-        return GrowthAt(space, chosen.method, chosen.tolerance, content)(self.speed)
+        return self._task(model, content)(self.speed)
+
+    def system(self, value: float) -> PeriodicSystem | None:
+        return self._task(self._model(value)).system(self.speed)
+
+    def _task(self, model: LinearModel, content: WhirlContent | None = None) -> GrowthAt:
+        chosen = self.options
+        space = held_space(model, self.speed, chosen.modes, chosen.residual)
+        return GrowthAt(space, chosen.method, chosen.tolerance, content)
 
     def basis(self, value: float) -> tuple[BasisError, float]:
         return BasisError.of(self._model(value), self.accuracy, held=True), self.speed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, pairwise
 from typing import Protocol
@@ -11,8 +11,10 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from exudyn_rotor.linear.periodic.periodic_system import fold
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+from exudyn_rotor.linear.stability.between_samples import to_look_at
 from exudyn_rotor.linear.stability.growth import Growth
+from exudyn_rotor.linear.stability.growth_scan import GrowthScan
 
 ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
 # motions that decay faster than this share of |λ| or Ω are not led into instability by another
@@ -30,6 +32,8 @@ _PLACES = 65  # where the cubic is looked at
 _MET = 0.1
 # share of the last change of a root that the next one is where secants meet
 _MEETS = 0.2
+# values between two samples at which equations are made, the ends too
+_EQUATIONS = 5
 # of the range: by which rates of change are told; changes below a share of |λ| are not
 STEP, _NOISE = 1e-5, 1e-5
 
@@ -39,6 +43,9 @@ class Made(Protocol):
 
     def growth(self, value: float) -> Growth:
         """Return the growth at a value of the parameter."""
+
+    def system(self, value: float) -> PeriodicSystem | None:
+        """Return the equations at a value; None of a large rotor, which has no dense ones."""
 
     def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
         """Return the change of the exponents at a value; None where a second growth tells it."""
@@ -173,7 +180,23 @@ class Search:
 
     def refine(self) -> None:
         """Look between the samples for ranges of the other verdict."""
-        for low, high in pairwise(sorted(self.known)):
+        gaps = list(pairwise(sorted(self.known)))
+        self._by_tangents(gaps)
+        for low, high in gaps:
+            self._scan(low, high)
+
+    def _scan(self, low: float, high: float) -> None:
+        """Look where growths at many values, if equations turn, say that another verdict is."""
+        values = np.linspace(low, high, _EQUATIONS).tolist()
+        systems = [self.made.system(value) for value in values]
+        if GrowthScan.can(systems):
+            known = {at: self.unstable(at) for at in list(self.known) if low <= at <= high}
+            for value in to_look_at(GrowthScan(values, systems), (low, high), known):
+                self.at(value)
+
+    def _by_tangents(self, gaps: Sequence[tuple[float, float]]) -> None:
+        """Look between samples of one verdict where exponents and their rates say so."""
+        for low, high in gaps:
             if self.unstable(low) != self.unstable(high):
                 continue
             if self.unstable(low):

@@ -66,6 +66,31 @@ LINEAR_STABILITY = [
         ),
     ),
     *mutations(
+        "linear/stability/growth_scan.py",
+        "test_between_samples.py::test_growths_of_a_scan_are_those_of_the_exponents",
+        ("commutator with the wrong sign", "- np.sqrt(3.0) / 12.0", "+ np.sqrt(3.0) / 12.0"),
+        ("exponential of second order", "X @ X / 12.0", "0.0 * X"),
+        ("waves that turn backwards", "*-2.0 * np.sin(turned)", "*2.0 * np.sin(turned)"),
+        ("damping with the wrong sign", '-at["K"], -at["D"]', '-at["K"], at["D"]'),
+        ("growth of a turn", "self.step * self.speeds(values)", "self.speeds(values)"),
+    ),
+    *mutations(
+        "linear/stability/between_samples.py",
+        "test_between_samples.py",
+        ("peaks are not seen closer", "_NEARER, _TIMES = 8, 2", "_NEARER, _TIMES = 8, 0"),
+        (
+            "lows of unstable ranges are not seen closer",
+            "np.where(growths > 0.0, -growths, growths)",
+            "growths",
+        ),
+        ("ranges known are looked at", "if not known.keys()", "if known.keys()"),
+    ),
+    *mutations(
+        "linear/stability/threshold_search.py",
+        "test_between_samples.py::test_ranges_between_samples_are_those_of_monodromy_matrices",
+        ("no scan between samples", "if GrowthScan.can(systems):", "if False:"),
+    ),
+    *mutations(
         "linear/stability/threshold_search.py",
         "test_stability.py test_stability_names.py",
         (
