@@ -18,7 +18,7 @@ from exudyn_rotor.linear.periodic.fundamental import state_matrix
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.threads import one_thread
 
-_PHASE, _FASTEST = 0.4, 30.0  # of a step [rad], and times Ω up to which frequencies are followed
+_PHASE, _FASTEST = 0.4, 15.0  # of a step [rad], and times Ω up to which frequencies are followed
 _ENTRIES = 2_000_000  # of matrices that are made at once
 
 

@@ -33,7 +33,7 @@ _MET = 0.1
 # share of the last change of a root that the next one is where secants meet
 _MEETS = 0.2
 # values between two samples at which equations are made, the ends too
-_EQUATIONS = 5
+_EQUATIONS = 3
 # of the range: by which rates of change are told; changes below a share of |λ| are not
 STEP, _NOISE = 1e-5, 1e-5
 
@@ -69,6 +69,7 @@ class Search:
     span: float
     known: dict[float, Growth] = field(default_factory=dict)
     rates: dict[float, np.ndarray] = field(default_factory=dict)
+    systems: dict[float, PeriodicSystem | None] = field(default_factory=dict)  # of one gap
     most: float = np.inf  # values at which motions that meet are followed
 
     def at(self, value: float) -> Growth:
@@ -187,8 +188,11 @@ class Search:
 
     def _scan(self, low: float, high: float) -> None:
         """Look where growths at many values, if equations turn, say that another verdict is."""
+        if not (self.at(low).base > 0.0 and self.at(high).base > 0.0):
+            return
         values = np.linspace(low, high, _EQUATIONS).tolist()
-        systems = [self.made.system(value) for value in values]
+        self.systems = {at: self.systems.get(at) or self.made.system(at) for at in values}
+        systems = list(self.systems.values())
         if GrowthScan.can(systems):
             known = {at: self.unstable(at) for at in list(self.known) if low <= at <= high}
             for value in to_look_at(GrowthScan(values, systems), (low, high), known):
