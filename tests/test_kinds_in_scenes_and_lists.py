@@ -131,7 +131,7 @@ TILTING = {
 
 @pytest.mark.parametrize("kind", TILTING)
 def test_static_moments_on_a_block_leave_the_exponents(kind):
-    """20 times the weight: they differed by 2e-6 to 7e-6 of the speed, in proportion to it."""
+    """20 times the weight: they differed by up to 7e-6 of the speed, in proportion to it."""
 
     def make(name, load):
         return [Support(name, 0.0, 0.0, **TILTING[kind]), Support(name, 5e6, LOSSES)]
