@@ -320,7 +320,7 @@ def test_refused_calls_leave_the_scene_as_it_was():
         (ValueError, "has no place and orientation", (body, good, point)),
         (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
         (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
-        (ValueError, "base: 'rigth' is no interface", (body, good, {"left": None, "rigth": None})),
+        (ValueError, "base: 'disc' is no interface", (body, good, {"left": None, "disc": None})),
     ):
         with pytest.raises(error, match=match):
             add_supports(*arguments)
