@@ -103,8 +103,13 @@ class HeldLaw:
 
     def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
         """Hold the law at a place and velocity (4,)."""
-        gradient = None if self.tangent is None else np.hstack(self.tangent)
+        tangent = self.tangent or self._tangent_at(motion, angle, speed)
+        gradient = None if tangent is None else np.hstack(tangent)
         self._hold_at(motion, self._whole(*motion.tolist(), angle, speed), gradient)
+
+    def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent | None:
+        """Return the tangent at a place and velocity (4,); None where the law itself goes on."""
+        return None
 
     def _hold_at(
         self, motion: np.ndarray, values: Sequence[float], gradient: np.ndarray | None
@@ -127,13 +132,7 @@ class TangentShortFilm(HeldLaw):
 
     bearing: ShortFilmBearing
 
-    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
-        """Take the tangent at a place and velocity (4,); beyond the film the law goes on."""
-        values = self._whole(*motion.tolist(), angle, speed)
-        tangent = self.tangent or self._tangent_at(motion, speed)
-        self._hold_at(motion, values, None if tangent is None else np.hstack(tangent))
-
-    def _tangent_at(self, motion: np.ndarray, speed: float) -> Tangent | None:
+    def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent | None:
         return self.bearing._law_tangent(motion, speed)
 
 
@@ -157,8 +156,9 @@ class TangentDamper(TangentShortFilm):
         self._rests, damper = rests, self.bearing
         self._whole = damper._law_of_small_motions if rests else self._law_of(damper)
 
-    def _tangent_at(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        return super()._tangent_at(np.r_[motion[:2], 0.0, 0.0] if self._rests else motion, speed)
+    def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent | None:
+        held = np.r_[motion[:2], 0.0, 0.0] if self._rests else motion
+        return super()._tangent_at(held, angle, speed)
 
 
 class TangentFilm(HeldLaw):
@@ -226,12 +226,9 @@ class TangentContacts(HeldLaw):
 
     bearing: RollingBearing
 
-    def _begin(self, motion: np.ndarray, angle: float, speed: float) -> None:
-        """Hold the law at a place and velocity (4,)."""
+    def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent:
         stiffness = contacts(self.bearing, motion[:2], angle)[2]
-        tangent = self.tangent or (stiffness, self.bearing.damping * np.eye(2))
-        values = self._whole(*motion.tolist(), angle, speed)
-        self._hold_at(motion, values, np.hstack(tangent))
+        return stiffness, self.bearing.damping * np.eye(2)
 
 
 def tangent_of(state: FilmState) -> Tangent:

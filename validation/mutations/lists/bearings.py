@@ -252,8 +252,8 @@ BEARINGS = [
     *mutations(
         "bearings/held_law.py",
         "test_unloaded_bearings.py::test_contacts_are_linear_by_their_stiffness_once_held",
-        ("held contacts push", "or (stiffness, self", "or (-stiffness, self"),
-        ("held bearings undamped", "self.bearing.damping * np.eye(2))", "0.0 * np.eye(2))"),
+        ("held contacts push", "return stiffness, self", "return -stiffness, self"),
+        ("held bearings undamped", "self.bearing.damping * np.eye(2)", "0.0 * np.eye(2)"),
     ),
     *mutations(
         "linear/models/scene/unloaded.py",
