@@ -21,11 +21,11 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
     UNHELD,
     solved,
 )
-from exudyn_rotor.linear.models.scene.fourier_terms import fourier_terms, scaled_samples
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised
+from exudyn_rotor.linear.models.scene.sampled_terms import fourier_terms, scaled_samples
 from exudyn_rotor.linear.models.scene.searched_scene import Scene
 from exudyn_rotor.linear.models.scene.unloaded import check_elements, check_films, free_in_elements
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
