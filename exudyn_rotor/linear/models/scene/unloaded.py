@@ -39,18 +39,12 @@ def check_films(scene: Scene, probe: Probe) -> None:
         return
     start = journal_start(scene, probe.speed, _ORDERS)
     motion = [((1j * _ORDERS * probe.speed) ** n @ start).real for n in range(3)]
-    for step in range(1 if scene.about == "given" else 2):
-        probe.step = probe.velocity_step = None
-        probe.forget()
-        point = linearised(probe, 0.0, *motion)
-        middle = [film for film in films if _in_the_middle(film)]
-        if not middle:
-            return
-        if not step:
-            residual = point.residual
-            if scene.about == "equilibrium":
-                residual = residual + probe.speed**2 * scene.unit_unbalance
-            motion[0] = motion[0] + solved(point.K, -residual)[0]
+    middle = _in_the_middle(films, probe, motion)
+    if middle and scene.about != "given":
+        motion[0] = motion[0] + _pressed(scene, probe, motion)
+        middle = _in_the_middle(films, probe, motion)
+    if not middle:
+        return
     where = f"linear scene at {probe.speed:g} rad/s"
     raise UnconvergedError(
         f"{where}: no load presses the journal at {middle[0].bearing.interface!r} to a side: it "
@@ -66,10 +60,27 @@ def _needs_a_side(film: TangentFilm) -> bool:
     return given.cavitation != "none" and given.supply_pressure == 0.0
 
 
-def _in_the_middle(film: TangentFilm) -> bool:
-    """Return whether a film was held last with the journal in the centre of a pad."""
-    if film.seen[-1] is None:
-        return False
+def _pressed(scene: Scene, probe: Probe, motion: list[np.ndarray]) -> np.ndarray:
+    """Return one step of Newton's method, of what is left of the loads."""
+    probe.step = probe.velocity_step = None
+    point = linearised(probe, 0.0, *motion)
+    residual = point.residual
+    if scene.about == "equilibrium":
+        residual = residual + probe.speed**2 * scene.unit_unbalance
+    return solved(point.K, -residual)[0]
+
+
+def _in_the_middle(
+    films: list[TangentFilm], probe: Probe, motion: list[np.ndarray]
+) -> list[TangentFilm]:
+    """Return the films in which a motion holds the journal in the centre of a pad."""
+    probe.forget()
+    probe.see(0.0, motion[0], motion[1])
+    return [film for film in films if film.seen[-1] is not None and _is_central(film)]
+
+
+def _is_central(film: TangentFilm) -> bool:
+    """Return whether the place seen last is the centre of a pad."""
     place, near = film.seen[-1][0], _MIDDLE * film.bearing.film.clearance
     return any(np.linalg.norm(place - pad.center) < near for pad in film.bearing.film.pads)
 
@@ -81,8 +92,10 @@ def free_in_elements(scene: Scene, probe: Probe) -> str | None:
     """
     bearings = [one.bearing for one in probe.bearings if isinstance(one.bearing, RollingBearing)]
     loose = [bearing for bearing in bearings if bearing.clearance >= 0.0]
+    if not loose:
+        return None
     start = journal_start(scene, probe.speed, _ORDERS)
-    if not loose or np.any(start[[0, 2]]):
+    if np.any(start[[0, 2]]):
         return None
     loads, y = [], start[1].real
     for theta in _ANGLES:
