@@ -110,8 +110,7 @@ def check_run(
 
     ``displacement`` and ``stress`` are the first correction of the modes' motion. They do not see
     the error of the mesh, loads elsewhere than at interfaces and markers of ``body.add_marker``,
-    what a resonance makes of the modes' error, how missing modes ring after a sudden start, and how
-    damping delays the static stress of a fast one.
+    what a resonance makes of the modes' error, and how missing modes ring after a sudden start.
 
     No row adds up errors over a run. A free vibration, such as a sudden start leaves where damping
     is weak, goes out of phase in every period: by about 2π times the row ``step``, and by about π
