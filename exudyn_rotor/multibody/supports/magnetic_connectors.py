@@ -79,11 +79,8 @@ class TangentMagnets:
     def law(self, current: float, place: float) -> float:
         """Return the force [N] at a current [A] and a place [m]."""
         if self._held and self._tangent is None:
-            force, slopes = (
-                self._actuator.law(current, place),
-                self._actuator.slopes(current, place),
-            )
-            self._tangent = current, place, force, *slopes
+            force = self._actuator.law(current, place)
+            self._tangent = current, place, force, *self._actuator.slopes(current, place)
         if self._tangent is None:
             return self._actuator.law(current, place)
         i, x, force, by_current, by_place = self._tangent
