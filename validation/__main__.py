@@ -28,6 +28,7 @@ SCRIPTS = {
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
     "reduction": Script("reduction", "what reduction costs in accuracy"),
+    "sudden_start": Script("sudden_start", "phase of runs from a sudden start"),
     "family": Script("family", "costs of the family, full and reduced"),
     "peer": Script("peer.table", "the swapped call in scripts of Exudyn's manner"),
     "conical": Script("exudyn_3d.conical", "conical frequencies"),
