@@ -60,7 +60,7 @@ def test_spring_carries_and_the_film_does_not():
 
 def test_dampers_beside_springs_leave_them_the_weight():
     """The rotor sags by its weight over both springs' stiffness, and stays there."""
-    rotor = rings(heavy=0.0)
+    rotor = rings(heavy=0.0, modes=0)  # some of equal modes would stretch unevenly
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, rotor, spin=50.0, translation="none", gravity=[0.0, -9.81, 0.0])
     for name in ("left", "right"):

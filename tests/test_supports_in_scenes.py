@@ -60,8 +60,8 @@ KINDS = {
 WITH_A_HELD_SPIN = ("about the axis", "rotor frame, tilts")
 
 
-def rings(turn=None, heavy=1e-3):
-    """Return a rotor with two flexible modes and a heavy spot [kg]; `turn` turns the mesh."""
+def rings(turn=None, heavy=1e-3, modes=2):
+    """Return a rotor with flexible modes and a heavy spot [kg]; `turn` turns the mesh."""
     Q = np.eye(3) if turn is None else turn
     upright = ring_rotor(0.1, 0.15, 5.0)
     whole = np.kron(np.eye(10), Q)
@@ -70,7 +70,7 @@ def rings(turn=None, heavy=1e-3):
     )
     rotor = rotor.add_point_mass(Q @ [0.1, 0.0, 0.15], heavy) if heavy else rotor
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
-    return rotor.reduce(2)
+    return rotor.reduce(modes)
 
 
 def on_supports(reduced, supports, rotation=None, base=None, **options):
