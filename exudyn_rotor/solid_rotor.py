@@ -110,7 +110,7 @@ class SolidRotor(FiniteElementRotor):
             Region name → ``{'youngsModulus': Pa, 'poissonsRatio': 1, 'density': kg/m³}``; one
             such dict by itself for a mesh with one material.
         axis : SpinAxis, str or array_like
-            Read by :meth:`SpinAxis.of`: 'x', 'y', 'z', a direction, or (direction, point) [m].
+            Read by :meth:`SpinAxis.of`: 'x', 'y', 'z', a direction, or (one of these, point) [m].
         order : int, optional
             Order of the displacements, 2 (10-node tetrahedra) or 1.
         interfaces : sequence of str, optional

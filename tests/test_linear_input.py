@@ -11,7 +11,9 @@ from point_rotors import ring_rotor
 from exudyn_rotor import (
     BaseAcceleration,
     HarmonicForce,
+    SpinAxis,
     Support,
+    TorqueCurve,
     Unbalance,
     campbell,
     critical_speed_map,
@@ -192,6 +194,34 @@ def test_tables_and_matrices_are_told_apart():
     assert whole.matrices(5.0)[0][1, 2] == 6.0
     with pytest.raises(TypeError, match=r"stiffness at 5 rad/s: needs finite"):
         Support("left", lambda speed: "x").matrices(5.0)
+
+
+def test_values_of_a_table_are_not_left_behind_by_the_remedy():
+    """Speeds out of order: sorted as the message says, with their values, they are a table."""
+    speeds, values = np.array([30.0, 10.0, 20.0, 10.0]), np.array([3.0, 1.0, 2.0, 1.0])
+    for make in (lambda table: Support("left", table), TorqueCurve):
+        with pytest.raises(ValueError, match=r"return_index=True.* places of the values"):
+            make((speeds, values))
+    sorted_speeds, places = np.unique(speeds, return_index=True)
+    support = Support("left", (sorted_speeds, values[places]))
+    assert [support.matrices(speed)[0][0, 0] for speed in (10.0, 25.0)] == [1.0, 2.5]
+
+
+def test_a_table_as_a_list_is_told_to_be_a_tuple():
+    for table, error in (
+        ([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], ValueError),
+        ([[1.0, 2.0], [np.eye(2), np.eye(2)]], TypeError),
+    ):
+        with pytest.raises(error, match=r"a table over the speed is a tuple, \(speeds, values\)"):
+            Support("left", table)
+
+
+def test_an_axis_by_its_name_may_have_a_point():
+    axis = SpinAxis.of(("y", [1.0, 0.0, 2.0]))
+    assert axis.direction.tolist() == [0.0, 1.0, 0.0]
+    assert axis.point.tolist() == [1.0, 0.0, 2.0]
+    with pytest.raises(ValueError, match="spin axis 'w' is unknown"):
+        SpinAxis.of(("w", [1.0, 0.0, 2.0]))
 
 
 def test_coefficients_stand_in_their_blocks():

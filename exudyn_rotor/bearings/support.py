@@ -13,6 +13,7 @@ from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmoni
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
+_TABLE = "a table over the speed is a tuple, (speeds, values)"
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
@@ -208,7 +209,7 @@ def _kept(value: Coefficient, name: str) -> Coefficient:
             f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
             "matrix as [[a, b], [c, d]] and a table as ([speed, speed], [value, value])"
         )
-    speeds = checks.ascending(value[0], f"{name}: the speeds of its table", "rad/s")
+    speeds = checks.ascending(value[0], f"{name}: the speeds of its table", "rad/s", of_table=True)
     values = checks.array(value[1], f"{name}: the values of its table")
     if values.shape[:1] != speeds.shape or values.shape[1:] not in _SHAPES:
         raise ValueError(
@@ -220,10 +221,13 @@ def _kept(value: Coefficient, name: str) -> Coefficient:
 
 def _coefficient(value: ArrayLike, name: str) -> float | np.ndarray:
     """Return a number, or a matrix as a read-only array."""
-    array = checks.array(value, name)
+    try:
+        array = checks.array(value, name)
+    except TypeError as error:  # of lists that are no array, the speeds and values of a table
+        raise TypeError(f"{error}; {_TABLE}" if isinstance(value, list) else str(error)) from None
     if array.shape not in _SHAPES:
         raise ValueError(
-            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}"
+            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}; {_TABLE}"
         )
     return array if array.ndim else float(array)
 

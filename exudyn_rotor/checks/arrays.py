@@ -98,14 +98,22 @@ def rotation(values: ArrayLike, name: str = "rotation") -> np.ndarray:
     return result
 
 
-def ascending(values: Sequence[float], name: str, unit: str = "") -> np.ndarray:
-    """Return one or more finite numbers in ascending order, each once, read-only."""
+def ascending(
+    values: Sequence[float], name: str, unit: str = "", of_table: bool = False
+) -> np.ndarray:
+    """Return one or more finite numbers in ascending order, each once, read-only.
+
+    Those `of_table` have values beside them, which must not be left behind when they are sorted.
+    """
     if isinstance(values, int | float | np.number):
         values = [values]
     result = vector(values, name, unit, size=None)
     if result.size == 0 or np.any(np.diff(result) <= 0.0):
         needed = f"at least one number{of_unit(unit)}, in ascending order without repetition"
-        raise ValueError(told(name, f"{needed} (np.unique makes them so)", values))
+        remedy = "np.unique makes them so"
+        if of_table:
+            remedy = "np.unique(…, return_index=True) gives the places of the values to take along"
+        raise ValueError(told(name, f"{needed} ({remedy})", values))
     return result
 
 

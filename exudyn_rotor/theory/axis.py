@@ -61,7 +61,7 @@ class SpinAxis:
 
     @classmethod
     def of(cls, axis: SpinAxis | str | ArrayLike) -> SpinAxis:
-        """Read an axis: a SpinAxis, 'x', 'y', 'z', a direction, or (direction, point).
+        """Read an axis: a SpinAxis, 'x', 'y', 'z', a direction, or (one of these, a point).
 
         Raises
         ------
@@ -70,6 +70,8 @@ class SpinAxis:
         """
         if isinstance(axis, SpinAxis):
             return axis
+        if isinstance(axis, tuple | list) and len(axis) == 2 and isinstance(axis[0], str):
+            return cls(cls.of(axis[0]).direction, axis[1])
         if isinstance(axis, str):
             if axis not in _NAMED_DIRECTIONS:
                 raise ValueError(f"spin axis {axis!r} is unknown; use 'x', 'y', 'z' or a vector")

@@ -81,7 +81,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
             own rotation, has rotorBody.add_marker(interface, offset)
         showMarkers: if True, the markers are drawn
         verbose: if True, a report of the new body is printed
-        axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (direction, point);
+        axis: spin axis in mesh coordinates: 'x', 'y', 'z', a direction, or (one of these, point);
             None takes the direction of initialAngularVelocity, its largest component positive,
             through the mesh origin, if a principal axis of inertia is within 10 degrees; or at rest
             the line through the centres of the boundaries, if these and the body are round about it

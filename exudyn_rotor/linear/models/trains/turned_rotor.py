@@ -107,7 +107,8 @@ class TurnedRotor:
             return {0: terms[0]}
         what = (
             f"rotor {self.name!r}, whose unevenness is {self.unevenness:.2g} (a finer mesh has "
-            "less, and a number of modes that leaves no pair of bending modes in halves),"
+            "less, and a number of modes that leaves no pair of bending modes in halves; up to "
+            "largest_unevenness=… its mean over a turn is taken),"
         )
         return {whole(m * self.drift, what): X for m, X in terms.items()}
 
