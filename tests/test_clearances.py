@@ -13,7 +13,11 @@ from exudyn_rotor import (
     AnnularSeal,
     ClearanceStop,
     JournalBearing,
+    LinearActuator,
+    MagneticBearing,
     OilFilm,
+    PIDController,
+    SaturatingActuator,
     ShortJournalBearing,
     SqueezeFilmDamper,
     Support,
@@ -49,6 +53,15 @@ KINDS = {
     ),
     "tilting pads": TiltingPadBearing(
         interface="left", film=film(0.3, np.radians([30.0, 150.0, 270.0])), pad_inertia=1e-4
+    ),
+    "magnets": MagneticBearing(
+        interface="left",
+        actuator=SaturatingActuator(
+            constant=1e-5, bias_current=2.0, gap=CLEARANCE, current_limit=3.0
+        ),
+        controller=PIDController(
+            proportional=3e5, derivative=50.0, filter_frequency=6e4, amplifier_frequency=3e4
+        ),
     ),
 }  # fmt: skip
 
@@ -101,6 +114,8 @@ def run(mbs, end_time=4e-3, step=1e-4, change=None, **how):
         ("squeeze film", {"spin": SPEED, "rotation": TO_X}),
         ("seal", {"spin": SPEED}),
         ("tilting pads", {"initial_speed": SPEED, "rotation": TO_X}),
+        ("magnets", {"spin": SPEED}),
+        ("magnets", {"initial_speed": -SPEED, "rotation": TO_X}),
     ],
 )
 def test_a_run_ends_where_a_journal_leaves(kind, options):
@@ -132,6 +147,10 @@ CASES = {  # kind, options of the scene, start, and of the run
     "adaptive steps": ("short journal", {"load": -3e5}, {}, {"change": adaptive_steps}),
     "a base that leaves": ("seal", {"base": sled}, {}, {}),
     "across in a step": ("seal", {}, {"rate": -30.0, "place": 0.9 * CLEARANCE}, {}),
+    "magnets": ("magnets", {"load": -6e4}, {}, {}),
+    "magnets from the start": (
+        "magnets", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}
+    ),
     "from the start": ("seal", {}, {"place": 1.1 * CLEARANCE}, {"change": no_force_at_first}),
 }  # fmt: skip
 
@@ -222,6 +241,18 @@ def test_a_scripts_own_function_goes_on():
 def test_a_rub_is_meant_where_there_is_a_stop():
     stop = ClearanceStop(interface="left", radius=0.1, clearance=CLEARANCE, stiffness=1e8)
     mbs, _, added = scene([KINDS["seal"], stop], -3e4)
+    assert run(mbs)
+    place = mbs.GetObjectOutput(added[0].objects[0], exu.OutputVariableType.Displacement)
+    assert np.hypot(*place[:2]) > CLEARANCE
+
+
+def test_linear_magnets_have_no_gap():
+    """What they do is the same everywhere, so that a run that leaves them goes on."""
+    actuator = LinearActuator(force_current=500.0, negative_stiffness=2.5e6)
+    far = MagneticBearing(
+        interface="left", actuator=actuator, controller=KINDS["magnets"].controller
+    )
+    mbs, _, added = scene([far], -3e7)
     assert run(mbs)
     place = mbs.GetObjectOutput(added[0].objects[0], exu.OutputVariableType.Displacement)
     assert np.hypot(*place[:2]) > CLEARANCE

@@ -129,7 +129,8 @@ class SaturatingActuator(_Law):
         i_0 [A].
     gap : float
         Air gap s_0 in the centre [m]. In the law, no gap gets smaller than a twentieth of it: a
-        back-up bearing (:class:`ClearanceStop`) holds the rotor off.
+        back-up bearing (:class:`ClearanceStop`) holds the rotor off. A run stops with an error
+        where a rotor without one has moved by the gap.
     current_limit : float
         Largest current of a magnet [A], above the bias.
 

@@ -13,7 +13,7 @@ bending modes unstable whose node is between the two.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos, inf, sin
 from typing import ClassVar
 
 import numpy as np
@@ -115,6 +115,13 @@ class MagneticBearing(LoadedBearing):
         """The control axes as rows along (n1, n2), shape (2, 2)."""
         c, s = cos(self.angle), sin(self.angle)
         return np.array([[c, s], [-s, c]])
+
+    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+        """For scenes: how far the journal may go in any direction [m], the air gap.
+
+        Infinity for linear actuators, which have none.
+        """
+        return self.actuator.gap if isinstance(self.actuator, SaturatingActuator) else inf
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).

@@ -22,6 +22,7 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.held_law import HeldLaw
+from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.calls.sparse_solver import check_solver
 from exudyn_rotor.multibody.mark import Mark, mark_of
@@ -39,7 +40,7 @@ class _Watched:
 
     Attributes
     ----------
-    bearing : Bearing
+    bearing : Bearing or MagneticBearing
     number : ObjectIndex
     physics : ObjectIndex
     mark : tuple or None
@@ -50,7 +51,7 @@ class _Watched:
         n1 and n2 in the scene; None where the connector has axes of its own.
     """
 
-    bearing: Bearing
+    bearing: Bearing | MagneticBearing
     number: exudyn.ObjectIndex
     physics: exudyn.ObjectIndex
     mark: Mark | None
@@ -69,7 +70,9 @@ class _Watched:
         return mbs.GetObjectOutput(self.number, _KINDS.Displacement) @ self.across
 
 
-def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectIndex) -> None:
+def watch_clearance(
+    body: RotorItems, bearing: Bearing | MagneticBearing, number: exudyn.ObjectIndex
+) -> None:
     """Let runs of the scene stop where the journal of a connector leaves its bearing."""
     local = body.mbs.GetObject(number)["objectType"] == "ConnectorRigidBodySpringDamper"
     across = None if local else body.standing_axes[:, :2]
@@ -79,7 +82,7 @@ def watch_clearance(body: RotorItems, bearing: Bearing, number: exudyn.ObjectInd
 
 
 def noting_outside(
-    mbs: exudyn.MainSystem, bearing: Bearing | HeldLaw
+    mbs: exudyn.MainSystem, bearing: Bearing | HeldLaw | MagneticBearing
 ) -> Callable[[int, float, float], None]:
     """Return what a connector calls by its number and place beyond the least clearance."""
     noted = _outside(mbs)

@@ -23,6 +23,7 @@ from exudyn.itemInterface import (
 
 from exudyn_rotor.bearings.actuator import Actuator
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.rotor.rotor_nodes import generic_node
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker
@@ -56,9 +57,13 @@ def add_magnetic(
     number = mbs.AddObject(controller)
     magnets = CartesianSpringDamper(
         markerNumbers=[base, point_marker(body, bearing.interface)],
-        springForceUserFunction=_pulled(bearing, [bearing.actuator.law] * 2, seat.axes, node),
+        springForceUserFunction=_pulled(
+            bearing, [bearing.actuator.law] * 2, seat.axes, node, noting_outside(mbs, bearing)
+        ),
     )
-    return mbs.AddObject(magnets), number
+    connector = mbs.AddObject(magnets)
+    watch_clearance(body, bearing, connector)
+    return connector, number
 
 
 class TangentMagnets:
@@ -97,7 +102,8 @@ def tangent_magnets(body: RotorItems) -> Iterator[tuple[TangentMagnets, ...]]:
         for one, pair in zip(bearings, laws, strict=True):
             magnets, controller = one.objects
             node = body.mbs.GetObject(controller)["nodeNumbers"][0]
-            function = _pulled(one.support, pair, body.standing_axes, node)
+            note = noting_outside(body.mbs, one.support)
+            function = _pulled(one.support, pair, body.standing_axes, node, note)
             body.mbs.SetObjectParameter(magnets, "springForceUserFunction", function)
 
     let([[axis.law for axis in pair] for pair in pairs])
@@ -123,22 +129,28 @@ def _sensed(
 
 
 def _pulled(
-    bearing: MagneticBearing, laws: Sequence[Law], axes: np.ndarray, node: exudyn.NodeIndex
+    bearing: MagneticBearing,
+    laws: Sequence[Law],
+    axes: np.ndarray,
+    node: exudyn.NodeIndex,
+    note: Callable[[int, float, float], None],
 ) -> Callable:
     """Return the force of the magnets by the controller's coordinates, with the law of each axis.
 
-    The columns of `axes` are n1, n2, e.
+    The columns of `axes` are n1, n2, e. Beyond the air gap it calls `note`.
     """
     own, turn = bearing.controller.realisation(), bearing.control_axes
     rows = turn @ axes[:, :2].T  # the control axes
     by_place, by_rate = (np.kron(part, turn) for part in (own.by_place, own.by_rate))
-    first, second = laws
+    (first, second), least = laws, bearing.clearance_along() ** 2
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         read = mbs.GetNodeOutput
         currents = by_place @ read(node, _KINDS.Coordinates)
         currents += by_rate @ read(node, _KINDS.Coordinates_t)
         (i, j), (x, y) = currents, rows @ u
+        if x * x + y * y >= least:
+            note(item, x, y)
         return (-first(-i, x) * rows[0] - second(-j, y) * rows[1]).tolist()
 
     return force

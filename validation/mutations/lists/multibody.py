@@ -42,6 +42,17 @@ MULTIBODY = [
         ("differences of forces", "= held, None", "= False, None"),
     ),
     *mutations(
+        "multibody/supports/magnetic_connectors.py",
+        "test_clearances.py",
+        ("magnets note nothing", "note(item, x, y)", "pass"),
+        ("magnets not looked at", "watch_clearance(body, bearing, connector)", "pass"),
+    ),
+    *mutations(
+        "bearings/magnetic.py",
+        "test_clearances.py",
+        ("rotors leave the air gap unseen", "return self.actuator.gap if", "return inf if"),
+    ),
+    *mutations(
         "multibody/full/ties.py",
         "test_full_bodies.py",
         (
