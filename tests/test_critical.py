@@ -1,5 +1,7 @@
 """Critical speeds against closed forms, Campbell diagrams and the full model."""
 
+import re
+
 import numpy as np
 import pytest
 from models import disc_rotor, two_masses
@@ -10,6 +12,7 @@ from test_scene_linear import rings as scene_rotor
 from exudyn_rotor import OilFilm, SolidRotor, campbell, grooved_pads
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.linear.modal import resonance
 from exudyn_rotor.linear.modal.critical_speed_map import critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import critical_speeds
 from exudyn_rotor.results import load_result
@@ -223,6 +226,29 @@ def test_wrong_input_is_refused(masses):
     with pytest.raises(ValueError, match="no such interface"):
         critical_speeds(masses, supports=[Support("left", 1.0)])
     assert "undamped critical speeds of order 1" in critical_speeds(masses).table()
+
+
+def test_the_refusal_names_a_tolerance_that_will_do(monkeypatch):
+    """Masses on uneven springs, with fewer harmonics than they need: the changes are 1e-4."""
+    data = two_masses()
+    rotor = SolidRotor.from_matrices(data["mass"], data["stiffness"], data["nodes"], "x")
+    rotor = rotor.with_interface("one", [0]).reduce(6)
+    supports = [Support("one", np.diag([2e6, 2e7]))]
+    exact = critical_speeds(rotor, supports=supports, max_speed=3000.0).speeds
+    monkeypatch.setattr(resonance, "_MOST_STEPS", 4)
+    with pytest.raises(
+        ValueError, match=r"6th they still change; that at .* give a larger"
+    ) as error:
+        critical_speeds(rotor, supports=supports, max_speed=3000.0)
+    speed, change = re.search(r"at (\S+) rad/s by (\S+) of it", str(error.value)).groups()
+    assert np.abs(exact / float(speed) - 1.0).min() < float(change)
+    found = critical_speeds(
+        rotor, supports=supports, max_speed=3000.0, tolerance=1.1 * float(change)
+    )
+    np.testing.assert_allclose(found.speeds, exact, rtol=float(change))
+    monkeypatch.setattr(resonance, "_MOST_STEPS", 3)
+    with pytest.raises(ValueError, match="a smaller max_speed, or use fewer high modes"):
+        critical_speeds(rotor, supports=supports, max_speed=3000.0)
 
 
 def test_tables_tell_that_there_are_none():

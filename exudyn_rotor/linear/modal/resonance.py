@@ -177,13 +177,22 @@ def _converged(
         multiples = center + step * np.arange(-count, count + 1)
         critical = _turning(_solved(equations, multiples, limit), content, order, waves)
         speeds = np.sort([entry.speed for entry in critical])
-        same = last is not None and len(last) == len(speeds)
-        if same and np.all(np.abs(speeds - last) <= tolerance * speeds):
+        changes = np.full(1, np.inf)
+        if last is not None and len(last) == len(speeds):
+            changes = np.abs(speeds - last) / speeds
+        if np.all(changes <= tolerance):
             return critical
         last = speeds
+    remedy = "give a smaller max_speed, or use fewer high modes"
+    if np.all(np.isfinite(changes)):
+        worst = np.argmax(changes)
+        remedy = (
+            f"that at {speeds[worst]:.6g} rad/s by {changes[worst]:.1e} of it, which is more than "
+            f"the tolerance of {tolerance:.1e}: give a larger one"
+        )
     raise ValueError(
-        f"critical speeds: they still change with harmonics up to the {step * (_MOST_STEPS - 1)}th;"
-        " give a max_speed, or use fewer high modes"
+        f"critical speeds: with harmonics up to the {step * (_MOST_STEPS - 1)}th they still "
+        f"change; {remedy}"
     )
 
 
