@@ -260,6 +260,11 @@ def test_a_record_from_a_file(tmp_path):
     assert BaseRecord.from_csv(tmp_path / "spaces.txt", "gal").peak == pytest.approx(0.14**0.5 / 10)
     (tmp_path / "excel.csv").write_text("0;1;2;3\n1;4;5;6\n2;7;8;9\n", encoding="utf-8-sig")
     assert BaseRecord.from_csv(tmp_path / "excel.csv", "m/s²").at([0.0])[0, 0] == 1.0
+    text = "Zeit;längs;quer;hoch\n0,0;1,5;2;3e-1\n0,5;-1,25;0;0,1\n"  # decimals by commas
+    (tmp_path / "comma.csv").write_bytes(text.encode("latin-1"))
+    found = BaseRecord.from_csv(tmp_path / "comma.csv", "m/s²")
+    np.testing.assert_array_equal(found.times, [0.0, 0.5])
+    np.testing.assert_array_equal(found.accelerations, [[1.5, 2.0, 0.3], [-1.25, 0.0, 0.1]])
     for text, match in (
         ("0,1,a,3\n1,1,2,3\n2,1,2,3\n", "line 1: could not"),
         ("0,1,2\n1,1,2\n", "line 1: needs time and three"),

@@ -75,8 +75,8 @@ class BaseRecord:
     def from_csv(cls, path: str | PathLike, unit: str) -> BaseRecord:
         """Read lines of time [s] and three accelerations, parted by comma, semicolon or space.
 
-        Lines that begin with ``#``, and one line of names at the beginning, are left out; names do
-        not begin with a number.
+        In lines with semicolons a comma is that of decimals. Lines that begin with ``#``, and one
+        line of names at the beginning, are left out; names do not begin with a number.
 
         Parameters
         ----------
@@ -85,12 +85,14 @@ class BaseRecord:
             Of the accelerations.
         """
         factor = UNITS[checks.choice(unit, "unit", UNITS)]
-        with open(checks.path(path), encoding="utf-8-sig") as file:  # Excel marks UTF-8
-            lines = [line.split("#")[0].replace(";", ",") for line in file]
+        # Excel marks UTF-8; names may be in another encoding
+        with open(checks.path(path), encoding="utf-8-sig", errors="replace") as file:
+            lines = [line.split("#")[0] for line in file]
         filled = [(n, line) for n, line in enumerate(lines, 1) if line.strip()]
         rows = []
         for index, (number, line) in enumerate(filled):
-            words = line.split(",") if "," in line else line.split()
+            words = line.replace(",", ".").split(";") if ";" in line else line.split(",")
+            words = words if len(words) > 1 else line.split()
             try:
                 rows.append([float(word) for word in words])
             except ValueError as error:
