@@ -13,7 +13,6 @@ from exudyn_rotor.theory.rotating_axes import FRAMES, axial_skew, turned_harmoni
 
 COEFFICIENTS = ("stiffness", "damping", "tilt_stiffness", "tilt_damping")
 _SHAPES = ((), (2, 2), (3, 3))
-_TABLE = "a table over the speed is a tuple, (speeds, values)"
 _ROUNDING = 1e-6  # of the largest speed of a table: differences by the speed leave its end
 Harmonics = dict[int, np.ndarray]
 SpeedTable = tuple[ArrayLike, ArrayLike]
@@ -203,7 +202,7 @@ def _kept(value: Coefficient, name: str) -> Coefficient:
     if callable(value):
         return value
     if not isinstance(value, tuple) or len(value) != 2:
-        return _coefficient(value, name)
+        return _coefficient(value, name, "; a table over the speed is a tuple, (speeds, values)")
     if all(isinstance(row, tuple) and len(row) == 2 for row in value):
         raise ValueError(
             f"{name}: {checks.shown(value)} may be a matrix or a table over the speed; write a "
@@ -219,15 +218,15 @@ def _kept(value: Coefficient, name: str) -> Coefficient:
     return speeds, values
 
 
-def _coefficient(value: ArrayLike, name: str) -> float | np.ndarray:
-    """Return a number, or a matrix as a read-only array."""
+def _coefficient(value: ArrayLike, name: str, other: str = "") -> float | np.ndarray:
+    """Return a number, or a matrix as a read-only array; refusals name what `other` there is."""
     try:
         array = checks.array(value, name)
     except TypeError as error:  # of lists that are no array, the speeds and values of a table
-        raise TypeError(f"{error}; {_TABLE}" if isinstance(value, list) else str(error)) from None
+        raise TypeError(f"{error}{other}" if isinstance(value, list) else str(error)) from None
     if array.shape not in _SHAPES:
         raise ValueError(
-            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}; {_TABLE}"
+            f"{name} needs a number, a 2 × 2 or a 3 × 3 matrix, got shape {array.shape}{other}"
         )
     return array if array.ndim else float(array)
 
