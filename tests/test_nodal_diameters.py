@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from netgen import occ
 
-from exudyn_rotor import SolidRotor, campbell, stability
+from exudyn_rotor import SolidRotor, Support, campbell, stability
 from exudyn_rotor.linear.modal.tracking import joined_in_space
 from validation.stiffening.disc import PLATE, disc_rotor
 
@@ -108,3 +108,26 @@ def test_waves_of_blades_that_take_turns_are_not_joined():
     for sign in (1.0, -1.0):
         joined = joined_in_space(sign * speeds, rotor, inertial, -whole.astype(int), whole)
         assert np.argwhere(~joined).tolist() == [[3, 0]]
+
+
+def test_a_coarse_bar_has_the_names_of_a_fine_one():
+    """Its nodes are at twelve angles, which hardly tell one nodal diameter from three.
+
+    It turns, twists, stretches and bends; bending has one nodal diameter.
+    """
+    bar = occ.Box((-0.03, -0.02, -0.5), (0.03, 0.02, 0.5))
+    bar.faces.Min(occ.Z).name, bar.faces.Max(occ.Z).name = "left", "right"
+    mesh = ngsolve.Mesh(occ.OCCGeometry(bar).GenerateMesh(maxh=0.05))
+    reduced = SolidRotor.from_ngsolve(mesh, STEEL, axis="z").reduce(8)
+    supports = [Support(name, 1e7) for name in ("left", "right")]
+    spin, axial, *bending, torsion = range(12)
+    found = campbell(reduced, [100.0], supports=supports, modes=12, accuracy=None)
+    assert [found.whirl[0, j] for j in (spin, axial, torsion)] == [
+        "torsional",
+        "axial",
+        "torsional",
+    ]
+    assert found.nodal_diameters[0].tolist() == [0, 0, *[1] * len(bending), 0]
+    assert found.frequencies_inertial[0, spin] == 0.0
+    shifts = found.frequencies_inertial[0, bending] - found.frequencies_rotor[0, bending]
+    np.testing.assert_allclose(np.abs(shifts), 100.0, rtol=1e-9)

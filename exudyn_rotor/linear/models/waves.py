@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy.linalg as la
 
 HIGHEST = 4  # largest |n| that is looked at
 # how many T_q(z) with each of 1, r², r⁴: shafts bend in many waves, discs have nodal circles
 _AXIAL_TERMS = (10, 6, 2)
 # share of a field that others must leave over to count as new: what less is left tells noise
 _NEW_SHARE = 3e-2
-# share of the longest field, squared, below which one depends on others
-_DEPENDENT = 1e-12
+# share of a field, squared, that those of lower waves must leave over in the points: of less the
+# fit makes large fields of two waves that cancel each other
+_DEPENDENT = 1e-2
 
 
 def wave_amplitudes(
@@ -34,11 +36,11 @@ def wave_amplitudes(
     motion : ndarray, shape (3s, c)
         Displacement of the points along (n1, n2, e) per coordinate.
     """
-    spaces = _wave_fields(points, HIGHEST + 1)
-    basis = np.hstack(spaces)
+    spaces, told = _wave_fields(points, HIGHEST + 1)
+    basis = np.hstack([space @ chosen for space, chosen in zip(spaces, told, strict=True)])
     ends = np.cumsum([space.shape[1] for space in spaces])
-    fitted = np.linalg.pinv(basis.T @ basis, rcond=_DEPENDENT, hermitian=True) @ (
-        basis.T @ motion.reshape(len(points), -1)
+    fitted = la.block_diag(*told) @ np.linalg.solve(
+        basis.T @ basis, basis.T @ motion.reshape(len(points), -1)
     )
     steady, *others = np.split(fitted.reshape(len(fitted), 3, -1).transpose(1, 0, 2), ends[:-1], 1)
     waves = {0: steady.astype(complex)}
@@ -57,11 +59,12 @@ def wave_amplitudes(
     return orders, amplitudes, steady[2]
 
 
-def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
+def _wave_fields(points: np.ndarray, highest: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return cosines, then sines of the fields of the waves ``exp(ilα)`` at points, (s, p) per l.
 
-    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet:
-    where the points are too few to tell waves apart, they are of low |l|.
+    Those of ``r^|l| (1, r², r⁴) T_q(z) exp(ilα)`` that the waves of lower |l| do not hold yet, and
+    their combinations (p, q) that the points tell from these: where the points are too few to tell
+    waves apart, as on the edges of a bar, they are of low |l|.
     """
     x, y, z = points.T
     radius = np.hypot(x, y)
@@ -80,7 +83,7 @@ def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
     fields = turning[:, :, None] * steady[:, None, :]
     parts = fields.reshape(len(points), -1).view(float)  # real beside imaginary ones
     gram = parts.T @ parts
-    spaces, known = [], np.zeros((len(gram), 0))
+    spaces, told, known = [], [], np.zeros((len(gram), 0))
     width = len(gram) // (highest + 1)
     for count in range(highest + 1):
         here = slice(count * width, (count + 1) * width)
@@ -95,8 +98,9 @@ def _wave_fields(points: np.ndarray, highest: int) -> list[np.ndarray]:
         columns = columns - known @ (known.T @ (gram @ columns))
         lengths, turn = np.linalg.eigh(columns.T @ gram @ columns)
         new = lengths > _DEPENDENT
+        told.append(turn[:, new])
         known = np.hstack([known, columns @ turn[:, new] / np.sqrt(lengths[new])])
-    return spaces
+    return spaces, told
 
 
 def _new_fields(within: np.ndarray, shared: np.ndarray) -> np.ndarray:

@@ -233,6 +233,7 @@ LINEAR_MODELS = [
         ("few waves along the axis", "_AXIAL_TERMS = (10, 6, 2)", "_AXIAL_TERMS = (6, 6, 2)"),
         ("no nodal circles", "_AXIAL_TERMS = (10, 6, 2)", "_AXIAL_TERMS = (10, 6)"),
         ("fields of noise", "_NEW_SHARE = 3e-2", "_NEW_SHARE = 1e-3"),
+        ("waves that few nodes cannot tell", "_DEPENDENT = 1e-2", "_DEPENDENT = 1e-12"),
     ),
     *mutations(
         "linear/models/waves.py",
