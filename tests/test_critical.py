@@ -2,6 +2,7 @@
 
 import re
 
+import exudyn
 import numpy as np
 import pytest
 from models import disc_rotor, two_masses
@@ -9,7 +10,15 @@ from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 
-from exudyn_rotor import OilFilm, SolidRotor, campbell, grooved_pads
+from exudyn_rotor import (
+    OilFilm,
+    SolidRotor,
+    add_rotor,
+    add_supports,
+    campbell,
+    grooved_pads,
+    linear_model,
+)
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal import resonance
@@ -292,3 +301,26 @@ def test_speeds_at_which_films_are_too_thin_are_left_out():
         found(300.0, 1000.0)
     with pytest.raises(ValueError, match="presses the film below"):
         found(1e5, 1000.0)
+
+
+@pytest.mark.parametrize("in_scene", [False, True])
+@pytest.mark.parametrize(("begins", "found"), [(-0.1, 1), (0.1, 0)])
+def test_critical_speeds_are_looked_for_from_where_tables_begin(in_scene, begins, found):
+    """``Ω² = k(Ω)/m`` at 100 rad/s for a mass of 1 kg; brackets are at 99.5 and 101.5 rad/s."""
+    ends = np.array([100.0 + begins, 398.0])
+    bearing = Support("at", (ends, 1e4 + 20.0 * (ends - 100.0)))
+    thrust = Support("at", np.diag([0.0, 0.0, 1e6]))
+    rotor, supports = point_mass().reduce(0), [bearing, thrust]
+    model = linear_model(rotor, supports=supports)
+    if in_scene:
+        mbs = exudyn.SystemContainer().AddSystem()
+        body = add_rotor(mbs, rotor, spin=200.0, translation="none")
+        add_supports(body, supports)
+        mbs.Assemble()
+        model = linear_model(mbs, body=body)
+    with pytest.warns(UserWarning, match=r"critical speeds: up to .* table .* holds"):
+        result = critical_speeds(model, max_speed=398.0, nodal_diameters=[1], accuracy=None)
+    # forward and backward; scenes are linearised by differences
+    np.testing.assert_allclose(result.speeds, 2 * found * [100.0], rtol=1e-6)
+    with pytest.raises(ValueError, match="not 399 rad/s"):
+        critical_speeds(model, max_speed=399.0, accuracy=None)

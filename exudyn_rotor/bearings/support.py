@@ -19,6 +19,10 @@ SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
 
+class BelowTableError(ValueError):
+    """A speed is below the first one of a table."""
+
+
 @dataclass(frozen=True, eq=False)
 class Support:
     """Linear spring and damper between an interface and the ground.
@@ -150,7 +154,8 @@ class Support:
             slack = _ROUNDING * np.abs(value[0]).max()
             least, most = value[0][0] - slack, value[0][-1] + slack
             if not least <= speed <= most:
-                raise ValueError(
+                kind = BelowTableError if speed < least else ValueError
+                raise kind(
                     f"support at {self.interface!r}: the table of its {name} holds "
                     f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "
                     "it, or extrapolate=True to keep the value at its end"

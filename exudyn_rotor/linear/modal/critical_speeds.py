@@ -147,7 +147,8 @@ def critical_speeds(
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
 
-    Damping, also structural, and the skew part of the supports' stiffness do not take part.
+    Damping, also structural, and the skew part of the supports' stiffness do not take part; in a
+    scene the skew part of damping, as of an annular seal, does no work and stays.
 
     Parameters
     ----------
@@ -163,7 +164,8 @@ def critical_speeds(
         Largest speed of interest [rad/s]; needed for a scene, for a large SolidRotor and for
         supports that depend on the speed or an initial displacement: there the zeros are
         bracketed at 200 speeds up to it, and two of one mode that are closer than a 200th of it
-        may be missed.
+        may be missed. Where tables begin above 0 rad/s, speeds from there on are looked at, with a
+        warning.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
     stiffening : {'auto', 'none', 'tilt', 'full'}

@@ -19,10 +19,13 @@ from scipy.linalg.lapack import zhetrf
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.bearing import NoEquilibriumError
+from exudyn_rotor.bearings.support import BelowTableError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
-NO_EQUATIONS = UnconvergedError, NoEquilibriumError  # of a scene, and of a list of supports
+# of a scene, of bearings, and of tables that begin higher
+NO_EQUATIONS = UnconvergedError, NoEquilibriumError, BelowTableError
+_HALVINGS = 30  # between two of the brackets
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at
 _SAME = 1e-7  # relative distance of speeds that are one
 _BLOCK = 64  # of LAPACK's work, in columns
@@ -36,11 +39,11 @@ def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.n
     The zeros of the sorted eigenvalues are bracketed at 200 speeds. What is a free motion at
     every speed, like a spin or an axial motion that nothing holds, is left out first: the sign of
     its eigenvalue is rounding. Speeds end above the highest one at which there are no equations, as
-    films are too thin there.
+    films are too thin there, or a table begins higher.
     """
-    grid = np.linspace(limit / _BRACKETS, limit, _BRACKETS)
-    free, negative = _free_and_negative(matrix, grid)
-    grid = grid[len(grid) - len(negative) :]
+    free, grid, negative = _free_and_negative(
+        matrix, np.linspace(limit / _BRACKETS, limit, _BRACKETS)
+    )
 
     def at(speed: float) -> np.ndarray:
         return _held(matrix(speed), free)
@@ -78,10 +81,13 @@ def same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> 
     return groups
 
 
-def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, list[int]]:
+def _free_and_negative(
+    matrix: Matrix, grid: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, list[int]]:
     """Return motions that are free at every speed, orthonormal, and negative eigenvalues of others.
 
-    A motion counts as free below the rounding of its matrix, ``10 n ε ‖H‖``.
+    Between them the speeds at which there are equations. A motion counts as free below the rounding
+    of its matrix, ``10 n ε ‖H‖``.
     """
     free = np.eye(len(matrix(grid[-1])), dtype=complex)
     negative: list[int] = []
@@ -92,13 +98,19 @@ def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, li
         except NO_EQUATIONS as error:
             if not negative:
                 raise
+            grid = grid[len(grid) - len(negative) :]
+            reason = ""
+            if isinstance(error, BelowTableError):
+                grid = np.append(_first_speed(matrix, speed, grid[0]), grid)
+                speed = grid[0]
+            else:
+                reason = ", as there is no equilibrium"
             warnings.warn(
-                f"critical speeds: up to {speed:g} rad/s none are looked for, as there is no "
-                f"equilibrium: {error}",
+                f"critical speeds: up to {speed:.4g} rad/s none are looked for{reason}: {error}",
                 UserWarning,
                 stacklevel=user_level(),
             )
-            break
+            continue
         left = H @ free
         limit = 10.0 * len(H) * np.finfo(float).eps * np.linalg.norm(H)
         if np.linalg.norm(left) > limit:
@@ -109,7 +121,20 @@ def _free_and_negative(matrix: Matrix, grid: np.ndarray) -> tuple[np.ndarray, li
                 free, negative = free @ rows[sizes <= limit].conj().T, []
                 continue
         negative.append(_count_negative(_held(H, free)))
-    return free, negative[::-1]
+    return free, grid, negative[::-1]
+
+
+def _first_speed(matrix: Matrix, without: float, with_equations: float) -> float:
+    """Return the lowest speed with equations, at which the tables of all supports have begun."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (without + with_equations)
+        try:
+            matrix(middle)
+        except BelowTableError:
+            without = middle
+        else:
+            with_equations = middle
+    return with_equations
 
 
 def _held(H: np.ndarray, free: np.ndarray) -> np.ndarray:

@@ -67,6 +67,11 @@ LINEAR = [
             "np.count_nonzero(pivots < 0) // 2",
             "np.count_nonzero(pivots < 0)",
         ),
+        (
+            "critical speeds between two brackets left out where a table begins",
+            "grid = np.append(_first_speed(matrix, speed, grid[0]), grid)",
+            "grid = np.append(grid[0], grid)",
+        ),
         ("free motions not held", "else H + np.linalg.norm(H)", "else H + 0.0 * np.linalg.norm(H)"),
     ),
     *mutations(

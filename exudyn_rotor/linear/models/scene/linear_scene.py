@@ -251,7 +251,7 @@ class LinearScene(SceneCoordinates, InAllCoordinates):
             yield probe
 
     def undamped(self) -> LinearScene:
-        """Return the scene itself: its damping does not enter the Hermitian part of equations."""
+        """Return the scene itself: of damping only the skew part is in Hermitian equations."""
         return self
 
     def point_motions(self, most: int) -> PointMotions:

@@ -17,6 +17,7 @@ from exudyn_rotor.bearings.held_law import (
     TangentFilm,
     TangentShortFilm,
 )
+from exudyn_rotor.bearings.support import BelowTableError
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
@@ -228,7 +229,12 @@ class Probe:
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
         q, q_t = self._set(theta, x, v)
-        self.solver.ComputeODE2RHS(self.mbs)
+        try:
+            self.solver.ComputeODE2RHS(self.mbs)
+        except ValueError as error:  # Exudyn's, from what a support's function raised
+            if isinstance(error.__cause__, BelowTableError):
+                raise error.__cause__ from None
+            raise
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
         if self._carried is not None:
             total[self.carriers] = self._carried[2]
