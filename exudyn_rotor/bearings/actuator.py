@@ -52,7 +52,7 @@ class _Law:
 
 @dataclass(frozen=True)
 class LinearActuator(_Law):
-    """Actuator (1) of a control axis.
+    """Actuator ``F = K_i i + K_s x`` (1) of a control axis.
 
     Parameters
     ----------
@@ -120,6 +120,8 @@ class LinearActuator(_Law):
 @dataclass(frozen=True)
 class SaturatingActuator(_Law):
     """Two opposite magnets (2) of a control axis.
+
+    ``F = k (I₊²/(s_0 − x)² − I₋²/(s_0 + x)²)``, ``I± = i_0 ± i`` between 0 and the limit.
 
     Parameters
     ----------

@@ -30,6 +30,9 @@ from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 class ClearanceStop(Bearing):
     """Stop behind a clearance; a rub.
 
+    At the penetration δ it pushes with ``N = max(0, k δ + d δ δ̇/c)`` (1), and friction opposes the
+    sliding speed v_s with ``μ N tanh(v_s/v_0)`` (2).
+
     Linear analyses see it open: it has no coefficients, for small motions do not touch it.
 
     Parameters

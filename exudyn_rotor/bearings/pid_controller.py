@@ -53,7 +53,9 @@ class Realisation(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class PIDController:
-    """Position controller (1) of a control axis.
+    """Position controller (1) of a control axis, from the measured place to minus the current.
+
+    ``C(s) = e^{−sτ} (P + I/s + D s) / ((1 + √2 s/ω_f + s²/ω_f²)(1 + s/ω_a))``
 
     Parameters
     ----------
@@ -64,7 +66,7 @@ class PIDController:
     derivative : float
         D [A s/m].
     filter_frequency : float
-        ω_f [rad/s], of the filter that keeps noise from the derivative.
+        ω_f [rad/s], of the filter of the measured signal, which keeps noise from P and D.
     amplifier_frequency : float
         ω_a [rad/s], the amplifier's bandwidth.
     delay : float, optional

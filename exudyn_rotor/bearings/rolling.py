@@ -59,12 +59,13 @@ class RollingBearing(Bearing):
     pitch_radius, element_radius : float
         [m].
     stiffness : float
-        k of (2), of both contacts of an element together [N/m^n].
+        k of both contacts of an element together, which carry ``k p^n`` (2) at the depth p of the
+        contact, n = 3/2 for balls and 10/9 for rollers [N/m^n].
     clearance : float, optional
         Radial clearance c [m]; below zero an interference, by which all elements are preloaded.
     elements : {'balls', 'rollers'}, optional
     contact_angle : float, optional
-        [rad].
+        Of influence on the speed of the cage alone [rad].
     damping : float, optional
         Of the inner ring in all directions across the axis [N s/m].
     load : array_like, shape (2,), optional

@@ -25,6 +25,8 @@ from exudyn_rotor.drives.drive import Drive
 class InductionMotor(Drive):
     """Induction motor by Kloss's formula (1); a generator above its synchronous speed.
 
+    ``T = 2 T_b/(s/s_b + s_b/s)`` at the slip ``s = 1 − Ω/Ω_s``.
+
     Parameters
     ----------
     breakdown_torque : float

@@ -51,6 +51,8 @@ def sensitivity(
 ) -> Sensitivity:
     """Return the sensitivity function (1) of each control axis of the magnetic bearings.
 
+    ``S = 1/(1 + L)`` with the loop L opened on one axis at its sensor, all others closed.
+
     Parameters
     ----------
     rotor : ReducedRotor, SolidRotor or RotorTrain
