@@ -2,25 +2,24 @@
 
 Between two speeds with p and q negative eigenvalues, those from the smaller to the larger of these
 numbers, in ascending order, change their sign. How many are negative tells an ``LDLᴴ`` factor
-(Sylvester's law of inertia), in a fifth of the time of the eigenvalues.
+(Sylvester's law of inertia), in a fifth of the time of the eigenvalues. Where between the speeds
+their zeros are is found in :mod:`.zeros_between`.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from functools import cache
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
 import scipy.linalg as la
-from scipy.linalg.lapack import zhetrf
-from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.bearing import NoEquilibriumError
 from exudyn_rotor.bearings.support import BelowTableError
 from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.modal.zeros_between import Matrix, Pair, count_negative, zeros_between
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
 # of a scene, of bearings, and of tables that begin higher
@@ -28,8 +27,7 @@ NO_EQUATIONS = UnconvergedError, NoEquilibriumError, BelowTableError
 _HALVINGS = 30  # between two of the brackets
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at
 _SAME = 1e-7  # relative distance of speeds that are one
-_BLOCK = 64  # of LAPACK's work, in columns
-Matrix = Callable[[float], np.ndarray]
+_INDEPENDENT = 0.1  # least length of a vector less what others of the same speed have of it
 Entry = TypeVar("Entry")
 
 
@@ -48,25 +46,31 @@ def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.n
     def at(speed: float) -> np.ndarray:
         return _held(matrix(speed), free)
 
-    zeros = []
-    for low, high, branch in _sign_changes(grid, negative):
+    found: list[Pair] = []
+    ends = list(zip(grid.tolist(), negative, strict=True))
+    for (low, before), (high, after) in pairwise(ends):
+        if before != after:
+            found += zeros_between(at, (low, high), (before, after), limit)
+    found.sort(key=lambda zero: zero[0])
+    return [zero for group in same_speed(found, _speed) for zero in _apart(at, group)]
 
-        @cache
-        def value(speed: float, branch: int = branch) -> float:
-            return la.eigh(at(speed), eigvals_only=True, subset_by_index=[branch, branch])[0]
 
-        ends = value(low), value(high)
-        if ends[0] * ends[1] < 0.0:
-            speed = brentq(value, low, high, xtol=1e-12 * limit, rtol=1e-13)
-        else:  # rounding of a zero there
-            speed = (low, high)[int(np.argmin(np.abs(ends)))]
-        zeros.append((float(speed), branch))
-    found = []
-    for group in same_speed(sorted(zeros), lambda zero: zero[0]):
-        # one decomposition for all: the vectors of a repeated zero are orthogonal only within it
-        _, vectors = la.eigh(at(group[0][0]))
-        found += [(speed, vectors[:, branch]) for speed, branch in group]
-    return found
+def _speed(zero: Pair) -> float:
+    return zero[0]
+
+
+def _apart(at: Matrix, group: list[Pair]) -> list[Pair]:
+    """Return zeros of one speed with orthogonal vectors."""
+    if len(group) == 1:
+        return group
+    H = at(group[0][0])
+    basis, lengths = np.linalg.qr(np.column_stack([vector for _, vector in group]))
+    if np.abs(np.diagonal(lengths)).min() > _INDEPENDENT:
+        vectors = basis @ np.linalg.eigh(basis.conj().T @ H @ basis)[1]
+    else:
+        values, vectors = la.eigh(H)
+        vectors = vectors[:, np.argsort(np.abs(values))]
+    return [(speed, vector) for (speed, _), vector in zip(group, vectors.T, strict=False)]
 
 
 def same_speed(entries: Sequence[Entry], speed_of: Callable[[Entry], float]) -> list[list[Entry]]:
@@ -120,7 +124,7 @@ def _free_and_negative(
                 # those that are free here, too; the others count from the first speed on
                 free, negative = free @ rows[sizes <= limit].conj().T, []
                 continue
-        negative.append(_count_negative(_held(H, free)))
+        negative.append(count_negative(_held(H, free)))
     return free, grid, negative[::-1]
 
 
@@ -140,18 +144,3 @@ def _first_speed(matrix: Matrix, without: float, with_equations: float) -> float
 def _held(H: np.ndarray, free: np.ndarray) -> np.ndarray:
     """Return a matrix with the free motions stiffer than all others."""
     return H if free.shape[1] == 0 else H + np.linalg.norm(H) * (free @ free.conj().T)
-
-
-def _count_negative(H: np.ndarray) -> int:
-    """Return how many eigenvalues of a Hermitian matrix are negative."""
-    factor, pivots, _ = zhetrf(H, lower=1, lwork=_BLOCK * len(H))
-    # blocks of two rows, which have a negative number, have one of either sign
-    single = np.diagonal(factor).real[pivots > 0]
-    return int(np.count_nonzero(single < 0.0) + np.count_nonzero(pivots < 0) // 2)
-
-
-def _sign_changes(grid: np.ndarray, negative: list[int]) -> Iterator[tuple[float, float, int]]:
-    """Yield two speeds and the eigenvalue that changes its sign between them."""
-    for (low, before), (high, after) in pairwise(zip(grid, negative, strict=True)):
-        for branch in range(min(before, after), max(before, after)):
-            yield float(low), float(high), branch

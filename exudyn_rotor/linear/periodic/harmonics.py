@@ -45,10 +45,11 @@ def dynamic_stiffness(
 def _blocks(terms: Terms, orders: np.ndarray, size: int) -> np.ndarray:
     """Return the block matrix with ``terms[n − m]`` at row n, column m."""
     blocks = np.zeros((len(orders), size, len(orders), size), dtype=complex)
-    for i, n in enumerate(orders):
-        for j, m in enumerate(orders):
-            term = terms.get(round(n - m))
-            if term is not None:
+    places = {round(m - orders[0]): j for j, m in enumerate(orders)}
+    for n, term in terms.items():
+        for m, j in places.items():
+            i = places.get(m + n)
+            if i is not None:
                 blocks[i, :, j, :] = term
     return blocks.reshape(len(orders) * size, -1)
 

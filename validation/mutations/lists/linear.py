@@ -60,7 +60,7 @@ LINEAR = [
         ),
     ),
     *mutations(
-        "linear/modal/hermitian_zeros.py",
+        "linear/modal/zeros_between.py",
         "test_hermitian_zeros.py test_critical.py",
         (
             "blocks of two rows counted twice",
@@ -68,6 +68,20 @@ LINEAR = [
             "np.count_nonzero(pivots < 0)",
         ),
         (
+            "zeros of one speed share their vector",
+            "x = x - np.vdot(vector, x) * vector",
+            "x = x - 0.0 * np.vdot(vector, x) * vector",
+        ),
+        (
+            "signs between zeros not looked at",
+            "== negative[0] + sense * passed",
+            "!= np.inf",
+        ),
+        ("step of Rayleigh's quotient away from the zero", "speed - step", "speed + step"),
+    ),
+    *mutations(
+        "linear/modal/hermitian_zeros.py",
+        "test_hermitian_zeros.py test_critical.py",
             "critical speeds between two brackets left out where a table begins",
             "grid = np.append(_first_speed(matrix, speed, grid[0]), grid)",
             "grid = np.append(grid[0], grid)",

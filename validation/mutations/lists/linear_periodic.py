@@ -7,7 +7,7 @@ LINEAR_PERIODIC = [
         "linear/periodic/harmonics.py",
         "test_stability.py",
         ("rate of a harmonic once", "D + 2.0 * M * rate, K", "D + M * rate, K"),
-        ("blocks transposed", "terms.get(round(n - m))", "terms.get(round(m - n))"),
+        ("blocks transposed", "places.get(m + n)", "places.get(m - n)"),
         (
             "harmonics left out are not answered",
             "= -_answer(system",
