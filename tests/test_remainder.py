@@ -255,10 +255,10 @@ def test_a_free_motion_beside_a_frequency_that_is_a_multiple_of_the_base():
 def test_growth_that_rounding_hides_is_refused(monkeypatch):
     """A multiplier of 0.9 beside a fundamental matrix of 1e12: 1.1 could be in its place."""
     matrix = np.array([[0.9, 1e12], [0.0, 0.8]])
-    monkeypatch.setattr(fundamental, "monodromy", lambda *_: matrix)
+    monkeypatch.setattr(fundamental, "monodromy", lambda *_: (matrix, 8, 1e3))
     with pytest.raises(UnconvergedError, match="not told whether"):
         floquet_motions(mathieu(2.0, 1.0))
-    monkeypatch.setattr(fundamental, "monodromy", lambda *_: np.diag([0.9, 0.8]))
+    monkeypatch.setattr(fundamental, "monodromy", lambda *_: (np.diag([0.9, 0.8]), 8, 1e-9))
     assert np.all(floquet_motions(mathieu(2.0, 1.0))[0].real < 0.0)
 
 

@@ -209,7 +209,7 @@ def measured_growth(mbs, scene, speed, steps, size=1e-5, revolutions=20):
     It starts with its Floquet vector; once per revolution the state lies in the plane of the
     vector's real and imaginary part, and its coefficient there grows as ``exp(λt)``.
     """
-    half = monodromy(scene.at(speed))
+    half = monodromy(scene.at(speed))[0]
     values, vectors = np.linalg.eig(half @ half)
     vector = vectors[:, np.argmax(np.abs(values))]
     vector = size * vector / np.abs(vector[: scene.size]).max()

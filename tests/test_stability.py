@@ -65,7 +65,7 @@ def paired(found: np.ndarray, expected: np.ndarray, base: float) -> float:
 def test_mathieu_characteristic_values_bound_the_instability(order, q):
     # at a_n(q), b_n(q) a solution is periodic in π (n even) or antiperiodic (McLachlan 1947)
     for value in (mathieu_a(order, q), mathieu_b(order, q)):
-        trace = np.trace(monodromy(mathieu(value, q), 1e-12))
+        trace = np.trace(monodromy(mathieu(value, q), 1e-12)[0])
         assert trace == pytest.approx(2.0 * (-1.0) ** order, abs=1e-9 * np.exp(q))
     inside = mathieu(0.5 * (mathieu_a(order, q) + mathieu_b(order, q)), q)
     beyond = mathieu(0.5 * (mathieu_a(order, q) + mathieu_b(order + 1, q)), q)

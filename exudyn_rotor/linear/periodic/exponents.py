@@ -11,6 +11,7 @@ Two independent ways for periodic systems: Hill's method (:mod:`.hill`), of whos
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
@@ -27,6 +28,7 @@ from exudyn_rotor.linear.periodic.fundamental import floquet_motions
 from exudyn_rotor.linear.periodic.harmonics import shifted
 from exudyn_rotor.linear.periodic.hill import solve_hill
 from exudyn_rotor.linear.periodic.hill_motions import Chosen, HillMotions
+from exudyn_rotor.linear.periodic.near_copies import with_near_copies
 from exudyn_rotor.linear.periodic.periodic_system import (
     ConstantSystems,
     PeriodicSystem,
@@ -129,12 +131,34 @@ def _solve_by_hill(system: PeriodicSystem, tolerance: float) -> HillMotions:
     """Return one copy of all exponents with their motions, the most central where it is told.
 
     Motions that fail the check, of which some are copies of others, are chosen once more: by their
-    families, from all harmonics.
+    families, from all harmonics. Before that, and where the check makes bounds larger, those with
+    exponents near to copies of others are found with the harmonics of these.
     """
-    return first_or_again(
-        partial(_chosen_by_hill, system, tolerance),
-        lambda found: checked(system, found, gone(found.values, system.speed), tolerance),
-    ).with_conjugates()
+
+    def check(found: HillMotions) -> HillMotions:
+        told, unconverged = None, None
+        try:
+            told = _checked(system, found, tolerance)
+        except UnconvergedError as error:
+            unconverged = error
+        if told is not None and np.array_equal(told.rounding, found.rounding):
+            return told
+        wider = with_near_copies(system, found)
+        if wider is not None:
+            with suppress(UnconvergedError):
+                again = _checked(system, wider, tolerance)
+                if told is None or again.bounds.max() < told.bounds.max():
+                    return again
+        if told is None:
+            raise unconverged
+        return told
+
+    chosen = partial(_chosen_by_hill, system, tolerance)
+    return first_or_again(chosen, check).with_conjugates()
+
+
+def _checked(system: PeriodicSystem, found: HillMotions, tolerance: float) -> HillMotions:
+    return checked(system, found, gone(found.values, system.speed), tolerance)
 
 
 def _chosen_by_hill(system: PeriodicSystem, tolerance: float, first: bool) -> HillMotions:

@@ -25,6 +25,7 @@ from exudyn_rotor.linear.periodic.periodic_system import (
 MOST_STEPS = 2**14
 _CHUNK = 128
 _SHOWN_FROM = 4e9  # steps times entries cubed, of some seconds
+_MORE = 2.0  # times its estimate that the error of a fundamental matrix may be
 _OF_A_WAVE = 2  # steps at least, of the highest harmonic
 _SAMPLES = 8  # angles of a period, doubled at least once
 # of the tolerance: share of a motion that its outermost harmonics may be
@@ -36,24 +37,20 @@ _WHOLE = 1e-12
 _LEAST = EPSILON**2
 
 
-def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> np.ndarray:
+def monodromy(system: PeriodicSystem, tolerance: float = 1e-9) -> tuple[np.ndarray, int, float]:
     """Return the fundamental matrix of (x, ẋ) over one period of the coefficients, from θ = 0.
 
-    Shape (2k, 2k), real. For a constant system the period is one revolution.
+    Shape (2k, 2k), real. For a constant system the period is one revolution. With the steps that it
+    takes, and a bound of the error of the matrix for the state ``(x · max|λ|, ẋ)``, Frobenius norm:
+    twice what two numbers of steps tell, and rounding of every step.
 
     Raises
     ------
     ValueError
         At zero speed, which has no period.
     UnconvergedError
-        If 2¹⁴ steps do not reach `tolerance`, relative to the largest entry in the state
-        ``(x · max|λ|, ẋ)``.
+        If 2¹⁴ steps do not reach `tolerance`, relative to the largest entry for that state.
     """
-    return _converged(system, tolerance)[0]
-
-
-def _converged(system: PeriodicSystem, tolerance: float) -> tuple[np.ndarray, int]:
-    """Return the fundamental matrix over one period, and the steps it takes."""
     if system.speed == 0.0:
         raise ValueError("floquet: at 0 rad/s the coefficients have no period")
     period = 2.0 * np.pi / abs(system.base or system.speed)
@@ -74,10 +71,11 @@ def _converged(system: PeriodicSystem, tolerance: float) -> tuple[np.ndarray, in
         if not np.all(np.isfinite(fundamental)):
             break  # what grows exceeds the largest number within a period
         if last is not None:
-            scaled = scale[:, None] * np.array([fundamental, fundamental - last]) / scale
-            error = np.abs(scaled[1]).max() / np.abs(scaled[0]).max() / 63.0
+            scaled, change = scale[:, None] * np.array([fundamental, fundamental - last]) / scale
+            error = np.abs(change).max() / np.abs(scaled).max() / 63.0
             if error <= tolerance:
-                return fundamental, steps
+                rounding = steps * np.sqrt(len(scale)) * EPSILON * np.linalg.norm(scaled)
+                return fundamental, steps, _MORE / 63.0 * np.linalg.norm(change) + rounding
         steps, last = 2 * steps, fundamental
     raise UnconvergedError(
         f"floquet at {system.speed:g} rad/s: error {error:.1e} with {MOST_STEPS} steps a period, "
@@ -145,8 +143,8 @@ def floquet_motions(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the 2k exponents, the states (x, ẋ) at θ = 0 as columns, and bounds of the error.
 
-    The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε``, and by
-    `tolerance`, relative to its norm, times its condition; scaled as :func:`monodromy` says. Of two
+    The bounds [1/s] are those of an eigenvalue of a matrix that errs by rounding, ``2kε`` of its
+    norm, and by what :func:`monodromy` says, scaled as there, times its condition. Of two
     that nearly share their vector, g apart, a change δ has ``δ (δ + g)`` in the place of ``δ g``,
     which leaves the root. Of a multiplier that is smaller than its error δ the exponent is known
     from above alone: ``Re λ ≤ log(|μ| + δ)/T``.
@@ -156,13 +154,14 @@ def floquet_motions(
     UnconvergedError
         If none grows for sure, and it is not told whether another one does.
     """
-    return _motions_of(system, monodromy(system, tolerance), tolerance)
+    fundamental, _, error = monodromy(system, tolerance)
+    return _motions_of(system, fundamental, error)
 
 
 def _motions_of(
-    system: PeriodicSystem, fundamental: np.ndarray, tolerance: float
+    system: PeriodicSystem, fundamental: np.ndarray, error: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what :func:`floquet_motions` does."""
+    """Return what :func:`floquet_motions` does, of a fundamental matrix with its error."""
     scale = _scale(system)
     scaled = scale[:, None] * fundamental / scale
     multipliers, states = np.linalg.eig(scaled)
@@ -170,8 +169,7 @@ def _motions_of(
     base = abs(system.base or system.speed)
     values = np.log(multipliers.astype(complex)) * base / (2.0 * np.pi)
     condition = np.linalg.norm(np.linalg.pinv(states), axis=1)
-    error = (len(scale) * system.rounding + tolerance) * np.linalg.norm(scaled)
-    moved = condition * error
+    moved = condition * (error + len(scale) * system.rounding * np.linalg.norm(scaled))
     apart = np.abs(multipliers[:, None] - multipliers) + np.diag(np.full(len(scale), np.inf))
     moved = np.minimum(moved, np.sqrt(moved * apart.min(axis=1)))
     relative, decays = moved / np.abs(multipliers), np.abs(multipliers) < 1.0
@@ -193,8 +191,8 @@ def propagated(system: PeriodicSystem, tolerance: float) -> HillMotions:
     motion the copy with the largest harmonic 0 is taken. Those that decay fast follow the
     fundamental matrix with its error; :func:`.remainder.checked` tells if that is too much.
     """
-    fundamental, steps = _converged(system, tolerance)
-    values, states, bounds = _motions_of(system, fundamental, tolerance)
+    fundamental, steps, error = monodromy(system, tolerance)
+    values, states, bounds = _motions_of(system, fundamental, error)
     base = abs(system.base)
     count, tail = _SAMPLES, np.inf
     while tail > tolerance * _TAIL and 2 * count <= max(steps, 2 * _SAMPLES):

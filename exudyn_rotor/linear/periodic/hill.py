@@ -44,6 +44,7 @@ _ALMOST = 0.1
 _SETTLED = 1e-6
 # relative distance of exponents, and cosine of shapes, that may be those of one motion
 _SAME, _ALIKE = 1e-6, 0.7
+_OF_DISTANCE = 1e-3  # of the next exponent: such a step, too
 # unknowns of a truncation that is not solved before motions are sought by slow ones, what a mode
 # has to have of a motion to be among these, and the share of the base that their exponents may err
 _LONG, _SHARE, _NEAR_COPY = 800, 1e-3, 0.1
@@ -181,7 +182,7 @@ def _by_slow_motions(
         return None
     every = _joined(*_with_alike_orders(known, slow))
     columns = np.arange(len(known.values), len(every.values))
-    return every if _differ(every, columns, system.base) else None
+    return every if differ(every, columns, system.base) else None
 
 
 def _modes_of(system: PeriodicSystem, shapes: np.ndarray) -> np.ndarray:
@@ -213,6 +214,7 @@ def _in_all(system: PeriodicSystem, slow: HillMotions) -> HillMotions | None:
     found = settled(system, slow.orders, slow.values, slow.shapes, limits)
     if found is None:
         return None
+    found = _closer(system, slow, found, _distances(slow, found[0], system.base), limits)
     values, shapes, lefts = found
     alike = np.abs(np.sum(shapes.conj() * slow.shapes, axis=(0, 1)))
     if not np.all(alike >= _ALIKE * np.sqrt(_squares(slow.shapes))):
@@ -241,8 +243,8 @@ def _followed(system: PeriodicSystem, motions: HillMotions, tolerance: float) ->
     while motions.error > limit:
         order = _next(system, int(motions.orders[-1]), motions.error, tolerance, _FOLLOWED)
         lacking = np.flatnonzero(motions.errors > min(limit, _ALMOST * tolerance))
-        larger = _in_larger(system, motions, lacking, system.harmonics(order))
-        if larger is None or not _differ(larger, lacking, system.base):
+        larger = in_larger(system, motions, lacking, system.harmonics(order))
+        if larger is None or not differ(larger, lacking, system.base):
             return None
         motions, limit = larger, tolerance
     if motions.orders[-1] == system.step:
@@ -267,7 +269,7 @@ def _squares(shapes: np.ndarray) -> np.ndarray:
     return np.sum(np.abs(shapes) ** 2, axis=(0, 1))
 
 
-def _in_larger(
+def in_larger(
     system: PeriodicSystem, motions: HillMotions, lacking: np.ndarray, orders: np.ndarray
 ) -> HillMotions | None:
     """Return the motions in a larger truncation, those `lacking` harmonics by inverse iteration."""
@@ -278,7 +280,10 @@ def _in_larger(
     found = settled(system, orders, guess, start, limits)
     if found is None:
         return None
-    values[lacking], x, lefts = found
+    values[lacking] = found[0]
+    distances = _distances(motions, values, system.base)[lacking]
+    few = replace(motions.columns(lacking), orders=orders)
+    values[lacking], x, lefts = _closer(system, few, found, distances, limits)
     alike = np.sum(x.conj() * start, axis=(0, 1))
     near = np.abs(values[lacking] - guess) <= _MORE * np.abs(shifts[lacking]) + limits
     if not np.all(near & (np.abs(alike) >= _ALIKE * np.sqrt(_squares(start)))):
@@ -291,6 +296,39 @@ def _in_larger(
         every[n][:, lacking] = answer
     changed = {"values": values, "shapes": shapes, "shifts": shifts, "outer": every}
     return replace(motions, orders=orders, **changed)
+
+
+def _distances(motions: HillMotions, values: np.ndarray, base: float) -> np.ndarray:
+    """Return the distance of each of `values` to the next one of another family [1/s]."""
+    apart = values[:, None] - np.append(values, values[motions.paired].conj())
+    apart = np.abs(apart - 1j * base * np.rint(apart.imag / base))
+    np.fill_diagonal(apart, np.inf)
+    return apart.min(axis=1)
+
+
+def _closer(
+    system: PeriodicSystem,
+    motions: HillMotions,
+    found: tuple[np.ndarray, np.ndarray, np.ndarray],
+    distances: np.ndarray,
+    limits: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what :func:`settled` found, those closer whose steps are not small beside distances.
+
+    There the convergence is not cubic yet. Those that rounding keeps from that stay as they are.
+    """
+    finer = np.maximum(_OF_DISTANCE * distances, motions.rounding)
+    near = np.flatnonzero(finer < limits)
+    if not near.size:
+        return found
+    values, shapes, _ = found
+    again = settled(system, motions.orders, values[near], shapes[..., near], finer[near])
+    if again is None:
+        return found
+    kept = np.abs(again[0] - values[near]) < 0.5 * distances[near]
+    for known, better in zip(found, again, strict=True):
+        known[..., near[kept]] = better[..., kept]
+    return found
 
 
 def _left_out(
@@ -307,7 +345,7 @@ def _left_out(
     return -work[0] / work[1], outer
 
 
-def _differ(motions: HillMotions, columns: np.ndarray, base: float) -> bool:
+def differ(motions: HillMotions, columns: np.ndarray, base: float) -> bool:
     """Return True if no motion in `columns` is a copy of another or a conjugate, shifted or not."""
     every = motions.with_conjugates()
     values, shapes = every.values, every.shapes

@@ -4,6 +4,34 @@ from validation.mutations.mutation import mutations
 
 LINEAR_STABILITY = [
     *mutations(
+        "linear/periodic/fundamental.py",
+        "test_near_exponents.py",
+        (
+            "bound of the tolerance, not of the error",
+            "_MORE / 63.0 * np.linalg.norm(change)",
+            "tolerance * np.linalg.norm(scaled)",
+        ),
+        (
+            "error of a fundamental matrix left out",
+            "_MORE / 63.0 * np.linalg.norm(change)",
+            "0.0 * np.linalg.norm(change)",
+        ),
+    ),
+    *mutations(
+        "linear/periodic/hill.py",
+        "test_near_exponents.py",
+        ("distance of exponents left out", "_OF_DISTANCE * distances", "1e9 * distances"),
+    ),
+    *mutations(
+        "linear/periodic/near_copies.py",
+        "test_near_exponents.py",
+        (
+            "near copies as far out as motions",
+            "np.abs(steps) * system.step + outermost",
+            "0 * system.step + outermost",
+        ),
+    ),
+    *mutations(
         "linear/stability/sensitivity.py",
         "test_magnetic_bearing.py::test_sensitivity_of_a_spinning_rotor_is_that_of_both_senses",
         ("complementary in place of the sensitivity", "append(1.0 + place", "append(place"),
