@@ -7,7 +7,7 @@ one mode of a pair it is an asymmetric shaft, and where no others bend it has no
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -57,7 +57,14 @@ def lowest_with_pairs(
     return values[:count], modes[:, :count]
 
 
-def _paired(rotor, rows, values: np.ndarray, modes: np.ndarray, mode: int, others) -> bool:
+def _paired(
+    rotor: FiniteElementRotor,
+    rows: np.ndarray | slice,
+    values: np.ndarray,
+    modes: np.ndarray,
+    mode: int,
+    others: Iterable[int],
+) -> bool:
     """Return whether one of `others` bends as `mode` does, at nearly the same frequency."""
     frequencies = np.sqrt(np.maximum(values, 0.0))
     near = [
@@ -69,7 +76,7 @@ def _paired(rotor, rows, values: np.ndarray, modes: np.ndarray, mode: int, other
     return bool((np.minimum(energy[:, :1], energy[:, 1:]).sum(axis=0) >= _ALIKE).any())
 
 
-def _energies(rotor: FiniteElementRotor, rows, modes: np.ndarray) -> np.ndarray:
+def _energies(rotor: FiniteElementRotor, rows: np.ndarray | slice, modes: np.ndarray) -> np.ndarray:
     """Return shares of kinetic energy (places and directions, k).
 
     Slices of the rotor, by radial, tangential and axial motion: equal for a pair, and others for

@@ -23,6 +23,8 @@ from exudyn_rotor.linear.periodic.periodic_system import (
 )
 
 MOST_STEPS = 2**14
+# shares of a step: those of Gauss's quadrature with two points
+GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
 _CHUNK = 128
 _SHOWN_FROM = 4e9  # steps times entries cubed, of some seconds
 _MORE = 2.0  # times its estimate that the error of a fundamental matrix may be
@@ -234,10 +236,26 @@ def _harmonics(
     return found if system.base > 0.0 else found[::-1]
 
 
+def magnus_exponent(A: np.ndarray, B: np.ndarray) -> np.ndarray:
+    """Return the exponent of a Magnus step of fourth order; any leading dimensions.
+
+    Of the rates times the step at :data:`GAUSS_POINTS` of it. Source: Blanes, Casas, Oteo, Ros,
+    Phys. Rep. 470 (2009), Eq. (254).
+    """
+    return 0.5 * (A + B) - np.sqrt(3.0) / 12.0 * _commutator(A, B)
+
+
 def state_matrix(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> np.ndarray:
     """Return A of ``ż = A z`` with ``z = (x, ẋ)``; any leading dimensions."""
     size = M.shape[-1]
-    A = np.zeros((*np.broadcast_shapes(M.shape, D.shape, K.shape)[:-2], 2 * size, 2 * size))
+    solved = np.linalg.solve(M, np.concatenate([K, D], axis=-1))
+    return unit_state_matrix(solved[..., size:], solved[..., :size])
+
+
+def unit_state_matrix(D: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Return what :func:`state_matrix` does for unit masses."""
+    size = K.shape[-1]
+    A = np.zeros((*np.broadcast_shapes(D.shape, K.shape)[:-2], 2 * size, 2 * size))
     A[..., :size, size:] = np.eye(size)
-    A[..., size:, :] = -np.linalg.solve(M, np.concatenate([K, D], axis=-1))
+    A[..., size:, :size], A[..., size:, size:] = -K, -D
     return A

@@ -19,6 +19,12 @@ import scipy.linalg
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+from exudyn_rotor.linear.periodic.fundamental import (
+    GAUSS_POINTS,
+    accelerations,
+    magnus_exponent,
+    sampled,
+)
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.response.places import Place
 from exudyn_rotor.theory.axis import SpinAxis
@@ -123,24 +129,19 @@ class ShakenRotor:
 
     def _propagators(self, angles: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
         """Return what the state and the line of the load do in the steps from these angles."""
-        nodes = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
-        A, B = (self._generator(angles + self.system.speed * step * node) for node in nodes)
-        exponent = 0.5 * step * (A + B) - np.sqrt(3.0) / 12.0 * step**2 * (A @ B - B @ A)
-        propagators = scipy.linalg.expm(exponent)
+        turns = self.system.speed * step * GAUSS_POINTS
+        A, B = (step * self._generator(angles + turn) for turn in turns)
+        propagators = scipy.linalg.expm(magnus_exponent(A, B))
         state = 2 * self.system.size
         return propagators[:, :state, :state], propagators[:, :state, state:]
 
     def _generator(self, angles: np.ndarray) -> np.ndarray:
         """Return the rates of (x, ẋ, a, ȧ) at angles, shape (n, 2k + 6, 2k + 6)."""
         k = self.system.size
-        M, D, K = (
-            sum(np.exp(1j * n * angles)[:, None, None] * X for n, X in terms.items()).real
-            for terms in (self.system.M, self.system.D, self.system.K)
-        )
+        M, D, K = sampled(self.system, angles)
         R = _rotations(angles)
         load = self.loads[0] @ R.transpose(0, 2, 1) + self.loads[1]
-        wide = [np.broadcast_to(X, (len(angles), *X.shape[-2:])) for X in (-K, -D, load)]
-        rates = np.linalg.solve(np.broadcast_to(M, wide[0].shape), np.concatenate(wide, axis=2))
+        rates = accelerations(self.system, M, np.concatenate([-K, -D, load], axis=2))
         generator = np.zeros((len(angles), 2 * k + 6, 2 * k + 6))
         generator[:, :k, k : 2 * k] = np.eye(k)
         generator[:, k : 2 * k, : 2 * k + 3] = rates

@@ -14,7 +14,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from exudyn_rotor.linear.periodic.fundamental import state_matrix
+from exudyn_rotor.linear.periodic.fundamental import (
+    GAUSS_POINTS,
+    magnus_exponent,
+    state_matrix,
+    unit_state_matrix,
+)
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, Terms
 from exudyn_rotor.threads import one_thread
 
@@ -61,17 +66,16 @@ class GrowthScan:
         if len(self.orders["M"]) == 1:
             for name in "DK":
                 terms[name] = np.linalg.solve(terms["M"][:, :1], terms[name])
-            terms["M"] = np.broadcast_to(np.eye(self.size), (len(values), 1, *terms["M"].shape[2:]))
+            del terms["M"]
         periods = 2.0 * np.pi / (self.step * self.speeds(values))
         turn = 2.0 * np.pi / self.step
         h = (periods / self.steps)[:, None, None]
         one = np.eye(2 * self.size)
         result = np.broadcast_to(one, (len(values), *one.shape))
-        places = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0  # Gauss points
         with np.errstate(all="ignore"):
             for step in range(self.steps):
-                A, B = (h * self._matrix(terms, turn * (step + s) / self.steps) for s in places)
-                X = 0.5 * (A + B) - np.sqrt(3.0) / 12.0 * (A @ B - B @ A)
+                angles = turn * (step + GAUSS_POINTS) / self.steps
+                X = magnus_exponent(*(h * self._matrix(terms, angle) for angle in angles))
                 even, odd = one + X @ X / 12.0, 0.5 * X
                 result = np.linalg.solve(even - odd, (even + odd) @ result)
         good = np.all(np.isfinite(result), axis=(1, 2))
@@ -81,19 +85,13 @@ class GrowthScan:
         return found
 
     def _matrix(self, terms: dict[str, np.ndarray], angle: float) -> np.ndarray:
-        """Return the state matrices at a spin angle."""
+        """Return the state matrices at a spin angle; of unit masses without M."""
         at = {}
-        for name, orders in self.orders.items():
-            turned = angle * np.array(orders[1:])
+        for name, given in terms.items():
+            turned = angle * np.array(self.orders[name][1:])
             waves = np.array([1.0, *2.0 * np.cos(turned), *-2.0 * np.sin(turned)])
-            at[name] = np.tensordot(waves, terms[name], (0, 1))
-        if len(self.orders["M"]) > 1:
-            return state_matrix(**at)
-        size = self.size
-        A = np.zeros((len(at["K"]), 2 * size, 2 * size))
-        A[:, :size, size:] = np.eye(size)
-        A[:, size:, :size], A[:, size:, size:] = -at["K"], -at["D"]
-        return A
+            at[name] = np.tensordot(waves, given, (0, 1))
+        return state_matrix(**at) if "M" in at else unit_state_matrix(**at)
 
 
 def _orders(terms: Sequence[Terms]) -> list[int]:

@@ -94,12 +94,20 @@ LINEAR_STABILITY = [
         ),
     ),
     *mutations(
+        "linear/periodic/fundamental.py",
+        "test_between_samples.py::test_growths_of_a_scan_are_those_of_the_exponents",
+        ("commutator of fourth order added", "- np.sqrt(3.0) / 12.0", "+ np.sqrt(3.0) / 12.0"),
+    ),
+    *mutations(
         "linear/stability/growth_scan.py",
         "test_between_samples.py::test_growths_of_a_scan_are_those_of_the_exponents",
-        ("commutator with the wrong sign", "- np.sqrt(3.0) / 12.0", "+ np.sqrt(3.0) / 12.0"),
         ("exponential of second order", "X @ X / 12.0", "0.0 * X"),
         ("waves that turn backwards", "*-2.0 * np.sin(turned)", "*2.0 * np.sin(turned)"),
-        ("damping with the wrong sign", '-at["K"], -at["D"]', '-at["K"], at["D"]'),
+        (
+            "damping with the wrong sign",
+            "else unit_state_matrix(**at)",
+            'else unit_state_matrix(-at["D"], at["K"])',
+        ),
         ("growth of a turn", "self.step * self.speeds(values)", "self.speeds(values)"),
     ),
     *mutations(
