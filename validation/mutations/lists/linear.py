@@ -82,6 +82,7 @@ LINEAR = [
     *mutations(
         "linear/modal/hermitian_zeros.py",
         "test_hermitian_zeros.py test_critical.py",
+        (
             "critical speeds between two brackets left out where a table begins",
             "grid = np.append(_first_speed(matrix, speed, grid[0]), grid)",
             "grid = np.append(grid[0], grid)",
