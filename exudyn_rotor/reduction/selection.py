@@ -183,11 +183,11 @@ def _columns(reduced: ReducedRotor, formulation: Formulation) -> tuple[np.ndarra
 
 def without_mean_rotation(reduced: ReducedRotor, T: np.ndarray) -> np.ndarray:
     """Make columns T of a basis free of mean rotation about the axis, and orthonormal again."""
-    return _orthogonal_to(_mean_rotation(reduced), T)
+    return _orthogonal_to(mean_rotation(reduced), T)
 
 
-def _mean_rotation(reduced: ReducedRotor) -> np.ndarray:
-    """Unit vector along the mean rotation about the axis that each column of the basis has."""
+def mean_rotation(reduced: ReducedRotor) -> np.ndarray:
+    """Return the unit vector (k,) along the columns' mean rotations about the axis."""
     elastic = [kind is ModeKind.ELASTIC for kind in reduced.kinds]
     turns = np.where(elastic, 0.0, reduced.axis.direction @ reduced.invariants.mean_rotation)
     size = np.linalg.norm(turns)

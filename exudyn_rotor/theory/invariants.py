@@ -219,10 +219,11 @@ class Invariants:
         ``I⁻¹ Σ M y × ψ`` with y from the centre of mass and I the tensor of inertia about it. What
         has no inertia does not turn.
         """
-        J, P = moments_about(self, self.center)
-        inertia = np.trace(J) * np.eye(3) - J
+        _, P = moments_about(self, self.center)
         momentum = np.einsum("aib,abk->ik", _EPSILON, P)
-        return checks.read_only(np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ momentum)
+        return checks.read_only(
+            np.linalg.pinv(inertia_tensor(self), rcond=1e-12, hermitian=True) @ momentum
+        )
 
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""
@@ -248,6 +249,12 @@ class Invariants:
             if getattr(self, name) is not None:
                 projected[name] = _mean(T.T @ (getattr(self, name) @ T))
         return replace(self, S=self.S @ T, P=self.P @ T, **projected)
+
+
+def inertia_tensor(invariants: Invariants) -> np.ndarray:
+    """Return the tensor of inertia about the centre of mass, shape (3, 3) [kg m²]."""
+    J = invariants.J - invariants.mass * np.outer(invariants.center, invariants.center)
+    return np.trace(J) * np.eye(3) - J
 
 
 def moments_about(invariants: Invariants, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

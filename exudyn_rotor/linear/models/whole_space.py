@@ -45,7 +45,10 @@ class WholeSpace:
     can_be_sent : bool
         Whether other processes can take the equations as they are; those of a scene they cannot.
     driven : tuple of int
-        Coordinates whose constant part a drive keeps at zero: a spin that nothing holds.
+        Coordinates whose constant part a drive keeps at zero: a spin that nothing holds. Those of
+        `motions_beside_spin`, where given.
+    motions_beside_spin : ndarray, shape (k, k), optional
+        The free spin and all motions without it, as columns: coordinates for steady motions.
     others : ndarray, shape (k, k − 1), optional
         Motions without a spin that is no coordinate.
     """
@@ -53,6 +56,7 @@ class WholeSpace:
     equations: Equations
     can_be_sent: bool
     driven: tuple[int, ...] = ()
+    motions_beside_spin: np.ndarray | None = None
     others: np.ndarray | None = None
     basis: ClassVar[None] = None
     is_shared: ClassVar[bool] = False
@@ -128,7 +132,12 @@ class WholeSpace:
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float
     ) -> dict[int, np.ndarray]:
         """Return the harmonics of the steady motion under harmonics of a load."""
-        return forced_motion(self.at(speed), loads, rate, tolerance, self.driven)
+        T = self.motions_beside_spin
+        if T is None:
+            return forced_motion(self.at(speed), loads, rate, tolerance, self.driven)
+        loads = {n: T.T @ load for n, load in loads.items()}
+        found = forced_motion(self.at(speed).projected(T), loads, rate, tolerance, self.driven)
+        return {n: T @ X for n, X in found.items()}
 
     def holds(self, motions: Sequence[tuple[float, FloquetModes]]) -> bool:
         """Return True: nothing is left out."""

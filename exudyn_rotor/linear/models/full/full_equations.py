@@ -13,7 +13,7 @@ from exudyn_rotor.bearings.given import check_interfaces
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.rotor.eccentricity import warn_of_eccentricity
-from exudyn_rotor.linear.models.rotor.spin import Spin, spin_of
+from exudyn_rotor.linear.models.rotor.spin import Spin, rotations_of
 from exudyn_rotor.linear.models.rotor.supported_rotor import SupportedRotor
 from exudyn_rotor.prestress.static_solution import relief_rotations
 from exudyn_rotor.solid.damping import sparse_damping
@@ -122,10 +122,10 @@ class FullEquations(SupportedRotor):
 
     def with_spin(self: Kind) -> Kind:
         """Return the same with the spin as a coordinate, as all analyses need it."""
-        rigid_spin = spin_of(self.rotor)
-        if self.spin is not None or rigid_spin is None:
+        rotations = rotations_of(self.rotor)
+        if self.spin is not None or rotations is None:
             return self
-        spin = Spin.of(*rigid_spin, self.supports, self.motions, self.invariants, self.axis)
+        spin = Spin.of(rotations, self.supports, self.motions, self.invariants, self.axis)
         warn_of_eccentricity(self.invariants, spin)
         return replace(self, spin=spin)
 
@@ -151,13 +151,13 @@ class FullEquations(SupportedRotor):
         is applied to `strained`, the stack itself by default; without free rigid motions in it,
         rounding does not make forces of them. `torsion` is of :meth:`LinearRotor.steady_torsion`.
         """
-        inv, coriolis, left = self.invariants, self._per_speed[0], {}
+        inv, left = self.invariants, {}
         strained = stack if strained is None else strained
         for n, X in stack.items():
             rate = values + 1j * n * speed
             left[n] = (
                 inv.M @ (X * rate**2)
-                + (inv.D @ X + speed * (coriolis @ X)) * rate
+                + (inv.D @ X + speed * self._coriolis(X)) * rate
                 + inv.K @ strained[n]
                 + self._spin_stiffness(X, speed)
             )
@@ -181,6 +181,11 @@ class FullEquations(SupportedRotor):
                     if np.ndim(force):
                         residual += self._pulled(index, force)
         return left
+
+    def _coriolis(self, X: np.ndarray) -> np.ndarray:
+        """Return ``2G X``, shape (3n, k)."""
+        force = self._per_speed[0] @ X
+        return force if self.spin is None else force - 2.0 * self.spin.unturned(X)
 
     def _spin_stiffness(self, X: np.ndarray, speed: float) -> np.ndarray:
         """Return ``(Ω²(K2 − C) + Ω⁴K4) X``, shape (3n, k)."""

@@ -83,7 +83,9 @@ class Subspace:
         names = ("M", "K", "D", "G", "C", *given)
         self._projected = {name: np.zeros((0, 0)) for name in names}
         # one by one, so that each stays a column of its own: a free one is told by its stiffness
-        for column in np.hstack(seeds(full.rotor)).T:
+        spin, others = seeds(full.rotor)
+        spin = spin if full.spin is None else full.spin.motion[:, None]
+        for column in np.hstack([spin, others]).T:
             self.grow(column[:, None])
         self.rigid = self.basis.shape[1]
         wanted = min(2 * count + 8, full.size - 1)
@@ -315,7 +317,10 @@ class Subspace:
             full.axis, rotor.center_of_mass, invariants, (), interfaces, blocks["M"]
         )
         unit = np.eye(1, self.basis.shape[1])[0]
-        spin = full.spin and replace(full.spin, motion=unit, momentum=unit)
+        spin = full.spin
+        if spin is not None:
+            whirling = self.basis.T @ spin.whirling
+            spin = replace(spin, motion=unit, momentum=unit, whirling=whirling)
         tilt = V @ self.basis
         K2 = tilt.T @ W @ tilt + blocks.get("K2", 0.0)
         levels = Stiffening(0.5 * (K2 + K2.T), 0.0 * K2, blocks.get("K4"))

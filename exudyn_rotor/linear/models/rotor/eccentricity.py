@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.rotor.spin import Spin
-from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
 
 _ECCENTRIC = 1e-3  # relative error of frequencies that is worth a warning
 _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
@@ -18,13 +18,23 @@ def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
     """Tell that spin and lateral motion are coupled where they are taken for decoupled."""
     distance = float(np.linalg.norm(invariants.center))
     error, band = without_drive(invariants)
-    if error <= _ECCENTRIC:
+    tilts = tilts_without_drive(invariants) if spin.free else 0.0
+    if error + tilts <= _ECCENTRIC:
         return
+    found = []
+    if error > tilts:
+        found.append(f"the centre of mass is {distance:.4g} m off the spin axis")
+    if tilts > 0.1 * error:
+        angle = _skewness(invariants)
+        found.append(f"the nearest principal axis is {angle:.2g} rad off the spin axis")
+    near = (
+        ", near a critical speed by m r²/Θ with the whirl radius r of the centre of mass, and the "
+        f"rotor is unstable up to about {band:.0%} above it"
+    )
     what = (
         "a load and decouple spin and lateral motion, as for a rotor driven at constant speed. "
-        f"Without a drive, frequencies differ by about {error:.1%} at rest, near a critical speed "
-        "by m r²/Θ with the whirl radius r of the centre of mass, and the rotor is unstable up to "
-        f"about {band:.0%} above it; balance the rotor"
+        f"Without a drive, frequencies differ by about {error + tilts:.1%} at rest"
+        f"{near if error > tilts else ''}; balance the rotor"
     )
     if spin.coupled:
         what = (
@@ -32,8 +42,7 @@ def warn_of_eccentricity(invariants: Invariants, spin: Spin) -> None:
             "steady forces; hold a blade by rotor.clamped(…) instead"
         )
     warnings.warn(
-        f"the centre of mass is {distance:.4g} m off the spin axis; linear analyses take this as "
-        + what,
+        f"{', and '.join(found)}; linear analyses take this as " + what,
         UserWarning,
         stacklevel=user_level(),
     )
@@ -50,6 +59,23 @@ def without_drive(invariants: Invariants) -> tuple[float, float]:
     inertia = invariants.mass * float(invariants.center @ invariants.center)
     error = 0.5 * inertia / invariants.Theta if inertia > 0.0 else 0.0
     return error, error ** (1.0 / 3.0)
+
+
+def tilts_without_drive(invariants: Invariants) -> float:
+    """Return the relative change of a tilt's frequency at rest by a spin that nothing drives.
+
+    A tilt with the moment of inertia ``I_t`` turns a free rotor by the product of inertia J, and
+    ``J²/Θ`` of its inertia is lost: ``½ J²/(I_t Θ)``.
+    """
+    inertia, e = inertia_tensor(invariants), invariants.direction
+    resisted, alone = e @ inertia @ e, e @ np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ e
+    return 0.5 * max(1.0 - 1.0 / (resisted * alone), 0.0) if resisted * alone > 0.0 else 0.0
+
+
+def _skewness(invariants: Invariants) -> float:
+    """Return the angle between the spin axis and the nearest principal axis [rad]."""
+    _, axes = np.linalg.eigh(inertia_tensor(invariants))
+    return float(np.arccos(min(np.abs(invariants.direction @ axes).max(), 1.0)))
 
 
 def decoupling(invariants: Invariants) -> float:

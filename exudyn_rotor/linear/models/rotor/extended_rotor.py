@@ -81,10 +81,13 @@ class ExtendedRotor(ExtendedModel):
     def whole_space(self, held: bool) -> WholeSpace:
         """Return all coordinates, `held` without a spin that nothing holds."""
         space = self.plain.whole_space(held)
-        others = space.others
-        if others is not None:
-            others = self._joined(others, np.eye(self._more))
-        return replace(space, equations=replace(self, plain=space.equations), others=others)
+        names = "others", "motions_beside_spin"
+        columns = {name: getattr(space, name) for name in names}
+        wide = {
+            name: None if X is None else self._joined(X, np.eye(self._more))
+            for name, X in columns.items()
+        }
+        return replace(space, equations=replace(self, plain=space.equations), **wide)
 
     def _joined(self, rotor: np.ndarray, beside: np.ndarray | None = None) -> np.ndarray:
         """Return a matrix of the rotor with one of the further coordinates, or zeros, beside it."""

@@ -21,12 +21,16 @@ from exudyn_rotor.linear.models.points import Ring, ring_motions, spread
 from exudyn_rotor.linear.models.protocol import Mesh, PointMotions
 from exudyn_rotor.linear.models.rotor.eccentricity import decoupling, warn_of_eccentricity
 from exudyn_rotor.linear.models.rotor.identity_basis import as_reduced
-from exudyn_rotor.linear.models.rotor.spin import Spin, spin_of
+from exudyn_rotor.linear.models.rotor.spin import (
+    Rotations,
+    Spin,
+    rotations_of,
+    rotations_of_reduced,
+)
 from exudyn_rotor.linear.models.rotor.supported_rotor import SupportedRotor
 from exudyn_rotor.linear.models.whole_space import InAllCoordinates, WholeSpace
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem, Terms
 from exudyn_rotor.reduction.fields import ModeShapes
-from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.theory.axis import SpinAxis
@@ -79,9 +83,13 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         rotor: ReducedRotor,
         supports: Sequence[Support] = (),
         stiffening: str = "auto",
-        spin: tuple[np.ndarray, np.ndarray] | None = None,
+        rotations: Rotations | None = None,
+        *,
+        twisted: bool = False,
     ) -> LinearRotor:
-        """Put a rotor on supports; `spin` is its s and Ms where it is no column of the basis.
+        """Put a rotor on supports; `rotations` where its spin is no column of the basis.
+
+        `twisted` where more than the supports may hold its torsion.
 
         Raises
         ------
@@ -92,10 +100,9 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         with one_thread():
             invariants, terms, level = without_supports(rotor, stiffening)
             linear = cls(rotor, tuple(supports), invariants, terms, stiffening=level)
-            if ModeKind.SPIN in rotor.kinds:
-                spin = (np.eye(rotor.size)[rotor.kinds.index(ModeKind.SPIN)],) * 2
-            if spin is not None:
-                linear = replace(linear, spin=linear._on_supports(*spin))
+            rotations = rotations or rotations_of_reduced(rotor)
+            if rotations is not None:
+                linear = replace(linear, spin=linear._on_supports(rotations, twisted))
             free = free_motions_of_reduced(rotor, supports, linear.free_spin is not None)
         return replace(linear, free_motions=free)
 
@@ -110,15 +117,15 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         ValueError
             If a support is at an unknown interface; the message lists the known ones.
         """
-        linear = cls.of(as_reduced(rotor), supports, stiffening, spin_of(rotor))
+        linear = cls.of(as_reduced(rotor), supports, stiffening, rotations_of(rotor))
         free = free_motions_of_solid(rotor, supports, linear.free_spin is not None)
         return replace(linear, free_motions=free, is_full=True)
 
-    def _on_supports(self, motion: np.ndarray, momentum: np.ndarray) -> Spin:
+    def _on_supports(self, rotations: Rotations, twisted: bool) -> Spin:
         """Return the spin on the supports; a warning tells where the rotor is eccentric."""
         motions = [self.interface_motion(support.interface) for support in self.supports]
         inv, axis = self.invariants, self.rotor.axis
-        spin = Spin.of(motion, momentum, self.supports, motions, inv, axis)
+        spin = Spin.of(rotations, self.supports, motions, inv, axis, twisted)
         warn_of_eccentricity(inv, spin)
         return spin
 
@@ -145,12 +152,13 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
 
     @cached_property
     def spin_terms(self) -> SpinTerms:
-        """The terms, of whose stiffness the spin feels nothing."""
+        """The terms, of whose stiffness the spin feels nothing, nor rigid motions if it is free."""
         if self.spin is None:
             return self.terms
         given = {"C_hat": self.terms.C_hat, "K4": self.terms.K4}
         return replace(
             self.terms,
+            G=self.terms.G - self.spin.unturned(np.eye(self.size)),
             **{
                 name: self.spin.uncoupled(matrix.__matmul__, np.eye(self.size))
                 for name, matrix in given.items()
@@ -204,7 +212,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
             return None
         D, K, carried = (terms.get(0, 0.0) for terms in self._constant)
         speed = np.asarray(speeds)[:, None, None]
-        D = D + self.terms.damping(speed)
+        D = D + self.spin_terms.damping(speed)
         K = K + carried * speed + self.spin_terms.stiffness(speed)
         return ConstantSystems(self.invariants.M[None], D, K)
 
@@ -213,7 +221,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         D, K, carried = (dict(terms) for terms in self._constant)
         for n, X in carried.items():
             K[n] = K.get(n, 0.0) + speed * X
-        D[0] = D[0] + self.terms.damping(speed)
+        D[0] = D[0] + self.spin_terms.damping(speed)
         K[0] = K[0] + self.spin_terms.stiffness(speed)
         for support, U in self._varying:
             for terms, harmonics in zip((D, K), support.terms(speed), strict=True):
@@ -226,7 +234,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
 
     @cached_property
     def _drift(self) -> float:
-        return decoupling(self.invariants)
+        return 0.0 if self.spin.free else decoupling(self.invariants)
 
     def steady_torsion(self, speed: float) -> float:
         """Return the stiffness of a coupled spin by the steady forces of the supports [rad²/s²].
@@ -266,8 +274,9 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         if held:
             return WholeSpace(light, can_be_sent=True, others=self.spin.rest())
         # if the spin were free, a constant torque however small would turn it on and on
-        driven = (int(np.argmax(self.spin.momentum)),)
-        return WholeSpace(light, can_be_sent=True, driven=driven)
+        motions = np.column_stack([self.spin.motion, self.spin.rest()])
+        given = {"can_be_sent": True, "driven": (0,), "motions_beside_spin": motions}
+        return WholeSpace(light, **given)
 
 
 @kept

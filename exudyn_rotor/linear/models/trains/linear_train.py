@@ -75,7 +75,7 @@ class LinearTrain(InAllCoordinates):
         parts = {}
         for name, rotor in train.rotors.items():
             given = without_spin(rotor) if name in train.driven else rotor
-            alone = LinearRotor.of(given, (), stiffening)
+            alone = LinearRotor.of(given, (), stiffening, twisted=True)
             check_rotor(name, alone, held_elements(elements, own))
             at = places_of(name, elements)
             parts[name] = TurnedRotor.of(

@@ -14,7 +14,7 @@ from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.linear.models.links import Element
 from exudyn_rotor.linear.models.rotor.own_coordinates import OwnCoordinates, in_order, places
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.rotor.spin import Spin
+from exudyn_rotor.linear.models.rotor.spin import Spin, rotations_of_reduced
 from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
 
 
@@ -80,7 +80,7 @@ def check_rotor(name: str, alone: LinearRotor, elements: Sequence[Element]) -> N
     on_ground = [e for e in elements if len(e.ends) == 1 and e.ends[0][0] == name]
     supports = [element.connection for element in on_ground]
     motions = [alone.interface_motion(support.interface) for support in supports]
-    given = alone.spin.motion, alone.spin.momentum, supports, motions
+    given = rotations_of_reduced(alone.rotor), supports, motions
     if Spin.of(*given, alone.invariants, alone.rotor.axis).coupled:
         raise ValueError(
             f"supports[{name!r}]: hold the spin by an arm off the axis, or turn with the rotor and "

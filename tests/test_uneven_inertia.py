@@ -1,0 +1,147 @@
+"""Rotors with products of inertia and the centre of mass off the axis: lists and scenes are alike.
+
+In both the spin follows θ = Ωt. The reference is a rigid rotor with finite rotations.
+"""
+
+import numpy as np
+import pytest
+from models import disc_rotor
+from point_rotors import free_stiffness
+from rigid_rotors import RigidRotor
+from test_eccentric import ROUTES, distance, few, on_route
+from test_kinds_in_scenes_and_lists import BLOCK, ENDS, KINDS, on_ends
+from test_uneven_films import SPEED, apart
+
+from exudyn_rotor import SolidRotor, Support, campbell, stability, unbalance_response
+from exudyn_rotor.linear.models.rotor.eccentricity import tilts_without_drive
+from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
+
+pytestmark = pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis) is")
+
+STIFFNESS, DAMPING, SLOW = 1e6, 50.0, 10.0  # of each of two bearings; rad/s
+PLACES = [-0.2, 0.2]
+
+
+def uneven(couple: float, eccentricity: float) -> tuple[SolidRotor, np.ndarray, np.ndarray]:
+    """Return a rotor of 2 kg with two masses on a diagonal, its nodes and masses."""
+    angle = 2.0 * np.pi * np.arange(5) / 5
+    ring = 0.1 * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    ring += [eccentricity, 0.0, 0.0]
+    diagonal = np.array([[0.1, 0.0, 0.1], [-0.1, 0.0, -0.1]])
+    ends = np.column_stack([np.zeros((2, 2)), PLACES])
+    shift = np.array([0.0, 0.0, 0.05])
+    nodes = np.vstack([ring - shift, ring + shift, diagonal, ends])
+    masses = np.repeat([0.2, couple + 1e-6, 0.01], [10, 2, 2])
+    K = free_stiffness(nodes, 1e10 * np.eye(nodes.size))
+    rotor = SolidRotor.from_matrices(np.kron(np.diag(masses), np.eye(3)), K, nodes, "z")
+    return rotor.with_interface("left", [12]).with_interface("right", [13]), nodes, masses
+
+
+def bearings() -> list[Support]:
+    K, D = np.diag([STIFFNESS] * 3), np.diag([DAMPING, DAMPING, 0.0])
+    return [Support(name, K, D) for name in ENDS]
+
+
+def nonlinear(nodes: np.ndarray, masses: np.ndarray, speed: float, free: bool) -> np.ndarray:
+    """Return the exponents with Im s > 0 about the steady motion."""
+    rotor = RigidRotor(nodes, masses, PLACES, STIFFNESS, DAMPING, STIFFNESS, speed, free)
+    return np.array([s for s in rotor.exponents() if s.imag > 1.0])
+
+
+@pytest.mark.parametrize("route", ROUTES)
+@pytest.mark.parametrize(("couple", "eccentricity"), [(0.0, 0.01), (0.1, 0.0), (0.1, 0.01)])
+def test_exponents_are_those_at_constant_speed(couple, eccentricity, route, monkeypatch):
+    """Products of inertia changed them by 4e-3 of a frequency.
+
+    Terms of second order in the steady tilt and whirl, which are left out, are 1e-7. Unreduced, what
+    holds the masses together yields by 1e-4, the ratio of both stiffnesses.
+    """
+    rotor, nodes, masses = uneven(couple, eccentricity)
+    expected = nonlinear(nodes, masses, SLOW, free=False)
+    target = rotor.reduce(0) if route == "reduced" else on_route(rotor, route, monkeypatch)
+    found = stability(target, [SLOW], supports=bearings(), accuracy=None, **few(route))
+    exponents = np.r_[found.exponents[0], found.exponents[0].conj()]
+    modes = campbell(target, [SLOW], supports=bearings(), modes=6, accuracy=None)
+    frequencies = (modes.growth + 1j * modes.frequencies_rotor)[0]
+    for each in (exponents, frequencies):
+        error = 1e-6 if route == "reduced" else 4e-4
+        assert distance(each, expected) < error * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("couple", [0.02, 0.1, 0.2])
+def test_a_free_spin_changes_tilts_by_as_much_as_stated(couple):
+    rotor, nodes, masses = uneven(couple, 0.0)
+    held, free = (nonlinear(nodes, masses, 1.0, free) for free in (False, True))
+    changes = np.abs(free - held[:, None]).min(axis=0) / np.abs(free)
+    error = tilts_without_drive(LinearRotor.of(rotor.reduce(0)).invariants)
+    assert changes.max() == pytest.approx(error, rel=3.0 * error + 1e-3)
+
+
+# ------------------------------------------------------------------ scenes and lists
+
+
+class Held:
+    """The equations of a list without its spin, as stability takes them."""
+
+    def __init__(self, model):
+        self.space = model.space(1, SPEED, held=True)
+
+    def at(self, speed):
+        return self.space.at(speed)
+
+
+def random_masses(seed: int) -> SolidRotor:
+    """Return a disc on a shaft of 17 kg with three masses of up to 1 kg, mostly on one side."""
+    rng, rotor = np.random.default_rng(seed), disc_rotor(safety=1.0)
+    for mass in rng.uniform(0.1, 1.0, 3):
+        angle, z = rng.uniform(-1.0, 1.0), rng.uniform(-0.1, 0.6)
+        place = [0.15 * np.cos(angle), 0.15 * np.sin(angle), z]
+        rotor = rotor.add_point_mass(place, mass)
+    return rotor
+
+
+@pytest.mark.parametrize("base", [None, BLOCK], ids=["ground", "block"])
+@pytest.mark.parametrize("kind", ["table", "rotor frame", "tilts", "seal"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_scenes_of_eccentric_rotors_have_the_exponents_of_their_lists(seed, kind, base):
+    """Centres of mass 4 to 10 mm off the axis: they differed by up to 1e-3 of the speed."""
+    rotor = random_masses(seed).reduce(4 * seed - 4)
+    assert 0.004 < np.hypot(*rotor.center_of_mass[:2]) < 0.016
+    in_scene, in_list = on_ends(rotor, KINDS[kind], base, free=base is not None)
+    assert apart(in_scene, Held(in_list), SPEED) < 1e-7
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_public_analyses_of_rigid_eccentric_rotors_are_alike(free):
+    models = on_ends(random_masses(2).reduce(0), KINDS["table"], free=free, gravity=np.zeros(3))
+    frequencies = [campbell(each, [SPEED], accuracy=None).frequencies_rotor for each in models]
+    growths = [stability(each, [SPEED], accuracy=None).growth for each in models]
+    for found, expected in (frequencies, growths):
+        found, expected = (each[np.isfinite(each)] for each in (found, expected))
+        assert np.abs(found[:, None] - expected).min(axis=1).max() < 1e-8 * SPEED
+    orbits = [unbalance_response(each, [SPEED], accuracy=None) for each in models]
+    for name in ENDS:
+        np.testing.assert_allclose(*(each.semi_axes(name)[0] for each in orbits), rtol=1e-6)
+
+
+def test_the_drive_of_steady_motions_is_no_load(monkeypatch):
+    """A torque on the mean rotation does not tilt: all routes have the same whirl."""
+    rotor, *_ = uneven(0.2, 0.01)
+    found = [
+        unbalance_response(
+            rotor.reduce(0) if route == "reduced" else on_route(rotor, route, monkeypatch),
+            [300.0], supports=bearings(), accuracy=None, frame="rotor",
+        ).motion
+        for route in ROUTES
+    ]  # fmt: skip
+    for other in found[1:]:  # elastic by 1e-4
+        np.testing.assert_allclose(other, found[0], atol=4e-4 * np.abs(found[0]).max())
+
+
+@pytest.mark.filterwarnings("default:the nearest principal axis")
+def test_a_skew_principal_axis_is_told():
+    rotor, *_ = uneven(0.1, 0.0)
+    with pytest.warns(
+        UserWarning, match=r"axis is 0\.\d+ rad off the spin axis; .* 0\.5% at rest; balance"
+    ):
+        campbell(rotor.reduce(0), [10.0], supports=bearings(), modes=4, accuracy=None)
