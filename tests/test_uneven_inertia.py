@@ -53,8 +53,8 @@ def nonlinear(nodes: np.ndarray, masses: np.ndarray, speed: float, free: bool) -
 def test_exponents_are_those_at_constant_speed(couple, eccentricity, route, monkeypatch):
     """Products of inertia changed them by 4e-3 of a frequency.
 
-    Terms of second order in the steady tilt and whirl, which are left out, are 1e-7. Unreduced, what
-    holds the masses together yields by 1e-4, the ratio of both stiffnesses.
+    Terms of second order in the steady tilt and whirl, which are left out, are 1e-7. Unreduced,
+    what holds the masses together yields by 1e-4, the ratio of both stiffnesses.
     """
     rotor, nodes, masses = uneven(couple, eccentricity)
     expected = nonlinear(nodes, masses, SLOW, free=False)
@@ -111,9 +111,9 @@ def test_scenes_of_eccentric_rotors_have_the_exponents_of_their_lists(seed, kind
     assert apart(in_scene, Held(in_list), SPEED) < 1e-7
 
 
-@pytest.mark.parametrize("free", [False, True])
-def test_public_analyses_of_rigid_eccentric_rotors_are_alike(free):
-    models = on_ends(random_masses(2).reduce(0), KINDS["table"], free=free, gravity=np.zeros(3))
+@pytest.mark.parametrize(("kind", "free"), [("table", False), ("tilts", True)])
+def test_public_analyses_of_rigid_eccentric_rotors_are_alike(kind, free):
+    models = on_ends(random_masses(2).reduce(0), KINDS[kind], free=free, gravity=np.zeros(3))
     frequencies = [campbell(each, [SPEED], accuracy=None).frequencies_rotor for each in models]
     growths = [stability(each, [SPEED], accuracy=None).growth for each in models]
     for found, expected in (frequencies, growths):

@@ -113,14 +113,15 @@ def campbell(
     -----
     A spin that no support holds has the frequency 0 and no growth, at every speed and level of
     stiffening. Rigid lateral motion is not coupled with it but is that of a rotor driven at
-    constant speed, as in :func:`stability` and the responses; elastic motion is by its Coriolis
-    force alone, as a disc that breathes. Without a drive an eccentric centre of mass couples all. A
+    constant speed, as in :func:`stability` and the responses: the mean rotation about the axis
+    follows Ωt. Elastic motion is coupled by its Coriolis force alone, as a disc that breathes.
+    Without a drive an eccentric centre of mass couples all. A
     Jeffcott rotor (mass m, eccentricity e, inertia Θ about the axis, critical speed ω) then has
     frequencies that differ, relative to ω, by ``½ m e²/Θ`` at rest and ``m r²/Θ`` near ω, with the
-    whirl radius r of the centre of mass, and is unstable from ω to ``ω(1 + (½ m e²/Θ)^⅓)``. From
-    0.1 % at rest on, a warning tells. In a scene with ``translation='none'`` and a prescribed spin
-    the frame turns with the mean of the mass about the axis; frequencies of an eccentric rotor then
-    differ by the order of ``m e²/Θ`` as well.
+    whirl radius r of the centre of mass, and is unstable from ω to ``ω(1 + (½ m e²/Θ)^⅓)``; a
+    product of inertia J adds ``½ J²/(I_t Θ)`` to tilts of the inertia ``I_t``. From 0.1 % at rest
+    on, a warning tells. A scene has its spin prescribed, for elastic motion, too, as
+    :func:`stability` has it.
 
     Springs in the frame of the rotor that hold its spin, by torsion or off the axis, and springs
     that stand still with a distance between them, are complete, with the stiffness of the spin by

@@ -10,6 +10,7 @@ from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.linear_exponents import LINEAR_EXPONENTS
 from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
+from validation.mutations.lists.linear_spin import LINEAR_SPIN
 from validation.mutations.lists.linear_stability import LINEAR_STABILITY
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.multibody_rotor import MULTIBODY_ROTOR
@@ -41,6 +42,7 @@ ALL = (
     *LINEAR_PERIODIC,
     *LINEAR_EXPONENTS,
     *LINEAR,
+    *LINEAR_SPIN,
     *LINEAR_STABILITY,
     *TRAINS,
     *EVALUATION,
