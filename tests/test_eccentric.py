@@ -23,7 +23,7 @@ from exudyn_rotor.linear.models.rotor.eccentricity import without_drive
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce
 
-pytestmark = pytest.mark.filterwarnings("ignore:the centre of mass is")
+pytestmark = pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis) is")
 
 MASS, RADIUS, ECCENTRICITY = 2.0, 0.1, 0.03
 INERTIA = MASS * RADIUS**2  # about the centre of mass, along the axis

@@ -180,7 +180,7 @@ def test_mesh_axes_and_origin_do_not_matter(level, seed, count):
     assert_small(found - expected, expected, 1e-10)
 
 
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
+@pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis) is")
 @examples
 @given(seeds, counts, factors, factors, factors)
 def test_units_do_not_matter(seed, count, length, mass, time):
