@@ -25,7 +25,12 @@ _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in
 
 
 def equilibrium(
-    scene: SceneCoordinates, probe: Probe, theta: float, start: np.ndarray, tolerance: float
+    scene: SceneCoordinates,
+    probe: Probe,
+    theta: float,
+    start: np.ndarray,
+    tolerance: float,
+    kept: np.ndarray,
 ) -> np.ndarray:
     """Return the coordinates (k,) of an equilibrium at rest, at one angle of the rotor [rad].
 
@@ -38,6 +43,8 @@ def equilibrium(
     start : ndarray, shape (k,)
     tolerance : float
         Largest last step, relative to the motion.
+    kept : ndarray, shape (k, r)
+        Orthonormal motions in which it is looked for.
 
     Raises
     ------
@@ -48,7 +55,7 @@ def equilibrium(
     for iteration in range(_MOST_ITERATIONS):
         point = linearised(probe, theta, y, still, still)
         metres = 1.0 / scene.metre(np.diag(point.M))
-        step, left = solved(point.K, -point.residual)
+        step, left = solved_in(kept, point.K, -point.residual)
         pull = left / metres
         held = np.abs(pull).max() <= UNHELD * scene.mass
         most = np.abs(point.residual / metres).max()
@@ -91,3 +98,9 @@ def solved(K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     solution = scipy.linalg.lstsq(scaled, scale * load[held], cond=1e-12, lapack_driver="gelsy")
     answer[held] = scale * solution[0]
     return answer, load - K @ answer
+
+
+def solved_in(kept: np.ndarray, K: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return as :func:`solved`, in orthonormal motions (k, r) alone."""
+    answer, left = solved(kept.T @ K @ kept, kept.T @ load)
+    return kept @ answer, load - kept @ (kept.T @ load - left)

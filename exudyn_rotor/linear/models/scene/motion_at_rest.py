@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_rotor.linear.models.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.models.scene.equilibrium import equilibrium
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.probe import Probe
@@ -24,6 +25,7 @@ def motion_at_rest(
     UnconvergedError
         Where there is no equilibrium.
     """
+    kept = held_along_axis(scene, probe)
     start = journal_start(scene, 0.0, np.arange(-1, 2))
     count = _SAMPLES
     while True:
@@ -32,7 +34,7 @@ def motion_at_rest(
         values = []
         for theta in angles:
             near = values[-1] if values else (np.exp(1j * theta * np.arange(-1, 2)) @ start).real
-            values.append(equilibrium(scene, probe, theta, near, tolerance))
+            values.append(equilibrium(scene, probe, theta, near, tolerance, kept))
         harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
         sizes = np.abs(harmonics).max(axis=1)
         if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _SAMPLES:

@@ -11,15 +11,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg
 
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.models.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.models.scene.equilibrium import (
     BALANCED,
     FAR,
     NOISE,
     SMALLEST,
     UNHELD,
-    solved,
+    solved_in,
 )
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
@@ -102,9 +104,11 @@ def steady_motion(
     UnconvergedError
         Where no steady motion is found, or 192 angles do not resolve the coefficients.
     """
-    samples, found = _FIRST_SAMPLES, None
+    samples, found, mean = _FIRST_SAMPLES, None, None
+    if scene.about != "given":
+        mean = held_along_axis(scene, probe)
     while samples <= _MOST_SAMPLES:
-        search = _Search(scene, probe, samples, tolerance or _AT_REST, tolerance is None)
+        search = _Search(scene, probe, samples, tolerance or _AT_REST, tolerance is None, mean)
         try:
             system, found = search.found(found)
         except UnconvergedError as error:
@@ -151,7 +155,8 @@ class _Search:
     """The steady motion by its values at `samples` angles.
 
     `tolerance` counts relative to the motion, but for a step of differences in the equations. The
-    motion alone does not need resolved equations: Newton's method then takes more steps.
+    motion alone does not need resolved equations: Newton's method then takes more steps. `mean`
+    are the motions (k, r) whose mean is looked for.
     """
 
     scene: Scene
@@ -159,6 +164,7 @@ class _Search:
     samples: int
     tolerance: float
     for_equations: bool
+    mean: np.ndarray | None = None
 
     @cached_property
     def angles(self) -> np.ndarray:
@@ -172,6 +178,12 @@ class _Search:
     @cached_property
     def waves(self) -> np.ndarray:
         return np.exp(1j * np.outer(self.angles, self.orders))
+
+    @cached_property
+    def kept(self) -> np.ndarray:
+        """Motions (h k, r) in which harmonics are looked for."""
+        every = np.eye(self.scene.size)
+        return scipy.linalg.block_diag(*(every if n else self.mean for n in self.orders))
 
     @cached_property
     def spin(self) -> OwnSpin | None:
@@ -239,7 +251,7 @@ class _Search:
                 continue
             before, share = size, 1.0
             K = hill_matrices(self._discrete(points), self.orders)[2]
-            change, left = (X.reshape(Y.shape) for X in solved(K, -residual.ravel()))
+            change, left = (X.reshape(Y.shape) for X in solved_in(self.kept, K, -residual.ravel()))
             # there are no forces before the first step
             torque, twist = self._own_spin(system, points if iteration else None, K, Y + change)
             change = change - torque * twist
@@ -333,7 +345,7 @@ class _Search:
             forces = np.mean([point.forces for point in points], axis=0)
             least = self.spin.least_stiffness(system.K[0], forces, self.probe.rounding)
         middle = np.flatnonzero(self.orders == 0)[0]
-        twist = solved(K, self.spin.torque(self.orders))[0].reshape(Y.shape)
+        twist = solved_in(self.kept, K, self.spin.torque(self.orders))[0].reshape(Y.shape)
         return self.spin.drive_torque(twist[middle], Y[middle], least), twist
 
     def _counts(self, sizes: np.ndarray) -> float:
