@@ -1,8 +1,13 @@
 """One thread per numerical library, small matrices; the tests share the cores; no display."""
 
+import gc
 import os
 
 import pytest
+
+# modules and collected tests stay to the end: looking through them for waste takes some seconds of
+# each worker
+gc.disable()
 
 # before numpy and ngsolve are imported, which read them; processes that tests start have them, too.
 # NGSolve's threads wait by spinning: two processes on two cores took three times as long
@@ -31,6 +36,13 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         return
     options.numprocesses = workers
     options.dist = "worksteal"  # neighbours stay together and share the models of their file
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish() -> None:
+    """Collect garbage from here on, but not among what all tests need."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(autouse=True)
