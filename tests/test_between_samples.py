@@ -1,9 +1,18 @@
-"""Ranges of instability between samples, of uneven rotors on uneven supports."""
+"""Ranges of instability between samples: uneven rotors on uneven supports, and tables."""
 
+import exudyn
 import numpy as np
 import pytest
 
-from exudyn_rotor import SolidRotor, Support, linear_model, stability_threshold
+from exudyn_rotor import (
+    RotorTrain,
+    SolidRotor,
+    Support,
+    add_rotor,
+    add_supports,
+    linear_model,
+    stability_threshold,
+)
 from exudyn_rotor.linear.periodic.exponents import exponents
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
 from exudyn_rotor.linear.stability.between_samples import PARTS, to_look_at
@@ -186,3 +195,49 @@ def test_nothing_is_seen_closer_where_growth_does_not_change():
     scan = Given(lambda value: np.full(len(value), -1.0))
     assert to_look_at(scan, (0.0, 1.0), {0.0: False, 1.0: False}) == []
     assert scan.calls == PARTS + 1
+
+
+KNOTS = [0.0, 148.0, 150.0, 152.0, 500.0]
+DAMPING = [20.0, 20.0, 0.1, 20.0, 20.0]  # N s/m
+# inner damping of 5 N s/m of a mass with ω = 100 rad/s grows from Ω = ω (1 + outer/5) on
+DIP = [150.0 - 2.4 / 10.0, 150.0 + 2.4 / 9.9]
+
+
+@pytest.mark.parametrize("kind", ["list", "model", "train"])
+def test_a_range_within_a_dip_of_a_table_is_found(kind):
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    ends = {"left": [0], "right": [1]}
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z", interfaces=ends)
+    table = np.array(KNOTS), np.array(DAMPING)
+    supports = [Support(name, 2e4 * np.eye(3), table) for name in ends]
+    supports += [Support(name, damping=5.0, frame="rotor") for name in ends]
+    low, high, given = 110.0, 400.0, {}
+    if kind == "list":
+        target, given = rotor, {"supports": supports}
+    elif kind == "model":
+        target = linear_model(rotor, supports=supports)
+    else:  # a second rotor at half the speed of this one
+        other = [Support(name, 2e4 * np.eye(3), 20.0) for name in ends]
+        target = RotorTrain(
+            rotors={"slow": rotor.reduce(0), "fast": rotor.reduce(0)},
+            ratios={"slow": 1.0, "fast": 2.0},
+            supports={"slow": other, "fast": supports},
+        )
+        low, high = 60.0, 200.0
+    found = stability_threshold(target, low, high, samples=7, accuracy=None, **given)
+    ratio = 2.0 if kind == "train" else 1.0
+    np.testing.assert_allclose(found.values, np.divide(DIP, ratio), rtol=1e-7)
+
+
+def test_a_scene_has_the_speeds_of_its_tables():
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    ends = {"left": [0], "right": [1]}
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z", interfaces=ends)
+    mbs = exudyn.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor.reduce(0), spin=0.0)
+    table = np.array(KNOTS), np.array(DAMPING)
+    add_supports(body, [Support("left", 2e4, table), Support("right", 2e4, 20.0)])
+    mbs.Assemble()
+    np.testing.assert_array_equal(linear_model(mbs, body=body).table_speeds, KNOTS)

@@ -137,6 +137,14 @@ class Support:
         """True when any coefficient depends on the spin speed."""
         return any(varies(getattr(self, name)) for name in COEFFICIENTS)
 
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Spin speeds of its tables [rad/s], at which its coefficients have kinks."""
+        given = [getattr(self, name) for name in COEFFICIENTS]
+        return np.concatenate(
+            [np.zeros(0), *(each[0] for each in given if isinstance(each, tuple))]
+        )
+
     def check_range(self, speed: float) -> None:
         """Refuse a speed [rad/s] beyond the end of a table; rounding at the end is none.
 

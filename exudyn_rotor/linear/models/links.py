@@ -148,6 +148,13 @@ class Element:
         """True when a stiffness depends on the speed."""
         return isinstance(self.connection, Support) and self.connection.stiffness_varies
 
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Ω at the points of its tables [rad/s]."""
+        if not isinstance(self.connection, Support) or not self.rate:
+            return np.zeros(0)
+        return self.connection.table_speeds / self.rate
+
     def matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping of the motion of the ends at Ω, in the element's axes."""
         if isinstance(self.connection, Support):

@@ -163,6 +163,8 @@ class LinearModel(Protocol):
         Level of centrifugal stiffening.
     stiffness_varies : bool or None
         Whether the stiffness depends on the speed other than by Ω²; None where that is not known.
+    table_speeds : ndarray
+        Speeds of supports' tables [rad/s], at which the equations have kinks.
 
     Examples
     --------
@@ -212,6 +214,8 @@ class LinearModel(Protocol):
     def stiffening(self) -> str: ...
     @property
     def stiffness_varies(self) -> bool | None: ...
+    @property
+    def table_speeds(self) -> np.ndarray: ...
 
     def interface_motion(self, name: str) -> np.ndarray:
         """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).

@@ -57,6 +57,11 @@ class GrowthOver:
         """Return the growth, with the names of the motions if asked for."""
         raise NotImplementedError
 
+    @property
+    def kinks(self) -> np.ndarray:
+        """Values at which growth over the parameter has kinks, as far as they are known."""
+        return np.zeros(0)
+
     def system(self, value: float) -> PeriodicSystem | None:
         """Return None: growths alone are known."""
         return None
@@ -81,6 +86,7 @@ class OverSpeed(GrowthOver):
     task: GrowthAt
     named: GrowthAt
     checked: BasisError
+    table_speeds: np.ndarray
 
     @classmethod
     def of(cls, target: Target, highest: float, given: dict) -> OverSpeed:
@@ -90,7 +96,7 @@ class OverSpeed(GrowthOver):
         parts = space, chosen.method, chosen.tolerance
         checked = BasisError.of(model, chosen.accuracy, held=True)
         named = GrowthAt(*parts, WhirlContent.of(model), keeps=True)
-        return cls(GrowthAt(*parts, keeps=True), named, checked)
+        return cls(GrowthAt(*parts, keeps=True), named, checked, model.table_speeds)
 
     @property
     def accuracy(self) -> float | None:
@@ -99,6 +105,10 @@ class OverSpeed(GrowthOver):
     @property
     def solver(self) -> tuple[str, float]:
         return self.task.method, self.task.tolerance
+
+    @property
+    def kinks(self) -> np.ndarray:
+        return self.table_speeds
 
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)

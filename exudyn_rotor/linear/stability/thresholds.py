@@ -69,7 +69,8 @@ def stability_threshold(
     speed : float, optional
         Spin speed [rad/s], where it is not the parameter.
     samples : int, optional
-        Number of steps in which the range is sampled.
+        Number of steps in which the range is sampled. The speeds of supports' tables, at which
+        their coefficients have kinks, are samples, too.
     label : str, optional
         Name of the parameter with its unit.
     **given
@@ -125,7 +126,8 @@ def stability_threshold(
         speed = checks.number(speed, "speed", "rad/s", least=0.0)
         made = OverParameter(target, supports, speed, Options.of(given))
     search = Search(made, high - low)
-    for point in np.linspace(low, high, samples + 1):
+    kinks = made.kinks[(made.kinks > low) & (made.kinks < high)]
+    for point in np.union1d(np.linspace(low, high, samples + 1), kinks):
         search.at(float(point))
     search.refine()
     found = search.changes(_ROOT * max(abs(low), abs(high)))

@@ -38,6 +38,20 @@ LINEAR_STABILITY = [
         ("signal with the wrong sign", "(-one.stiffness[4:, 2:4]", "(one.stiffness[4:, 2:4]"),
     ),
     *mutations(
+        "linear/stability/growth_over.py",
+        "test_between_samples.py",
+        ("kinks of tables are no samples", "return self.table_speeds", "return np.zeros(0)"),
+    ),
+    *mutations(
+        "linear/models/links.py",
+        "test_between_samples.py",
+        (
+            "tables of a train over its own speed alone",
+            "self.connection.table_speeds / self.rate",
+            "self.connection.table_speeds * self.rate",
+        ),
+    ),
+    *mutations(
         "linear/stability/thresholds.py",
         "test_basis_error.py::test_errors_of_limits_where_modes_meet test_threshold_search.py",
         ("a step over a narrow range", "0.5 * abs(width)", "abs(width) + 1.0"),

@@ -85,6 +85,11 @@ class SupportedRotor:
         return varies or self.invariants.K4 is not None
 
     @property
+    def table_speeds(self) -> np.ndarray:
+        """Speeds of supports' tables [rad/s]."""
+        return np.concatenate([np.zeros(0), *(support.table_speeds for support in self.supports)])
+
+    @property
     def has_structural_damping(self) -> bool:
         """True where steady motions have structural damping, which other analyses leave out."""
         return self.invariants.H is not None

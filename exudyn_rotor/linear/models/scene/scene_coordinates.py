@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
@@ -120,6 +121,12 @@ class SceneCoordinates:
             if isinstance(one.support, TiltingPadBearing):
                 most[one.own_coordinates(self.body.mbs)] = 1.0 / one.support.film.radius
         return np.array([most[self.free[column != 0.0]].min() for column in self.N.T])
+
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Speeds of the tables of its supports [rad/s]."""
+        supports = [one.support for one in self.body.supports if isinstance(one.support, Support)]
+        return np.concatenate([np.zeros(0), *(support.table_speeds for support in supports)])
 
     def metre(self, mass: np.ndarray) -> np.ndarray:
         """Return how much of each coordinate counts as a metre, from the mass matrix's diagonal.

@@ -206,6 +206,11 @@ class LinearTrain(InAllCoordinates):
         varies = any(element.stiffness_varies for element in self.elements) or self.own.varies
         return varies or any(p.alone.stiffness_varies for p in self.parts.values())
 
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Ω at the points of the tables of supports and links [rad/s]."""
+        return np.concatenate([np.zeros(0), *(element.table_speeds for element in self.elements)])
+
     @cached_property
     def free_motions(self) -> tuple[str, ...]:
         """Rigid motions that no spring holds at rest."""
