@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_rotor.linear.models.scene.equilibrium import UNHELD
+from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.probe import Probe
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
@@ -18,6 +19,7 @@ from exudyn_rotor.reduction.mode_kind import ModeKind
 _REACHES = (1e-6, 1e-4, 1e-2, 1.0)  # of the rotor's length: a stop may have a gap
 _SOFTEST = 1e-6  # 1/s²: of the force over mass and reach, that of no spring
 _ROUNDING = 1e-11  # of the largest force
+_ORDERS = np.arange(-1, 2)
 _ANGLES = 2.0 * np.pi * np.arange(7) / 7
 
 
@@ -33,14 +35,18 @@ def held_along_axis(scene: SceneCoordinates, probe: Probe) -> np.ndarray:
     motion = _along_axis(scene)
     if motion is None:
         return every
-    loads = [_load(scene, probe, motion, theta, 0.0) for theta in _ANGLES]
-    rounding = _ROUNDING * max(most for _, most in loads)
+    start = journal_start(scene, probe.speed, _ORDERS)
+    loads = [_load(scene, probe, start, theta) for theta in _ANGLES]
+    along = np.array([force @ motion for force in loads])
+    rounding = _ROUNDING * np.abs(loads).max()
     for reach in np.multiply(_REACHES, scene.length):
         least = _SOFTEST * scene.mass * reach + rounding
         for move in (reach, -reach):
-            if abs(_load(scene, probe, motion, _ANGLES[0], move)[0] - loads[0][0]) > least:
+            moved = start.copy()
+            moved[_ORDERS == 0] += move * motion
+            if abs(_load(scene, probe, moved, _ANGLES[0]) @ motion - along[0]) > least:
                 return every
-    load = np.mean([along for along, _ in loads])
+    load = along.mean()
     if abs(load) > UNHELD * scene.mass + rounding:
         raise UnconvergedError(
             f"linear scene at {probe.speed:g} rad/s: no steady motion, as nothing holds the rotor "
@@ -66,12 +72,11 @@ def _along_axis(scene: SceneCoordinates) -> np.ndarray | None:
     return motion if np.isclose(np.linalg.norm(scene.N[place]), 1.0, rtol=1e-9) else None
 
 
-def _load(
-    scene: SceneCoordinates, probe: Probe, motion: np.ndarray, theta: float, move: float
-) -> tuple[float, float]:
-    """Return the force along the axis, and the largest one, of the rotor moved by so much [N]."""
-    T, constant = scene.turn(theta)[0], probe.rotor_terms(theta)[3]
-    x = T @ (move * motion)
+def _load(scene: SceneCoordinates, probe: Probe, Y: np.ndarray, theta: float) -> np.ndarray:
+    """Return the forces (k,) at an angle, of a motion by its harmonics −1, 0, 1."""
+    T, T1 = scene.turn(theta)[:2]
+    waves = np.exp(1j * theta * _ORDERS)
+    y, y_t = ((waves * (1j * probe.speed * _ORDERS) ** n @ Y).real for n in range(2))
+    constant = probe.rotor_terms(theta)[3]
     with probe.held():  # films that conserve mass have a force where they are held alone
-        forces = T.T @ (constant + probe.force(theta, x, np.zeros_like(x)))
-    return float(motion @ forces), float(np.abs(forces).max())
+        return T.T @ (constant + probe.force(theta, T @ y, T @ y_t + probe.speed * T1 @ y))
