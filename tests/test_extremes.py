@@ -25,7 +25,7 @@ CASES = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
+@pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis) is")
 @pytest.mark.parametrize("make", CASES)
 def test_row_holds(make):
     row = make(quick=True)
@@ -61,6 +61,7 @@ def test_phase_loses_a_digit_with_every_ten_times_as_many_revolutions():
     assert coarse / fine == pytest.approx(1e3, rel=0.9)
 
 
+@pytest.mark.filterwarnings("ignore:the nearest principal axis is")
 def test_small_tilts_deviate_with_their_square():
     small, large = unbalance.deviation(0.05), unbalance.deviation(0.5)
     ratio = unbalance.exact_tilt(0.5) / unbalance.exact_tilt(0.05)

@@ -211,7 +211,7 @@ def test_a_motion_that_decays_within_a_ball_pass_is_stable():
 
 
 @pytest.mark.parametrize("name", ["z", "y"])
-@pytest.mark.filterwarnings("ignore:the centre of mass")
+@pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis)")
 def test_many_coordinates_are_looked_at_in_fewer(name, monkeypatch):
     """Of 60, the 20 slow motions and those by forces on the rings: the exponent within 0.1 %."""
     places, pull = ("left", "right"), (0.0, -200.0)

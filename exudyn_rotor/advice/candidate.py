@@ -172,7 +172,9 @@ def _of_rotor(
     attached = None
     if reduced.with_attachments is not None:
         with warnings.catch_warnings():  # said above
-            warnings.filterwarnings("ignore", message="the centre of mass is")
+            warnings.filterwarnings(
+                "ignore", message="the (centre of mass|nearest principal axis) is"
+            )
             attached = _of_rotor(reduced.with_attachments, body, supports, interfaces, axial)
     plain = source.plain if isinstance(source, ControlledRotor) else source
     if axial is None:  # what has coordinates of its own acts across the axis

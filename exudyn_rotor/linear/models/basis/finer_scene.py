@@ -144,7 +144,9 @@ class FinerScene(InAllCoordinates):
     def _alone(self) -> LinearRotor:
         """The finer rotor without supports."""
         with warnings.catch_warnings():  # said where the rotor was put into the scene
-            warnings.filterwarnings("ignore", message="the centre of mass is")
+            warnings.filterwarnings(
+                "ignore", message="the (centre of mass|nearest principal axis) is"
+            )
             return LinearRotor.of(self.rotor, (), self.given.stiffening)
 
     @cached_property
