@@ -44,6 +44,11 @@ class ExtendedModel(InAllCoordinates, ABC):
         """Load of the rotor's own eccentricity per Ω², shape (k,), rotor frame."""
         return self._wide(self.plain.unit_unbalance)
 
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Speeds of supports' tables [rad/s]."""
+        return self.plain.table_speeds
+
     def _wide(self, rows: np.ndarray) -> np.ndarray:
         """Return rows (…, k) of the model with zeros for the further coordinates."""
         return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, self._more)])

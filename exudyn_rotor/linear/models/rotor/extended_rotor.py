@@ -68,11 +68,6 @@ class ExtendedRotor(ExtendedModel):
         return self.plain.stiffness_varies
 
     @property
-    def table_speeds(self) -> np.ndarray:
-        """Speeds of supports' tables [rad/s]."""
-        return self.plain.table_speeds
-
-    @property
     def invariants(self) -> Invariants:
         """Those of the rotor."""
         return self.plain.invariants

@@ -67,11 +67,6 @@ class RememberingScene(ExtendedModel):
     scene: LinearScene
     with_states: bool = True
 
-    @property
-    def table_speeds(self) -> np.ndarray:
-        """Speeds of the tables of its supports [rad/s]."""
-        return self.scene.table_speeds
-
     @classmethod
     def of(cls, scene: LinearScene) -> LinearScene | RememberingScene:
         """Return a scene with what its films remember; itself where none does."""
