@@ -29,7 +29,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.theory.formulation import Formulation
-from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
+from exudyn_rotor.theory.invariants import Invariants, inverse_inertia
 from exudyn_rotor.theory.motion import Motion
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.stiffening import (
@@ -176,7 +176,7 @@ def conditions(
     turn = e @ invariants.mean_rotation
     if not grounded and np.any(turn) and (formulation.has_spin or formulation.drive == "rigid"):
         rows = np.vstack([rows, turn[None, :]])
-        inverse = np.linalg.pinv(inertia_tensor(invariants), rcond=1e-12, hermitian=True)
+        inverse = inverse_inertia(invariants)
         # g = Σ ẽ_ba P_abk; the part of P that is skew about e holds it, h has no share in that
         left = invariants.g - turn / (e @ inverse @ e)
         left = _cut(left, negligible * np.sqrt(2.0 * np.trace(invariants.J)) * size)

@@ -221,9 +221,7 @@ class Invariants:
         """
         _, P = moments_about(self, self.center)
         momentum = np.einsum("aib,abk->ik", _EPSILON, P)
-        return checks.read_only(
-            np.linalg.pinv(inertia_tensor(self), rcond=1e-12, hermitian=True) @ momentum
-        )
+        return checks.read_only(inverse_inertia(self) @ momentum)
 
     def moved(self, origin: np.ndarray) -> Invariants:
         """Return the invariants about another origin, given from the present one [m]."""
@@ -255,6 +253,11 @@ def inertia_tensor(invariants: Invariants) -> np.ndarray:
     """Return the tensor of inertia about the centre of mass, shape (3, 3) [kg m²]."""
     J = invariants.J - invariants.mass * np.outer(invariants.center, invariants.center)
     return np.trace(J) * np.eye(3) - J
+
+
+def inverse_inertia(invariants: Invariants) -> np.ndarray:
+    """Return the inverse of that tensor (3, 3), zero about axes without inertia."""
+    return np.linalg.pinv(inertia_tensor(invariants), rcond=1e-12, hermitian=True)
 
 
 def moments_about(invariants: Invariants, shift: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.models.rotor.spin import Spin
-from exudyn_rotor.theory.invariants import Invariants, inertia_tensor
+from exudyn_rotor.theory.invariants import Invariants, inertia_tensor, inverse_inertia
 
 _ECCENTRIC = 1e-3  # relative error of frequencies that is worth a warning
 _BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
@@ -67,8 +67,8 @@ def tilts_without_drive(invariants: Invariants) -> float:
     A tilt with the moment of inertia ``I_t`` turns a free rotor by the product of inertia J, and
     ``J²/Θ`` of its inertia is lost: ``½ J²/(I_t Θ)``.
     """
-    inertia, e = inertia_tensor(invariants), invariants.direction
-    resisted, alone = e @ inertia @ e, e @ np.linalg.pinv(inertia, rcond=1e-12, hermitian=True) @ e
+    e = invariants.direction
+    resisted, alone = e @ inertia_tensor(invariants) @ e, e @ inverse_inertia(invariants) @ e
     return 0.5 * max(1.0 - 1.0 / (resisted * alone), 0.0) if resisted * alone > 0.0 else 0.0
 
 
