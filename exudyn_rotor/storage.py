@@ -65,11 +65,12 @@ def write_arrays(path: str | PathLike, kind: str, data: Mapping[str, object]) ->
             raise TypeError(f"{name}: cannot be stored, needs numbers, got {checks.shown(value)}")
     entries[_CHECKSUM] = np.array(_checksum(entries))
     with _replacing(target) as file:
-        np.savez_compressed(file, allow_pickle=False, **entries)
+        # not with allow_pickle=False, which is one more array before numpy 2.2; no kind is pickled
+        np.savez_compressed(file, **entries)
         if sum(value.nbytes for value in entries.values()) > _most_bytes(file.tell()):
             file.seek(0)
             file.truncate()
-            np.savez(file, allow_pickle=False, **entries)
+            np.savez(file, **entries)
 
 
 def write_text(path: str | PathLike, text: str) -> None:

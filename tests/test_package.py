@@ -20,6 +20,16 @@ def test_one_version():
     assert version.removesuffix(".dev0") == newest
 
 
+def test_lowest_releases_are_those_that_are_allowed():
+    """What `.ci/run` installs last; ruff, which formats as its release does, is not among them."""
+    needed = read("pyproject.toml").partition("[project]")[2].partition("[tool.")[0]
+    allowed = re.findall(r'"([\w-]+)(?:\[\w+\])?>=([\d.]+),<[\d.]+[;"]', needed)
+    docs = re.search(r"^docs = (.*)$", needed, re.MULTILINE)[1]
+    wanted = {f"{name}=={bound}" for name, bound in allowed if f'"{name}>' not in docs}
+    lines = read(".ci/lowest.txt").splitlines()[1:]
+    assert lines == sorted({line for line in wanted if not line.startswith("ruff")})
+
+
 def test_types_are_published():
     assert (ROOT / "exudyn_rotor" / "py.typed").exists()
     assert 'exudyn_rotor = ["py.typed"]' in read("pyproject.toml")

@@ -1,11 +1,14 @@
 """The finite-element layer: sources of models, masses, interfaces, rigid motions, stress."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from exudyn.FEM import FEMinterface
 from models import ALUMINIUM, STEEL, block_beam, disc_rotor, two_masses, two_material_cylinder
 
+from exudyn_rotor.solid import ngsolve_model
 from exudyn_rotor.solid.point_mass import PointMass
 from exudyn_rotor.solid.rigid import rigid_residuals
 from exudyn_rotor.solid.surface import area_weights
@@ -78,6 +81,17 @@ def test_ngsolve_model_equals_the_model_of_fem_interface(order):
         np.testing.assert_allclose(
             interface.weights, sets[name]["NodeWeights"][sorting], rtol=1e-12, atol=0
         )
+
+
+def test_elements_are_read_from_older_releases_too():
+    """Up to 6.2.2606 with the number of nodes, of 20 that are stored, and with their type later."""
+    stored = np.zeros(2, dtype=[("nodes", "i4", 20), ("np", "i1"), ("index", "i4")])
+    stored["nodes"][:, :4], stored["np"] = [[1, 2, 3, 4], [2, 3, 4, 5]], 4
+    given = SimpleNamespace(Elements3D=lambda: SimpleNamespace(NumPy=lambda: stored))
+    corners, _ = ngsolve_model._tetrahedra(SimpleNamespace(ngmesh=given))
+    assert corners.tolist() == [[0, 1, 2, 3], [1, 2, 3, 4]]
+    kinds = np.array([(20,), (21,), (25,)], dtype=[("type", "u1")])
+    assert ngsolve_model._node_counts(kinds) == [4, 10, 0]
 
 
 def test_import_of_fem_interface_keeps_the_model():

@@ -24,7 +24,7 @@ from exudyn_rotor.solid.surface import area_weights
 
 # Face names that Netgen invents for faces without a name.
 _INVENTED_NAME = re.compile(r"(default|bc_\d+)?")
-_TETRAHEDRON_TYPES = {1: 20, 2: 21}
+_TETRAHEDRA = {20: 4, 21: 10}  # Netgen's types of elements, and their nodes
 
 
 def is_named(face: str) -> bool:
@@ -72,12 +72,12 @@ def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
     """Check the mesh and give it the mid nodes that `order` needs."""
     checks.instance(mesh, "mesh", ngs.Mesh, "wrap a Netgen mesh with ngsolve.Mesh(...)")
     checks.count(order, "order", least=1, most=2)
-    types = set(mesh.ngmesh.Elements3D().NumPy()["type"].tolist()) if mesh.ne else set()
-    if not types or not types <= set(_TETRAHEDRON_TYPES.values()):
+    counts = set(_node_counts(mesh.ngmesh.Elements3D().NumPy())) if mesh.ne else set()
+    if not counts or not counts <= set(_TETRAHEDRA.values()):
         raise ValueError(
             "mesh: needs volume elements, and tetrahedra only; generate a 3D tetrahedral mesh"
         )
-    is_quadratic = types == {_TETRAHEDRON_TYPES[2]}
+    is_quadratic = counts == {_TETRAHEDRA[21]}
     if order == 1 and (is_quadratic or mesh.GetCurveOrder() > 1):
         raise ValueError(
             "mesh: its elements are curved, where linear displacements (order=1) cannot even "
@@ -97,10 +97,21 @@ def _prepare_mesh(mesh: ngs.Mesh, order: int) -> None:
         mesh.ngmesh.SecondOrder()
 
 
+def _node_counts(elements: np.ndarray) -> list[int]:
+    """Return the number of nodes of each tetrahedron, 0 of other elements.
+
+    Up to release 6.2.2606 NGSolve gives it, later the type of each element.
+    """
+    if "np" in elements.dtype.names:
+        return elements["np"].tolist()  # no other element has as many
+    return [_TETRAHEDRA.get(kind, 0) for kind in elements["type"].tolist()]
+
+
 def _tetrahedra(mesh: ngs.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return node numbers (t, 4) or (t, 10) and region numbers (t,), counted from zero."""
     elements = mesh.ngmesh.Elements3D().NumPy()
-    return elements["nodes"].astype(np.int64) - 1, elements["index"].astype(np.int64) - 1
+    nodes = elements["nodes"][:, : _node_counts(elements[:1])[0]]
+    return nodes.astype(np.int64) - 1, elements["index"].astype(np.int64) - 1
 
 
 def _edges(tetrahedra: np.ndarray, node_count: int) -> np.ndarray:
@@ -125,9 +136,8 @@ def _triangles(mesh: ngs.Mesh, order: int) -> tuple[np.ndarray, np.ndarray]:
     netgen = mesh.ngmesh
     elements = netgen.Elements2D().NumPy()
     numbers = elements["nodes"].astype(np.int64) - 1
-    if order == 2:
-        # Netgen puts the mid node opposite to corner i at 3 + i
-        numbers = numbers[:, [0, 1, 2, 5, 3, 4]]
+    # Netgen puts the mid node opposite to corner i at 3 + i
+    numbers = numbers[:, [0, 1, 2, 5, 3, 4] if order == 2 else [0, 1, 2]]
     count = netgen.GetNFaceDescriptors()
     names = np.array([netgen.FaceDescriptor(i + 1).bcname for i in range(count)])
     return numbers, names[elements["index"] - 1]

@@ -140,7 +140,8 @@ def _tait_bryan(orientation: np.ndarray) -> np.ndarray:
     with warnings.catch_warnings():
         # at b = ±90° the split of a and c is free, and any serves: one of them turns by θ
         warnings.simplefilter("ignore", UserWarning)
-        return Rotation.from_matrix(orientation).as_euler("XYZ")
+        # a copy, as scipy takes no read-only matrix before 1.15.2
+        return Rotation.from_matrix(np.array(orientation)).as_euler("XYZ")
 
 
 def _turn_to_z(direction: np.ndarray) -> np.ndarray:
