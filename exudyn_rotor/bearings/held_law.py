@@ -50,7 +50,7 @@ class HeldLaw:
         self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
         self._whole = self._law_of(bearing)
         self._held = False
-        self._point: tuple[np.ndarray, Sequence[float], np.ndarray | None] | None = None
+        self._point: tuple[list[float], Sequence[float], list[list[float]] | None] | None = None
 
     @staticmethod
     def _law_of(bearing: Bearing) -> Law | LawWithTorque:
@@ -82,17 +82,18 @@ class HeldLaw:
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, ...]:
         """Return force and, where the bearing has one, torque."""
-        motion = np.array([x, y, vx, vy])
         if self._held and self._point is None:
-            self._begin(motion, angle, speed)
+            self._begin(np.array([x, y, vx, vy]), angle, speed)
         if self._point is None:
             return self._free(x, y, vx, vy, angle, speed)
-        start, (fx, fy, *torque), gradient = self._point
+        (x0, y0, vx0, vy0), (fx, fy, *torque), gradient = self._point
         if gradient is None:
             fx, fy = self._whole(x, y, vx, vy, angle, speed)[:2]
         else:
-            less_x, less_y = (gradient @ (motion - start)).tolist()
-            fx, fy = fx - less_x, fy - less_y
+            x, y, vx, vy = x - x0, y - y0, vx - vx0, vy - vy0
+            (a, b, c, d), (e, f, g, h) = gradient
+            fx -= a * x + b * y + c * vx + d * vy
+            fy -= e * x + f * y + g * vx + h * vy
         return fx, fy, *torque
 
     def _free(
@@ -114,7 +115,8 @@ class HeldLaw:
     def _hold_at(
         self, motion: np.ndarray, values: Sequence[float], gradient: np.ndarray | None
     ) -> None:
-        self._point = motion, values, gradient
+        by_motion = None if gradient is None else gradient.tolist()
+        self._point = motion.tolist(), values, by_motion
         self.seen.append((motion[:2], np.array(values[:2])))
 
 

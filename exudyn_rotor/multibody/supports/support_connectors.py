@@ -307,8 +307,8 @@ def spin_reader(
 
     def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
         read = mbs.GetNodeOutput
-        angle, rate = (float(read(node, kind, state)[place]) for kind in (angles, rates))
-        return sign * angle, sign * rate
+        angle, rate = read(node, angles, state)[place], read(node, rates, state)[place]
+        return sign * float(angle), sign * float(rate)
 
     return spin
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import exudyn
@@ -26,7 +27,6 @@ from exudyn_rotor.multibody.supports.linear_laws import linear_laws
 from exudyn_rotor.multibody.supports.magnetic_connectors import TangentMagnets, tangent_magnets
 from exudyn_rotor.theory.formulation import ConstantSpeed
 from exudyn_rotor.theory.motion import Motion
-from exudyn_rotor.theory.stiffening import stiffening as second_order
 
 # root mean square displacement [m] of a difference step: as large as nonlinearity allows, because
 # Exudyn's forces are differences of positions of order 1 m
@@ -35,6 +35,7 @@ _CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its sq
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
 _SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
 _MOVED, _POSITION = 1e-4, exudyn.OutputVariableType.Position  # of a coordinate
+_KEPT = 32  # angles whose terms of the rotor are kept
 _KINK = 1e-4  # relative second-order error of a step that tells so
 
 
@@ -63,6 +64,7 @@ class Probe:
         self.rotor = np.arange(scene.modal.stop)
         self.step = self.velocity_step = None
         self.constant = None
+        self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
         motion = body.plan.node_motion
         if motion.is_constant:
             zero = np.zeros(motion.size)
@@ -192,7 +194,7 @@ class Probe:
             total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
         return total / count
 
-    def rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
         form = replace(body.motion.formulation, spin=ConstantSpeed(self.speed, theta))
@@ -201,7 +203,7 @@ class Probe:
         motion = Motion(
             body.motion.invariants,
             form,
-            second_order(body.motion.invariants, body.stiffening),
+            self.scene.second_order,
             orientation=body.motion.orientation,
             plane=body.motion.free_directions,
             gravity=body.motion.gravity,

@@ -16,6 +16,7 @@ from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
+from exudyn_rotor.theory.stiffening import Stiffening, stiffening
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +60,11 @@ class SceneCoordinates:
     def stiffening(self) -> str:
         """Level of centrifugal stiffening."""
         return self.body.stiffening
+
+    @cached_property
+    def second_order(self) -> Stiffening:
+        """Second-order terms of the rotor at this level."""
+        return stiffening(self.body.motion.invariants, self.body.stiffening)
 
     @property
     def mass(self) -> float:
