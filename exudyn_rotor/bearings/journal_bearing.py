@@ -28,11 +28,12 @@ class JournalBearing(Bearing):
 
     Linear analyses take its coefficients in the equilibrium under the load; scenes its force at
     every evaluation, with one axial profile (``axial_nodes=0``) twenty times as long as that of a
-    :class:`ShortJournalBearing`. In scenes the journal's centre has its film where it
-    is thicker all around than ``film.thinnest``, which the grid resolves; beyond, the force goes on
-    by its tangent, so that Newton's method comes back. A film that conserves mass goes on with the
-    voids of the last accepted step; a run begins with those of a journal that rests where it is.
-    Linear analyses have what its voids remember as coordinates (:class:`VoidStates`).
+    :class:`ShortJournalBearing`, and its tangent for Jacobians. In scenes the journal's centre has
+    its film where it is thicker all around than ``film.thinnest``, which the grid resolves; beyond,
+    the force goes on by its tangent, so that Newton's method comes back. A film that conserves mass
+    goes on with the voids of the last accepted step; a run begins with those of a journal that
+    rests where it is. Linear analyses have what its voids remember as coordinates
+    (:class:`VoidStates`).
 
     Parameters
     ----------
@@ -166,13 +167,13 @@ class _OfVoids:
 
 
 class FilmLaw:
-    """Force of a film and, where asked for, torque; it remembers which cells were empty."""
+    """Force of a film and, where asked for, torque; it begins with the film of the last call."""
 
     def __init__(self, film: OilFilm, torque: bool) -> None:
         self._film, self._torque = film, torque
         self._most = film.clearance - film.thinnest
         self._step = _STEP * film.clearance
-        self._empty: np.ndarray | None = None
+        self._last: FilmState | None = None
 
     def __call__(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
@@ -188,6 +189,13 @@ class FilmLaw:
         inside = hypot(x, y) <= most
         return force(x, y) if inside else by_tangent(force, x, y, most, self._step)
 
+    def tangent(self, x: float, y: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return stiffness [N/m] and damping [N s/m] at the place of the last call, each (2, 2).
+
+        None where the film is too thin.
+        """
+        return self._last.tangent if hypot(x, y) <= self._to_the_edge(x, y) else None
+
     def _to_the_edge(self, x: float, y: float) -> float:
         """Return how far the journal may go on its way out, the film resolved [m]."""
         distance = hypot(x, y)
@@ -195,10 +203,20 @@ class FilmLaw:
             return self._most
         return self._film.reach_along(np.array([x, y]) / distance, self._film.thinnest)
 
-    def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
-        state = self._film.law(place, rate, speed, self._empty)
-        self._empty = state.solution.empty
-        return state
+    def _state(
+        self,
+        place: np.ndarray,
+        rate: np.ndarray,
+        speed: float,
+        void_rate: float = 0.0,
+        voids: np.ndarray | None = None,
+    ) -> FilmState:
+        """Return the film: that of the last call, where it is the same."""
+        last = self._last
+        if last is None or not last.is_at(place, rate, speed, void_rate, voids):
+            empty = None if last is None else last.solution.empty
+            self._last = self._film.law(place, rate, speed, empty, void_rate, voids)
+        return self._last
 
 
 class RememberingLaw(FilmLaw):
@@ -240,6 +258,4 @@ class RememberingLaw(FilmLaw):
     def _state(self, place: np.ndarray, rate: np.ndarray, speed: float) -> FilmState:
         # at once where no time has passed, but for rounding
         duration = max(self._duration, _AT_ONCE * float(self._film.grid.step.min()))
-        state = self._film.law(place, rate, speed, self._empty, 1.0 / duration, self._voids)
-        self._empty = state.solution.empty
-        return state
+        return super()._state(place, rate, speed, 1.0 / duration, self._voids)

@@ -49,6 +49,23 @@ class FilmState:
         supply = film.radius * film.length * film.supply_pressure * (grid.step @ grid.u[0])
         return supply + self._resultant(self.solution.bearing)
 
+    def is_at(
+        self,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        speed: float,
+        void_rate: float,
+        voids: np.ndarray | None,
+    ) -> bool:
+        """Return whether it is the film of this place and motion, and of these voids before."""
+        equation = self.solution.equation
+        return (
+            np.array_equal(position, self.position)
+            and np.array_equal(velocity, self.velocity)
+            and (speed, void_rate) == (self.speed, equation.void_rate)
+            and voids is equation.voids
+        )
+
     def coefficients(self, whirl_ratio: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] along n1 and n2, each (2, 2).
 
@@ -75,9 +92,18 @@ class FilmState:
                 raise ValueError("speed: films that conserve mass have coefficients at speed alone")
             impedance = self._gradient(-u, -1j * whirl * u[:, 0], 1j * whirl)
             return impedance.real, impedance.imag / whirl
+        return self.tangent
+
+    @property
+    def tangent(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] at this instant, each (2, 2).
+
+        Voids that conserve mass grow from those at the beginning of a step.
+        """
+        u = np.moveaxis(self.film.grid.u, 2, 0)
         still = np.zeros_like(u)
         heights, rates = np.concatenate([-u, still]), np.concatenate([still, -u])[:, 0]
-        gradient = self._gradient(heights, rates)
+        gradient = self._gradient_of(self.solution, heights, rates)
         return gradient[:, :2], gradient[:, 2:]
 
     @cached_property
@@ -114,7 +140,12 @@ class FilmState:
     ) -> np.ndarray:
         """Return −∂F by changes of h (k, 3, n) and ∂t h (k, n), in columns (2, k)."""
         equation = replace(self.solution.equation, void_rate=void_rate, voids=None)
-        changes = replace(self.solution, equation=equation).change(heights, rates)
+        return self._gradient_of(replace(self.solution, equation=equation), heights, rates)
+
+    def _gradient_of(
+        self, solution: Solution, heights: np.ndarray, rates: np.ndarray
+    ) -> np.ndarray:
+        changes = solution.change(heights, rates)
         return -np.array([self._resultant(change) for change in changes]).T
 
     def _resultant(self, pressure: np.ndarray) -> np.ndarray:

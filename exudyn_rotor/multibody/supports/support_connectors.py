@@ -25,10 +25,12 @@ from exudyn.itemInterface import CartesianSpringDamper, RigidBodySpringDamper
 
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
 from exudyn_rotor.bearings.held_law import HeldLaw
-from exudyn_rotor.bearings.journal_bearing import JournalBearing, RememberingLaw
+from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
+from exudyn_rotor.multibody.supports.differenced_law import DifferencedLaw
+from exudyn_rotor.multibody.supports.differences import differences_of
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 from exudyn_rotor.multibody.supports.turning_base import in_axes_at_rest, on_turning_base
 from exudyn_rotor.theory.rotating_axes import axial_rotation
@@ -125,6 +127,8 @@ def bearing_function(
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
+    if isinstance(law, FilmLaw):
+        law = DifferencedLaw(law, bearing.film.clearance, differences_of(body))
     if body.formulation.has_spin and not isinstance(bearing, HeldLaw):
         law = on_turning_base(law, body.mbs, base, axes)
     if brakes:

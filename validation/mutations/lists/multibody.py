@@ -158,6 +158,19 @@ MULTIBODY = [
         ),
     ),
     *mutations(
+        "multibody/supports/differenced_law.py",
+        "test_film_differences.py",
+        ("tangent of an earlier Jacobian", "if formed != self._formed:", "if not self._formed:"),
+        ("damping of a film's tangent reversed", "+ c * dvx + d * dvy", "- c * dvx - d * dvy"),
+        ("tangent far from its place", "near = abs(dx)", "near = True or abs(dx)"),
+        ("tangent at another speed", "speed != speed0 or ", ""),
+    ),
+    *mutations(
+        "multibody/supports/differences.py",
+        "test_film_differences.py",
+        ("a Jacobian without an end", "self.formed = 0\n", "pass\n"),
+    ),
+    *mutations(
         "multibody/supports/support_connectors.py",
         "test_supports_in_scenes.py::test_scene_and_linear_rotor_have_the_same_exponents",
         (
