@@ -82,6 +82,8 @@ class Bearing(LoadedBearing):
         See :class:`LoadedBearing`.
     """
 
+    uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
+
     _tried: ClassVar[np.ndarray] = _HIGHER
 
     @property

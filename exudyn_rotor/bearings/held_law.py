@@ -46,6 +46,7 @@ class HeldLaw:
 
     def __init__(self, bearing: Bearing) -> None:
         self.bearing, self.clearance_along = bearing, bearing.clearance_along
+        self.uses_angle = bearing.uses_angle
         self.tangent: Tangent | None = None
         self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
         self._whole = self._law_of(bearing)

@@ -10,7 +10,6 @@ import exudyn
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.held_law import HeldBearing
-from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.support_connectors import (
     SpinReader,
@@ -35,8 +34,7 @@ def linear_laws(body: RotorItems, cage: float | None) -> Iterator[tuple[HeldBear
 
     def let(held: bool) -> None:
         for one, bearing in zip(given, bearings, strict=True):
-            rolls = isinstance(one.support, RollingBearing)
-            spin = standing if held and rolls else turning
+            spin = standing if held and one.support.uses_angle else turning
             for number, law in zip(one.objects, bearing.laws, strict=False):  # pads come last
                 base = carrying_marker(body.mbs, number, one.base)
                 law = law if held else law.bearing

@@ -39,6 +39,7 @@ NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
 _ROUNDING = 1e-13  # of the largest entry of a turned matrix
 _FUNCTIONS = "exudyn_rotor: symbolic functions of supports"  # key in mbs.sys
 _KINDS = exudyn.OutputVariableType
+_ANGLES, _RATES = _KINDS.Coordinates, _KINDS.Coordinates_t
 _START = exudyn.ConfigurationType.StartOfStep
 _BRAKING = "springForceTorqueUserFunction"
 Numbers = Sequence[float]
@@ -127,6 +128,8 @@ def bearing_function(
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
+    if not bearing.uses_angle:
+        spin = _speed_reader(body)
     if isinstance(law, FilmLaw):
         law = DifferencedLaw(law, bearing.film.clearance, differences_of(body))
     if body.formulation.has_spin and not isinstance(bearing, HeldLaw):
@@ -307,12 +310,21 @@ def spin_reader(
 ) -> SpinReader:
     """Return a function that reads spin angle [rad] and speed [rad/s] from the frame's node."""
     node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
-    angles, rates = _KINDS.Coordinates, _KINDS.Coordinates_t
 
     def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:  # called at every force
         read = mbs.GetNodeOutput
-        angle, rate = read(node, angles, state)[place], read(node, rates, state)[place]
+        angle, rate = read(node, _ANGLES, state)[place], read(node, _RATES, state)[place]
         return sign * float(angle), sign * float(rate)
+
+    return spin
+
+
+def _speed_reader(body: RotorItems) -> SpinReader:
+    """Return as :func:`spin_reader`, with 0 in place of the angle, in half the time."""
+    node, place, sign = int(body.nodes["rigid"]), body.locks.spin, body.locks.sign
+
+    def spin(mbs: exudyn.MainSystem) -> tuple[float, float]:
+        return 0.0, sign * float(mbs.GetNodeOutput(node, _RATES)[place])
 
     return spin
 
