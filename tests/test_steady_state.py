@@ -16,6 +16,8 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
+from exudyn_rotor.linear.models.scene import steady_motion as search
+from exudyn_rotor.linear.models.scene.probe import linearised
 from exudyn_rotor.linear.models.scene.scene_checks import check_period
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 
@@ -245,12 +247,18 @@ def test_rounding_beside_the_wall_of_a_bearing_is_no_load_that_varies():
     check_period(SimpleNamespace(free=np.zeros(1), mass=1.0), probe)
 
 
-def test_load_that_nothing_holds_is_refused(reduced):
+@pytest.mark.parametrize("held", [[], ["left"]])
+def test_load_that_nothing_holds_is_refused(reduced, held, monkeypatch):
+    """Without smaller and smaller shares of it: at 12 angles, three times, and at 48, twice."""
     mbs = exu.SystemContainer().AddSystem()
     body = add_rotor(mbs, reduced, spin=40.0, translation="none", gravity=[0.0, -GRAVITY, 0.0])
+    add_supports(body, [Support(name, STIFFNESS, DAMPING) for name in held])
     mbs.Assemble()
+    angles = []
+    monkeypatch.setattr(search, "linearised", lambda *at: angles.append(at[1]) or linearised(*at))
     with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(body)
+    assert len(angles) <= 3 * 12 + 2 * 48
 
 
 def test_states_that_do_not_belong_are_refused(reduced):

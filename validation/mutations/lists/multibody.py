@@ -166,6 +166,22 @@ MULTIBODY = [
         ("tangent at another speed", "speed != speed0 or ", ""),
     ),
     *mutations(
+        "bearings/film/state.py",
+        "test_film_differences.py",
+        (
+            "voids of a step at once in its tangent",
+            "self._gradient_of(self.solution, heights, rates)",
+            "self._gradient(heights, rates)",
+        ),
+        ("film of another velocity", "np.array_equal(velocity, self.velocity)", "True"),
+        ("film of other voids", "            and voids is equation.voids\n", ""),
+    ),
+    *mutations(
+        "bearings/journal_bearing.py",
+        "test_film_differences.py",
+        ("tangent of no film", "if hypot(x, y) <= self._to_the_edge(x, y) else", "if True else"),
+    ),
+    *mutations(
         "multibody/supports/differences.py",
         "test_film_differences.py",
         ("a Jacobian without an end", "self.formed = 0\n", "pass\n"),
@@ -196,9 +212,10 @@ MULTIBODY = [
         ("matrix not turned into the scene", "turned = axes @ matrix @ axes.T", "turned = matrix"),
         (
             "spin counted as the node does",
-            "return sign * angle, sign * rate",
+            "return sign * float(angle), sign * float(rate)",
             "return angle, sign * rate",
         ),
+        ("speed counted as the node does", "return 0.0, sign * float(", "return 0.0, float("),
     ),
     *mutations(
         "multibody/supports/support_connectors.py",

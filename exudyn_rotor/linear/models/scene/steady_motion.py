@@ -40,6 +40,7 @@ _ROUGH = 1e-3  # share of such a motion that its highest harmonics may have
 _SOLVED = 0.01  # of what the harmonics leave out, beyond which more iterations are of no use
 _FIRST_STRIDE, _MOST_STRIDES = 0.25, 20  # shares of what is unbalanced at the start
 _FEW_STRIDES = 8  # with many samples
+_HOPELESS = 2.0**10  # of UNHELD: a share of this that counts as held leaves too many strides
 _MOST_FOLLOWED = 12  # iterations for each
 _MOST_ITERATIONS = 40
 _MOST_FREE = 20  # with a journal that nothing presses
@@ -125,6 +126,10 @@ def steady_motion(
 
 class _UnresolvedError(UnconvergedError):
     """Too few angles for the coefficients over a revolution."""
+
+
+class _UnheldError(UnconvergedError):
+    """Where the search begins, nothing holds a load."""
 
 
 def _unresolved(speed: float) -> UnconvergedError:
@@ -222,6 +227,8 @@ class _Search:
             goal = max(left - stride, 0.0)
             try:
                 system, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
+            except _UnheldError:  # a share of the load is not held either
+                raise
             except UnconvergedError:
                 stride *= 0.5
                 continue
@@ -257,8 +264,10 @@ class _Search:
             change = change - torque * twist
             Y = Y + change
             sizes = np.abs(Y * metres).max(axis=1)
-            unheld = np.abs(left / metres).max() > UNHELD * self.scene.mass
-            if unheld or sizes.max() > FAR * self.scene.length:
+            unheld = np.abs(left / metres).max() / (UNHELD * self.scene.mass)
+            if unheld > _HOPELESS and not iteration:
+                raise _UnheldError(str(self._lost()))
+            if unheld > 1.0 or sizes.max() > FAR * self.scene.length:
                 break
             tail = sizes[[0, 1, -2, -1]].max()  # as much as the harmonics leave out
             limit = self.tolerance * max(sizes.max(), self._counts(sizes))
