@@ -58,7 +58,9 @@ def free_stiffness(nodes: np.ndarray, stiffness: np.ndarray) -> sp.csr_array:
     return sp.csr_array(elastic @ stiffness @ elastic)
 
 
-def ring_rotor(radius: float, half_length: float, mass: float, axis: str = "z") -> SolidRotor:
+def ring_rotor(
+    radius: float, half_length: float, mass: float, axis: str | ArrayLike = "z"
+) -> SolidRotor:
     """Return two rings of five equal masses in the planes z = ±half_length, axis z.
 
     ``I_p = m r²`` and ``I_t = m (r²/2 + l²)`` exactly, as for every regular polygon.

@@ -3,6 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
+from point_rotors import ring_rotor
 from void_films import CLEARANCE, SPEED, bearings, oil, rotor, scene
 
 from exudyn_rotor import recommended_settings
@@ -163,3 +164,21 @@ def test_runs_with_films_take_the_same_steps(monkeypatch, cavitation, spin):
     np.testing.assert_allclose(*paths, rtol=0.0, atol=1e-5 * moved)
     assert iterations[0] <= iterations[1]
     assert counts[0] < 0.25 * counts[1]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_film_has_the_rotors_speed_whatever_way_its_node_counts(sign):
+    """About −z the node counts −θ."""
+    ring = ring_rotor(0.1, 0.15, 107.0, axis=[0.0, 0.0, sign])
+    reduced = ring.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+    mbs, body, _ = scene(reduced, bearings(reduced, cavitation="reynolds"), spin=SPEED)
+    assert body.locks.sign == sign
+    place = 0.3 * CLEARANCE * body.standing_axes[:, 0]
+    with evaluating(mbs):
+        q = np.array(mbs.systemData.GetODE2Coordinates())
+        q[:3] += place
+        mbs.systemData.SetODE2Coordinates(q)
+        found = mbs.GetObjectOutput(body.supports[0].objects[0], exu.OutputVariableType.Force)
+    law = FilmLaw(body.supports[0].support.film, torque=False)
+    expected = law(0.3 * CLEARANCE, 0.0, 0.0, 0.0, 0.0, SPEED)
+    np.testing.assert_allclose(-found @ body.standing_axes[:, :2], expected, rtol=1e-9)

@@ -182,6 +182,11 @@ MULTIBODY = [
         ("tangent of no film", "if hypot(x, y) <= self._to_the_edge(x, y) else", "if True else"),
     ),
     *mutations(
+        "multibody/supports/support_connectors.py",
+        "test_film_differences.py::test_a_film_has_the_rotors_speed_whatever_way_its_node_counts",
+        ("speed counted as the node does", "return 0.0, sign * float(", "return 0.0, float("),
+    ),
+    *mutations(
         "multibody/supports/differences.py",
         "test_film_differences.py",
         ("a Jacobian without an end", "self.formed = 0\n", "pass\n"),
@@ -215,7 +220,6 @@ MULTIBODY = [
             "return sign * float(angle), sign * float(rate)",
             "return angle, sign * rate",
         ),
-        ("speed counted as the node does", "return 0.0, sign * float(", "return 0.0, float("),
     ),
     *mutations(
         "multibody/supports/support_connectors.py",
