@@ -15,6 +15,12 @@ import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
 
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.periodic.coupled_harmonics import (
+    CoupledHarmonics,
+    inverted,
+    links_of,
+    worth_it,
+)
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 
@@ -26,6 +32,7 @@ HIGHEST_HARMONIC = 40
 _FREE = 1e-12
 _ROUNDING = 1e-14
 _SINGULAR = 1e-14
+_SURELY = 10.0  # times that: an estimate from below which one matrix decides
 # share of a load that may act on a free motion: the rounding of a mesh's own unbalance
 _LOAD_ON_FREE = 1e-6
 
@@ -109,6 +116,9 @@ class _Balance:
     rate: float
     driven: list[int]
     conditions: list[float] = field(default_factory=list)  # reciprocal, of all solutions so far
+    # of each harmonic its matrix, load and held coordinates, and the inverse of the matrix
+    known: dict[int, tuple[np.ndarray, ...]] = field(default_factory=dict)
+    inverses: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def rounding(self) -> float:
@@ -161,41 +171,76 @@ class _Balance:
 
     def _solve(self, orders: np.ndarray) -> np.ndarray:
         """Return the harmonics (h, k) of one group of coupled ones."""
-        size = self.system.size
-        zero = np.zeros(size, dtype=complex)
-        load = np.array([self.loads.get(n, zero) for n in orders], dtype=complex)
+        matrices, loads, held = self._alone(orders)
+        found = None
+        if worth_it(self.system, len(orders)):
+            found = self._by_ports(orders, matrices, held).solved(loads)
+        if found is None or not found[1] > _SURELY * _SINGULAR:
+            found = _solved_as_one(self._whole(orders, matrices, held), loads)
+        self.conditions.append(found[1])
+        return self.scale * found[0]
+
+    def _alone(self, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return what each harmonic's matrix (h, k, k) and load (h, k) are, scaled.
+
+        And which coordinates are held in it, (h, k). It does not matter what others there are.
+        """
+        new = np.array([n for n in orders.tolist() if n not in self.known], dtype=int)
+        senses = senses_of_turning(self.rate, new, self.system.speed)
+        rates = 1j * (self.rate + new * self.system.speed)
+        for n, sense, matrix in zip(
+            new.tolist(), senses, self.system.dynamic(0, rates), strict=True
+        ):
+            load = self.scale * self.loads.get(n, np.zeros(self.system.size, dtype=complex))
+            if self.system.H is not None:
+                matrix = matrix + 1j * sense * self.system.H
+            matrix = self.scale[:, None] * matrix * self.scale
+            held = np.zeros(self.system.size, dtype=bool)
+            if sense == 0.0:
+                held[self.driven] = True
+                matrix[held] = matrix[:, held] = load[held] = 0.0
+                free = self._free(load)
+                # a spring on what is free changes nothing else
+                matrix += free @ free.T
+                load -= free @ (free.T @ load)
+            self.known[n] = matrix, load, held
+        matrices, loads, held = zip(*(self.known[n] for n in orders.tolist()), strict=True)
+        return np.stack(matrices), np.stack(loads), np.stack(held)
+
+    def _whole(self, orders: np.ndarray, matrices: np.ndarray, held: np.ndarray) -> np.ndarray:
+        """Return the equations of all harmonics as one matrix, scaled."""
+        count, size = held.shape
         M, D, K = hill_matrices(self.system, orders)
-        A = K + 1j * self.rate * D - self.rate**2 * M
-        senses = senses_of_turning(self.rate, orders, self.system.speed)
-        if self.system.H is not None:
-            A = A + 1j * np.kron(np.diag(senses), self.system.H)
-        for index in np.flatnonzero(senses == 0.0):
-            rows = slice(index * size, (index + 1) * size)
-            driven = index * size + np.array(self.driven, dtype=int)
-            A[driven, :] = A[:, driven] = 0.0
-            # a spring on what is free changes nothing else
-            free = self._free(load[index])
-            spring = free / self.scale[:, None]
-            A[rows, rows] += spring @ spring.T
-            scaled = self.scale * load[index]
-            load[index] = (scaled - free @ (free.T @ scaled)) / self.scale
-        scale = np.tile(self.scale, len(orders))
-        solution, condition = _scaled_solve(A, load.ravel(), scale)
-        self.conditions.append(condition)
-        return solution.reshape(load.shape)
+        scale = np.where(held, 0.0, self.scale).ravel()
+        A = scale[:, None] * (K + 1j * self.rate * D - self.rate**2 * M) * scale
+        A.reshape(count, size, count, size)[range(count), :, range(count)] = matrices
+        return A
+
+    def _by_ports(
+        self, orders: np.ndarray, matrices: np.ndarray, held: np.ndarray
+    ) -> CoupledHarmonics:
+        """Return the same equations by what couples harmonics."""
+        inverses = self.inverses
+        new = [i for i, n in enumerate(orders.tolist()) if n not in inverses]
+        inverses |= zip(orders[new].tolist(), inverted(matrices[new]), strict=True)
+        ports = np.where(held, 0.0, self.scale)[..., None] * self.system.ports
+        links = links_of(self.system.between_ports, orders, self.rate)
+        return CoupledHarmonics(
+            matrices, np.stack([inverses[n] for n in orders.tolist()]), ports, links
+        )
 
     def _free(self, load: np.ndarray) -> np.ndarray:
         """Return the motions (k, r) of :attr:`soft` that stay where they are under a load (k,).
+
+        The load is scaled, and has nothing that acts on a drive.
 
         Raises
         ------
         ValueError
             If the load acts on a motion that nothing but rounding resists.
         """
-        load[self.driven] = 0.0
-        scaled = self.scale * load
         columns, unresisted = self.soft
-        loaded = np.abs(columns.T @ scaled) > _LOAD_ON_FREE * np.linalg.norm(scaled)
+        loaded = np.abs(columns.T @ load) > _LOAD_ON_FREE * np.linalg.norm(load)
         if np.any(loaded & unresisted):
             raise ValueError(
                 "a constant load acts on a motion that nothing holds: there is no steady state. "
@@ -205,15 +250,14 @@ class _Balance:
         return columns[:, ~loaded]
 
 
-def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, float]:
-    """Solve ``A x = f`` in scaled unknowns; return their reciprocal condition number, too.
+def _solved_as_one(matrix: np.ndarray, loads: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return the harmonics (h, k) under loads, and the reciprocal condition number.
 
     Raises
     ------
     ValueError
         If the matrix is singular to rounding.
     """
-    matrix = scale[:, None] * A * scale
     factor, pivots, info = zgetrf(matrix)
     condition = zgecon(factor, np.abs(matrix).sum(axis=0).max())[0] if info == 0 else 0.0
     if condition < _SINGULAR:
@@ -222,4 +266,4 @@ def _scaled_solve(A: np.ndarray, load: np.ndarray, scale: np.ndarray) -> tuple[n
             "differ by more than 1e14; add damping, leave this value out, or take a bearing that "
             "is rigid as one a thousand times stiffer than the rotor"
         )
-    return scale * zgetrs(factor, pivots, scale * load)[0], float(condition)
+    return zgetrs(factor, pivots, loads.ravel())[0].reshape(loads.shape), float(condition)

@@ -8,6 +8,7 @@ from validation.mutations.lists.evaluation import EVALUATION
 from validation.mutations.lists.foundations import FOUNDATIONS
 from validation.mutations.lists.linear import LINEAR
 from validation.mutations.lists.linear_exponents import LINEAR_EXPONENTS
+from validation.mutations.lists.linear_forced import LINEAR_FORCED
 from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
 from validation.mutations.lists.linear_spin import LINEAR_SPIN
@@ -41,6 +42,7 @@ ALL = (
     *LINEAR_MODELS,
     *LINEAR_PERIODIC,
     *LINEAR_EXPONENTS,
+    *LINEAR_FORCED,
     *LINEAR,
     *LINEAR_SPIN,
     *LINEAR_STABILITY,

@@ -279,35 +279,6 @@ LINEAR_PERIODIC = [
         ("small multipliers not known from above", "np.log1p(relative)", "relative"),
     ),
     *mutations(
-        "linear/periodic/harmonic_balance.py",
-        "test_response.py",
-        ("damping with the wrong sign", "A = K + 1j * self.rate * D", "A = K - 1j * self.rate * D"),
-    ),
-    *mutations(
-        "linear/periodic/harmonic_balance.py",
-        "test_peaks.py",
-        ("free coordinates mixed with soft motions", "axis=0) <= _ROUNDING", "axis=0) < 0.0"),
-        (
-            "a soft motion under load is free",
-            "relative[columns] <= _ROUNDING",
-            "relative[columns] <= _FREE",
-        ),
-    ),
-    *mutations(
-        "linear/periodic/harmonic_balance.py",
-        "test_structural_damping.py::test_whirl_of_a_turning_rotor",
-        (
-            "structural damping whatever the sense of the turning",
-            "np.where(zero, 0.0, np.sign(frequencies))",
-            "np.where(zero, 0.0, 1.0)",
-        ),
-        (
-            "structural damping by the frequency in the inertial frame",
-            "np.diag(senses), self.system.H",
-            "np.sign(self.rate) * np.eye(len(orders)), self.system.H",
-        ),
-    ),
-    *mutations(
         "linear/periodic/companion.py",
         "test_growth_by_rounding.py",
         (
