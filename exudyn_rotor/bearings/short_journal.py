@@ -28,7 +28,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import LawWithTorque
 from exudyn_rotor.bearings.short_film import THINNEST, ShortFilmBearing, Tangent
 
-_LEAST, _MOST = 1e-12, 1.0 - 1e-9  # eccentricity ratios of an equilibrium
+_MOST = 1.0 - 1e-9  # eccentricity ratio of an equilibrium
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -138,7 +138,7 @@ class ShortJournalBearing(ShortFilmBearing):
                 f"load: bearing at {self.interface!r}: {weight:g} N at {speed:g} rad/s leaves no "
                 "film"
             )
-        return float(brentq(carried, _LEAST, _MOST, xtol=1e-15, rtol=1e-14))
+        return float(brentq(carried, 0.0, _MOST, xtol=1e-15, rtol=1e-14))
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load, (2) [m], shape (2,).

@@ -16,6 +16,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 _RESIDUAL = 6350e-6 * np.pi / 30.0  # U Ω / W [m/s]
 _FASTEST = 25_000.0 * np.pi / 30.0  # [rad/s]
@@ -180,6 +181,6 @@ def bearing_loads(
     [[  0. -10.]
      [  0. -30.]]
     """
-    across = checks.vector(gravity, "gravity", "m/s²")
+    gravity = checks.vector(gravity, "gravity", "m/s²")
     masses = bearing_masses(rotor, bearings)
-    return np.outer(masses, rotor.axis.plane.T @ across)
+    return np.outer(masses, parts_across(axes_of(rotor.axis), gravity))

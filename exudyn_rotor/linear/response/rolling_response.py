@@ -44,12 +44,13 @@ from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.sweep import ascending_from_zero
+from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 from exudyn_rotor.threads import one_thread
 
 _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
-_ROUND = 1e-12  # share of gravity, and of the largest harmonic
+_ROUND = 1e-12  # share of the largest harmonic
 
 
 def rolling_bearing_response(
@@ -164,9 +165,8 @@ def rolling_bearing_response(
     model = linear_model(target, supports=linear, foundation=foundation, stiffening=stiffening)
     warn_of_left_out_stiffening(model, values.max())
     observed = places(model, checked_places(at))
-    across = target.axis.plane.T @ gravity
-    crosswise = np.abs(across).max() > _ROUND * np.abs(gravity).max()
-    weight = [BaseAcceleration(-across)] if crosswise else []
+    crosswise = parts_across(axes_of(target.axis), gravity)
+    weight = [BaseAcceleration(-crosswise)] if np.any(crosswise) else []
     static = total([*weight, *loads], model) if weight or loads else {}
     whirls = bool(unbalances) or (own and not model.is_balanced)
     # a balanced rotor is strained by centrifugal loads, too

@@ -17,7 +17,7 @@ from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
-from exudyn_rotor.theory.rotating_axes import into_rotor_frame
+from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
 
 _SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
 
@@ -114,5 +114,5 @@ def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
     if left == right:
         return [np.zeros(2), np.zeros(2)]
     share = (source.center_of_mass @ e - left) / (right - left)
-    weight = source.invariants.mass * (body.standing_axes.T @ body.plan.setup.gravity)[:2]
+    weight = source.invariants.mass * parts_across(body.standing_axes, body.plan.setup.gravity)
     return [(1.0 - share) * weight, share * weight]
