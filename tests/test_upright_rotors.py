@@ -8,6 +8,7 @@ from point_rotors import SKEW_AXIS, free_stiffness
 from exudyn_rotor import (
     JournalBearing,
     OilFilm,
+    RollingBearing,
     ShortJournalBearing,
     SolidRotor,
     SpinAxis,
@@ -19,6 +20,7 @@ from exudyn_rotor import (
     grooved_pads,
     steady_state,
 )
+from exudyn_rotor.bearings.held_law import HeldBearing
 from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 pytestmark = [
@@ -28,6 +30,7 @@ pytestmark = [
 
 UPRIGHT = (0.0, 0.0, 1.0)
 MASS, RADIUS, ARM, SPEED = 10.0, 0.1, 0.15, 300.0
+CONTACT = {"balls": 7e9, "rollers": 5e8}  # N/m^1.5, N/m^(10/9)
 
 
 def short(name):
@@ -48,6 +51,20 @@ def tilting(name):
     return TiltingPadBearing(interface=name, film=film, pad_inertia=1e-5)
 
 
+def rolling(elements):
+    """Return bearings without clearance: in the middle all elements just touch."""
+    return lambda name: RollingBearing(
+        interface=name,
+        count=8,
+        pitch_radius=0.0326,
+        element_radius=0.006,
+        stiffness=CONTACT[elements],
+        clearance=0.0,
+        damping=10.0,
+        elements=elements,
+    )
+
+
 def rings(direction, heavy):
     """Return five masses on each of two rings with an unbalance [kg], and the axes (n1, n2, e)."""
     axes = axes_of(SpinAxis(direction))
@@ -60,7 +77,7 @@ def rings(direction, heavy):
     return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)), axes
 
 
-def whirl(made, direction, heavy):
+def whirl(made, direction, heavy, angles=(0.0, 1.0, 2.5)):
     """Return the journal's motion along (n1, n2) in its steady motion, upright."""
     rotor, axes = rings(np.array(direction), heavy)
     mbs = exu.SystemContainer().AddSystem()
@@ -71,7 +88,7 @@ def whirl(made, direction, heavy):
     add_supports(body, [made("left"), made("right"), thrust])
     mbs.Assemble()
     steady = steady_state(body)
-    return np.array([steady.interface_motion("left", angle)[:2] for angle in (0.0, 1.0, 2.5)])
+    return np.array([steady.interface_motion("left", angle)[:2] for angle in angles])
 
 
 def test_parts_across_keep_loads_and_leave_rounding():
@@ -98,7 +115,7 @@ def test_short_film_carries_the_slightest_load(load):
     assert place == pytest.approx([load / stiff, 0.0], rel=1e-9, abs=(2e-15 + near**2) * 5e-5)
 
 
-@pytest.mark.parametrize("made", [short])
+@pytest.mark.parametrize("made", [short, rolling("balls")])
 def test_upright_rotor_whirls_about_a_skew_axis_as_about_a_vertical_one(made):
     skew, vertical = (whirl(made, direction, 1e-4) for direction in (SKEW_AXIS, UPRIGHT))
     size = np.abs(vertical).max()
@@ -110,3 +127,11 @@ def test_upright_rotor_whirls_about_a_skew_axis_as_about_a_vertical_one(made):
 def test_balanced_upright_rotor_stays_in_the_middle_of_its_films(made):
     # the clearances are 1e-4 m and 5e-5 m, and the rounding of loads is 1e-16 of the weight
     assert np.abs(whirl(made, SKEW_AXIS, 0.0)).max() < 1e-12
+
+
+def test_elements_that_touch_by_rounding_have_no_stiffness():
+    """1e-17 m of depth, what rounding leaves of positions of 0.1 m, are 1e7 N/m of a roller."""
+    law = HeldBearing.of(rolling("rollers")("left")).laws[0]
+    law.hold(True)
+    law.law(1e-17, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert law.law(1e-6, 0.0, 0.0, 0.0, 0.0, 0.0) == pytest.approx((0.0, 0.0), abs=1e-9)

@@ -30,6 +30,7 @@ from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
 _STILL = 1e-4  # of the clearance: a motion whose square does not matter
+_ROUNDED = 1e-14  # m: of differences of positions of some metres
 
 
 class HeldLaw:
@@ -224,13 +225,14 @@ class TangentContacts(HeldLaw):
     """Law of a rolling bearing that, once held, goes on by the stiffness of its contacts there.
 
     Within a step of differences elements begin to carry, some in one direction and others in the
-    next: those that no load presses would have a stiffness that changes as the rotor turns.
+    next: those that no load presses would have a stiffness that changes as the rotor turns. So
+    would elements without clearance that touch by what rounding leaves of the journal's place.
     """
 
     bearing: RollingBearing
 
     def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent:
-        stiffness = contacts(self.bearing, motion[:2], angle)[2]
+        stiffness = contacts(self.bearing, motion[:2], angle, _ROUNDED)[2]
         return stiffness, self.bearing.damping * np.eye(2)
 
 

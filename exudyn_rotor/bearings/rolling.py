@@ -250,7 +250,7 @@ class RollingBearing(Bearing):
 
 
 def contacts(
-    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike
+    bearing: RollingBearing, places: np.ndarray, angles: ArrayLike, least: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return loads of the elements, force on the inner ring, and stiffness, without damping.
 
@@ -261,6 +261,8 @@ def contacts(
         Of the inner ring [m].
     angles : array_like, shape (…)
         Spin angles θ [rad].
+    least : float
+        Depth up to which an element carries nothing [m].
 
     Returns
     -------
@@ -274,7 +276,8 @@ def contacts(
     turn = bearing.cage_ratio * np.asarray(angles)[..., None]
     turned = 2.0 * pi / bearing.count * np.arange(bearing.count) + turn
     n, exponent = np.stack([np.cos(turned), np.sin(turned)], -1), _EXPONENTS[bearing.elements]
-    depth = np.maximum((n @ places[..., None])[..., 0] - bearing.clearance, 0.0)
+    depth = (n @ places[..., None])[..., 0] - bearing.clearance
+    depth = np.where(depth > least, depth, 0.0)
     loads = bearing.stiffness * depth**exponent
     slopes = exponent * bearing.stiffness * depth ** (exponent - 1.0)
     across = np.swapaxes(n, -1, -2)
