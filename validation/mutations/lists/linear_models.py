@@ -86,6 +86,35 @@ LINEAR_MODELS = [
         ("slight loads are rounding", "_ROUNDING = 1e-12", "_ROUNDING = 1e-9"),
     ),
     *mutations(
+        "linear/models/scene/steady_motion.py",
+        "test_search_for_steady_motions.py",
+        (
+            "steps are not shortened",
+            "change, halvings = 0.5 * change",
+            "change, halvings = 0.0 * change",
+        ),
+        (
+            "what is unbalanced does not tell",
+            "<= _RISE * before:\n                break",
+            "<= 0.0 * before:\n                break",
+        ),
+        ("steps in vain go on", "(2.0**tries - 1.0) < left", "(2.0**tries - 1.0) < 0.0 * left"),
+    ),
+    *mutations(
+        "linear/models/scene/probe.py",
+        "test_search_for_steady_motions.py",
+        (
+            "forces alone point the other way",
+            "turn(theta)[0].T @ _state(",
+            "turn(theta)[0].T @ -_state(",
+        ),
+    ),
+    *mutations(
+        "linear/models/scene/differences.py",
+        "test_search_for_steady_motions.py",
+        ("steps of 2h are added", "(near - far) / 3.0, float", "(far - near) / 3.0, float"),
+    ),
+    *mutations(
         "bearings/held_law.py",
         "test_upright_rotors.py",
         ("elements touch by rounding", "_ROUNDED = 1e-14", "_ROUNDED = 0.0"),
@@ -159,12 +188,12 @@ LINEAR_MODELS = [
         "test_dampers_and_stops.py::test_uneven_rotor_that_lifts_off_its_stop_starts_in_its_steady_motion",
         (
             "angles see another motion",
-            "np.array([point.residual for point in points]) / self.samples",
-            "np.array([point.residual for point in points[::-1]]) / self.samples",
+            "@ np.array(left) / self.samples",
+            "@ np.array(left[::-1]) / self.samples",
         ),
     ),
     *mutations(
-        "linear/models/scene/probe.py",
+        "linear/models/scene/differences.py",
         "test_dampers_and_stops.py::test_equilibrium_on_a_stop_a_thousand_times_stiffer_than_the_bearings",
         ("steps of differences beyond the contact", "_KINK = 1e-4", "_KINK = 1e4"),
     ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
@@ -19,6 +19,12 @@ from exudyn_rotor.bearings.held_law import (
     TangentShortFilm,
 )
 from exudyn_rotor.bearings.support import BelowTableError
+from exudyn_rotor.linear.models.scene.differences import (
+    CURVATURE,
+    chosen_step,
+    differences,
+    slopes,
+)
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
@@ -31,12 +37,9 @@ from exudyn_rotor.theory.motion import Motion
 # root mean square displacement [m] of a difference step: as large as nonlinearity allows, because
 # Exudyn's forces are differences of positions of order 1 m
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
-_CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
-_SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
 _MOVED, _POSITION = 1e-4, exudyn.OutputVariableType.Position  # of a coordinate
 _KEPT = 32  # angles whose terms of the rotor are kept
-_KINK = 1e-4  # relative second-order error of a step that tells so
 
 
 class Probe:
@@ -73,7 +76,7 @@ class Probe:
     @property
     def rounding(self) -> float:
         """Relative error of derivatives: of positions of order 1 m, and of the curvature left."""
-        return EPSILON / self.step + _CURVATURE**2
+        return EPSILON / self.step + CURVATURE**2
 
     @property
     def straight(self) -> float:
@@ -326,18 +329,41 @@ def linearised(
         return _linearised(probe, theta, y, y_t, y_tt)
 
 
+def unbalanced(
+    probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
+) -> np.ndarray:
+    """Return the residual of y at one angle (k,), as :func:`linearised` has it."""
+    with probe.held():
+        return probe.scene.turn(theta)[0].T @ _state(probe, theta, y, y_t, y_tt).residual
+
+
+class _State(NamedTuple):
+    """Free coordinates and velocities at one angle, the rotor's D and K, all M, and forces."""
+
+    x: np.ndarray
+    v: np.ndarray
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    force: np.ndarray
+    residual: np.ndarray
+
+
+def _state(probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray) -> _State:
+    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.scene.turn(theta)))
+    x, v = T @ y, T @ y_t + T1 @ y
+    M, D, K, constant = probe.rotor_terms(theta)
+    force = probe.force(theta, x, v)
+    M = M + probe.mass()
+    inertia = M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y)
+    return _State(x, v, M, D, K, force, inertia + D @ v + K @ x - constant - force)
+
+
 def _linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> LinearPoint:
-    speed, (T, T1, T2) = probe.speed, probe.scene.turn(theta)
-    T1, T2 = speed * T1, speed**2 * T2
-    x, v = T @ y, T @ y_t + T1 @ y
-    rotor_M, rotor_D, rotor_K, rotor_force = probe.rotor_terms(theta)
-    force = probe.force(theta, x, v)
-    M = rotor_M + probe.mass()
-    residual = (
-        M @ (T @ y_tt + 2.0 * T1 @ y_t + T2 @ y) + rotor_D @ v + rotor_K @ x - rotor_force - force
-    )
+    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.scene.turn(theta)))
+    x, v, M, rotor_D, rotor_K, force, residual = _state(probe, theta, y, y_t, y_tt)
     sizes = probe.scene.metre(np.diag(T.T @ M @ T))
 
     def moved(x_i: np.ndarray) -> np.ndarray:
@@ -347,11 +373,11 @@ def _linearised(
         return probe.force(theta, x, v + v_i)
 
     if probe.step is None:
-        probe.step = _chosen_step(moved, T * sizes, _STEPS)
-        probe.velocity_step = _chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
-    rest_K = -_slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
+        probe.step = chosen_step(moved, T * sizes, _STEPS)
+        probe.velocity_step = chosen_step(sped_up, T * sizes, _VELOCITY_STEPS)
+    rest_K = -slopes(moved, probe.step * T * sizes) / (probe.step * sizes)
     faster = probe.velocity_step
-    rest_D = -_differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
+    rest_D = -differences(sped_up, faster * T * sizes)[0] / (faster * sizes)
     carried = rest_D @ (T.T @ T1)  # the columns of rest_D are derivatives along T
     return LinearPoint(
         T.T @ M @ T,
@@ -360,33 +386,3 @@ def _linearised(
         T.T @ residual,
         T.T @ force,
     )
-
-
-def _differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return central differences along the columns of `moves`, and their curvature error.
-
-    The steps h and 2h are extrapolated; the error is that of h alone.
-    """
-    near, far = (
-        np.array([(function(n * move) - function(-n * move)) / (2 * n) for move in moves.T]).T
-        for n in (1, 2)
-    )
-    error = np.abs(near - far).max() / 3.0 / max(np.abs(near).max(), 1e-300)
-    return near + (near - far) / 3.0, float(error)
-
-
-def _slopes(function: Callable, moves: np.ndarray) -> np.ndarray:
-    """Return differences along `moves`, of smaller ones where the forces have a kink within."""
-    for share in _SHARES:
-        slopes, error = _differences(function, share * moves)
-        if error < _KINK:
-            break
-    return slopes / share
-
-
-def _chosen_step(function: Callable, moves: np.ndarray, steps: tuple[float, ...]) -> float:
-    """Return the largest step [m] or [m/s] at which the forces are straight enough."""
-    for step in steps:
-        if _differences(function, step * moves)[1] < _CURVATURE:
-            return step
-    return steps[-1]

@@ -26,7 +26,12 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
-from exudyn_rotor.linear.models.scene.probe import LinearPoint, Probe, linearised
+from exudyn_rotor.linear.models.scene.probe import (
+    LinearPoint,
+    Probe,
+    linearised,
+    unbalanced,
+)
 from exudyn_rotor.linear.models.scene.sampled_terms import fourier_terms, scaled_samples
 from exudyn_rotor.linear.models.scene.searched_scene import Scene
 from exudyn_rotor.linear.models.scene.unloaded import check_elements, check_films, free_in_elements
@@ -46,7 +51,7 @@ _MOST_ITERATIONS = 40
 _MOST_FREE = 20  # with a journal that nothing presses
 _FEW_ITERATIONS = 4  # after which what is balanced to rounding is found, with free motions by it
 _RISE = 2.0  # of the residual, beyond which a step of Newton's method is halved
-_LEAST_SHARE = 2e-3  # of a step
+_MOST_HALVINGS = 9  # of a step
 _MOTION = 1e-7  # tolerance of a motion about which films have coefficients of another kind
 _BESIDE_REST = 1e-5  # one of which the mean force alone counts
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
@@ -195,13 +200,17 @@ class _Search:
         names = self.scene.interfaces
         return OwnSpin.of(self.scene, [self.scene.interface_motion(name) for name in names])
 
+    @cached_property
+    def is_free(self) -> bool:
+        """Whether nothing presses the elements of a rolling bearing."""
+        return free_in_elements(self.scene, self.probe) is not None
+
     def found(self, start: np.ndarray | None) -> tuple[PeriodicSystem | None, np.ndarray]:
         """Return the equations, None where more samples are needed, and the harmonics.
 
         It begins with those of fewer samples.
         """
-        free = free_in_elements(self.scene, self.probe) is not None
-        most = _MOST_FREE if free else _MOST_ITERATIONS
+        most = _MOST_FREE if self.is_free else _MOST_ITERATIONS
         return self._newton(self._start(start), 0.0, most)
 
     def equations(self, found: np.ndarray) -> tuple[PeriodicSystem, bool]:
@@ -221,9 +230,11 @@ class _Search:
         else:
             common = np.intersect1d(orders, self.orders)
             Y[np.isin(self.orders, common)] = still[np.isin(orders, common)]
-        first = self._residual(self._points(Y))
+        first = self._left(Y)
         left, stride = 1.0, _FIRST_STRIDE
-        for _ in range(most):
+        for tries in range(most, 0, -1):
+            if stride * (2.0**tries - 1.0) < left:
+                break  # too far, though each were to succeed and the next twice as long
             goal = max(left - stride, 0.0)
             try:
                 system, Y = self._newton(Y, goal * first, _MOST_FOLLOWED)
@@ -241,8 +252,9 @@ class _Search:
         self, Y: np.ndarray, wanted: np.ndarray | float, most: int
     ) -> tuple[PeriodicSystem | None, np.ndarray]:
         """Return equations and harmonics whose residual is the one wanted, beginning at Y."""
-        change, share, before = np.zeros_like(Y), 1.0, np.inf
-        for iteration in range(most):
+        change, before, shortened = np.zeros_like(Y), np.inf, False
+        iteration = -1
+        while (iteration := iteration + 1) < most:
             points = self._points(Y)
             system, resolved = self._system(points)
             if self.scene.about == "given":
@@ -250,13 +262,14 @@ class _Search:
             if not resolved and (self.for_equations or self.samples > _MOST_UNRESOLVED):
                 return None, Y
             metres = 1.0 / self.scene.metre(np.diag(points[0].M))
-            residual = self._residual(points) - wanted
-            size = np.linalg.norm(residual / metres)
-            if size > _RISE * before and share > _LEAST_SHARE:
-                change, share = 0.5 * change, 0.5 * share
-                Y = Y - change
+            residual = self._residual([point.residual for point in points]) - wanted
+            size = float(np.linalg.norm(residual / metres))
+            if size > _RISE * before and not shortened:
+                Y, halvings = self._shortened(Y, change, wanted, metres, before)
+                # among elements that nothing presses each counts: few motions repeat there
+                iteration, shortened = iteration + (halvings - 1) * self.is_free, True
                 continue
-            before, share = size, 1.0
+            before, shortened = size, False
             K = hill_matrices(self._discrete(points), self.orders)[2]
             change, left = (X.reshape(Y.shape) for X in solved_in(self.kept, K, -residual.ravel()))
             # there are no forces before the first step
@@ -280,6 +293,29 @@ class _Search:
                 return system if tail <= limit else None, Y
         raise self._lost()
 
+    def _shortened(
+        self,
+        Y: np.ndarray,
+        change: np.ndarray,
+        wanted: np.ndarray | float,
+        metres: np.ndarray,
+        before: float,
+    ) -> tuple[np.ndarray, int]:
+        """Return harmonics on the way back to those before a change, and how often it is halved.
+
+        What is unbalanced tells. The forces alone cost a fortieth of what their slopes do.
+        """
+        halvings = 0
+        while halvings < _MOST_HALVINGS:
+            change, halvings = 0.5 * change, halvings + 1
+            Y = Y - change
+            if np.linalg.norm((self._left(Y) - wanted) / metres) <= _RISE * before:
+                break
+        return Y, halvings
+
+    def _left(self, Y: np.ndarray) -> np.ndarray:
+        return self._residual([unbalanced(self.probe, *at) for at in self._motion(Y)])
+
     def _lost(self) -> UnconvergedError:
         return UnconvergedError(
             f"linear scene at {self.probe.speed:g} rad/s: no steady motion found; is there a load "
@@ -290,9 +326,9 @@ class _Search:
             "shows its motion on rolling bearings; about='given' needs no steady motion"
         )
 
-    def _residual(self, points: list[LinearPoint]) -> np.ndarray:
-        """Return the harmonics (h, k) of what the forces leave unbalanced."""
-        found = self.waves.conj().T @ np.array([point.residual for point in points]) / self.samples
+    def _residual(self, left: list[np.ndarray]) -> np.ndarray:
+        """Return the harmonics (h, k) of what the forces leave unbalanced at the angles."""
+        found = self.waves.conj().T @ np.array(left) / self.samples
         if self.scene.about == "equilibrium":
             found[self.orders == 0] += self.probe.speed**2 * self.scene.unit_unbalance
         return found
