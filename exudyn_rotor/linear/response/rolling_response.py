@@ -165,8 +165,8 @@ def rolling_bearing_response(
     model = linear_model(target, supports=linear, foundation=foundation, stiffening=stiffening)
     warn_of_left_out_stiffening(model, values.max())
     observed = places(model, checked_places(at))
-    crosswise = parts_across(axes_of(target.axis), gravity)
-    weight = [BaseAcceleration(-crosswise)] if np.any(crosswise) else []
+    across = parts_across(axes_of(target.axis), gravity)
+    weight = [BaseAcceleration(-across)] if np.any(across) else []
     static = total([*weight, *loads], model) if weight or loads else {}
     whirls = bool(unbalances) or (own and not model.is_balanced)
     # a balanced rotor is strained by centrifugal loads, too

@@ -13,6 +13,7 @@ from validation.mutations.lists.linear_models import LINEAR_MODELS
 from validation.mutations.lists.linear_periodic import LINEAR_PERIODIC
 from validation.mutations.lists.linear_spin import LINEAR_SPIN
 from validation.mutations.lists.linear_stability import LINEAR_STABILITY
+from validation.mutations.lists.linear_steady import LINEAR_STEADY
 from validation.mutations.lists.multibody import MULTIBODY
 from validation.mutations.lists.multibody_rotor import MULTIBODY_ROTOR
 from validation.mutations.lists.pictures import PICTURES
@@ -46,6 +47,7 @@ ALL = (
     *LINEAR,
     *LINEAR_SPIN,
     *LINEAR_STABILITY,
+    *LINEAR_STEADY,
     *TRAINS,
     *EVALUATION,
     *PICTURES,
