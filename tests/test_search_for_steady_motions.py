@@ -7,10 +7,13 @@ from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     ClearanceStop,
+    JournalBearing,
+    OilFilm,
     RollingBearing,
     Support,
     add_rotor,
     add_supports,
+    grooved_pads,
     steady_state,
 )
 from exudyn_rotor.linear.models.scene import steady_motion
@@ -22,14 +25,14 @@ MASS, RADIUS, ARM, SPEED, HEAVY = 10.0, 0.1, 0.15, 200.0, 1e-3
 STIFFNESS, DAMPING, ENDS = 1e5, 200.0, ("left", "right")
 
 
-def scene(supports, gravity):
+def scene(supports, gravity, translation="none"):
     """Return a rotor with an unbalance of HEAVY at RADIUS beside either bearing."""
     rotor = ring_rotor(RADIUS, ARM, MASS)
     for z in (-ARM, ARM):
         rotor = rotor.add_point_mass([RADIUS, 0.0, z], HEAVY)
     rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10))
     mbs = exu.SystemContainer().AddSystem()
-    body = add_rotor(mbs, rotor.reduce(0), spin=SPEED, translation="none", gravity=gravity)
+    body = add_rotor(mbs, rotor.reduce(0), spin=SPEED, translation=translation, gravity=gravity)
     add_supports(
         body, [*supports, Support("left", np.diag([0.0, 0.0, 1e7]), np.diag([0.0, 0.0, 1e3]))]
     )
@@ -112,6 +115,20 @@ def test_forces_alone_leave_what_linearised_ones_do():
         first = linearised(probe, 0.4, *motion).residual
         np.testing.assert_array_equal(unbalanced(probe, 0.4, *motion), first)
     assert np.abs(first).max() > 1.0
+
+
+def test_journal_that_moves_in_a_film_with_voids_is_refused_in_plain_words():
+    """Coordinates of the centre of mass are not at rest where the journal's are: so it moves."""
+
+    def film(name):
+        pads = grooved_pads(1e-4, [0.3, 3.4], 0.3)
+        sizes = {"radius": 0.05, "length": 0.05, "viscosity": 0.005, "nodes": 24, "axial_nodes": 0}
+        oil = OilFilm(pads=pads, cavitation="mass-conserving", **sizes)
+        return JournalBearing(interface=name, film=oil)
+
+    body = scene(map(film, ENDS), [0.0, -9.81, 0.0], translation="in-plane")
+    with pytest.raises(ValueError, match=r"^bearing at 'left': a film with cavitation='mass-cons"):
+        steady_state(body)
 
 
 def test_bent_forces_are_extrapolated():

@@ -33,6 +33,10 @@ _STILL = 1e-4  # of the clearance: a motion whose square does not matter
 _ROUNDED = 1e-14  # m: of differences of positions of some metres
 
 
+class MovingJournalError(ValueError):
+    """A journal moves in a film whose force depends on its past."""
+
+
 class HeldLaw:
     """Law of a bearing whose torque, once held, stays that of the next place.
 
@@ -211,7 +215,7 @@ class TangentFilm(HeldLaw):
         """Return the values where nothing is held; refuse the motion of a film with a memory."""
         clearance = self.bearing.film.clearance
         if self.bearing.remembers and hypot(vx, vy) > _REST * clearance * abs(speed):
-            raise ValueError(
+            raise MovingJournalError(
                 f"bearing at {self.bearing.interface!r}: a film with cavitation="
                 "'mass-conserving' has no force by place and velocity alone, so that a moving "
                 "journal is found by a run only; leave the unbalance out (linear_model(…, "

@@ -32,6 +32,7 @@ LINEAR_STEADY = [
             "turn(theta)[0].T @ _state(",
             "turn(theta)[0].T @ -_state(",
         ),
+        ("refusals of films are Exudyn's", " | MovingJournalError):", "):"),
     ),
     *mutations(
         "linear/models/scene/differences.py",

@@ -13,6 +13,7 @@ import numpy as np
 
 from exudyn_rotor.bearings.held_law import (
     HeldBearing,
+    MovingJournalError,
     TangentContacts,
     TangentDamper,
     TangentFilm,
@@ -237,7 +238,7 @@ class Probe:
         try:
             self.solver.ComputeODE2RHS(self.mbs)
         except ValueError as error:  # Exudyn's, from what a support's function raised
-            if isinstance(error.__cause__, BelowTableError):
+            if isinstance(error.__cause__, BelowTableError | MovingJournalError):
                 raise error.__cause__ from None
             raise
         total = np.array(self.solver.GetSystemResidual())[: len(q)]
