@@ -127,8 +127,8 @@ LINEAR_MODELS = [
         "test_dampers_and_stops.py::test_rotor_at_rest_lies_in_its_stops",
         (
             "what nothing holds does not move with its load",
-            "reach * pull / np",
-            "-reach * pull / np",
+            "point.K + soft, -point.residual)[0]",
+            "point.K, -point.residual)[0]",
         ),
     ),
     *mutations(

@@ -1,7 +1,8 @@
 """Equilibria of a scene at rest, in contact with stops and elements of bearings, too.
 
-By Newton's method with a line search. What nothing holds yet moves with its load until something
-does. Friction follows the sliding: an equilibrium has none of it.
+By Newton's method with a line search. What nothing holds yet is pressed by its load against a
+softness that lets it go farther in every step, until something holds it. Friction follows the
+sliding: an equilibrium has none of it.
 """
 
 from __future__ import annotations
@@ -62,7 +63,8 @@ def equilibrium(
         if held and iteration > _FEW_ITERATIONS and most <= BALANCED * scene.mass:
             return y
         if not held:
-            step = step + reach * pull / np.abs(pull).max() / metres
+            soft = np.abs(pull).max() / reach * np.diag(metres**2)
+            step = solved_in(kept, point.K + soft, -point.residual)[0]
             reach *= _FURTHER
 
         def slope(share: float, y: np.ndarray = y, step: np.ndarray = step) -> float:
