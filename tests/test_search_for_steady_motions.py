@@ -55,8 +55,8 @@ def upright():
 def test_rotor_whirls_along_its_stops_with_few_linearisations(monkeypatch):
     """Newton's law of half the rotor, seen from axes that turn with it.
 
-    Above its critical speed it lets go of the stop, and Newton's steps throw it to and fro: where
-    all that shortened them was linearised, they took the 40 iterations of the search.
+    Above its critical speed it lets go of the stop, and Newton's steps throw it back and forth:
+    where all that shortened them was linearised, they took the 40 iterations of the search.
     """
     angles = []
 

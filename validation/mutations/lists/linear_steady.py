@@ -27,7 +27,7 @@ LINEAR_STEADY = [
     *mutations(
         "linear/models/scene/equilibrium.py",
         "test_rolling_bearings_at_rest.py",
-        ("softness grows with the reach", "/ reach * np.diag", "* reach * np.diag"),
+        ("nothing presses what nothing holds", "point.K + soft, -", "point.K, -"),
     ),
     *mutations(
         "linear/models/scene/probe.py",
