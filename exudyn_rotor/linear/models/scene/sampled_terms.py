@@ -35,3 +35,18 @@ def fourier_terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tup
         if sizes[n] > NOISE * largest:
             terms[n], terms[-n] = spectrum[n], spectrum[n].conj()
     return terms, resolved
+
+
+def terms_at_angles(points: list[LinearPoint], orders: np.ndarray) -> list[dict[int, np.ndarray]]:
+    """Return the terms of M, D, K between harmonics of `orders` as the sampled angles see them.
+
+    The Fourier terms n and n + samples are the same there.
+    """
+    count, reach = len(points), range(2 * orders[0], 2 * orders[-1] + 1)
+    terms = []
+    for X, scale, size in scaled_samples(points):
+        spectrum = np.fft.fft(X, axis=0) / count
+        kept = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2)) > NOISE * size
+        kept[0] = True
+        terms.append({n: spectrum[n % count] for n in reach if kept[n % count]})
+    return terms

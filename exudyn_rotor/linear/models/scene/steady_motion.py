@@ -18,7 +18,6 @@ from exudyn_rotor.linear.models.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.models.scene.equilibrium import (
     BALANCED,
     FAR,
-    NOISE,
     SMALLEST,
     UNHELD,
     solved_in,
@@ -32,7 +31,11 @@ from exudyn_rotor.linear.models.scene.probe import (
     linearised,
     unbalanced,
 )
-from exudyn_rotor.linear.models.scene.sampled_terms import fourier_terms, scaled_samples
+from exudyn_rotor.linear.models.scene.sampled_terms import (
+    fourier_terms,
+    scaled_samples,
+    terms_at_angles,
+)
 from exudyn_rotor.linear.models.scene.searched_scene import Scene
 from exudyn_rotor.linear.models.scene.unloaded import check_elements, check_films, free_in_elements
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
@@ -366,17 +369,8 @@ class _Search:
         return system, all(resolved)
 
     def _discrete(self, points: list[LinearPoint]) -> PeriodicSystem:
-        """Return the equations whose Hill matrix is the derivative of the residual at the angles.
-
-        Their Fourier terms n and n + samples are the same: so the angles see them.
-        """
-        terms = []
-        for X, scale, size in scaled_samples(points):
-            spectrum = np.fft.fft(X, axis=0) / self.samples
-            kept = np.abs(spectrum * np.outer(scale, scale)).max(axis=(1, 2)) > NOISE * size
-            reach = range(2 * self.orders[0], 2 * self.orders[-1] + 1)
-            kept[0] = True
-            terms.append({n: spectrum[n % self.samples] for n in reach if kept[n % self.samples]})
+        """Return those whose Hill matrix is the derivative of the residual at the angles."""
+        terms = terms_at_angles(points, self.orders)
         return PeriodicSystem(self.probe.speed, *terms)
 
     def _own_spin(
