@@ -7,16 +7,40 @@ import numpy as np
 from exudyn.FEM import FEMinterface, KirchhoffMaterial
 from netgen.occ import Box, Cylinder, Glue, OCCGeometry, Pnt, Z
 
-from exudyn_rotor import SolidRotor
+from exudyn_rotor import ReducedRotor, SolidRotor, craig_bampton_modes
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 ALUMINIUM = {"youngsModulus": 7.0e10, "poissonsRatio": 0.33, "density": 2700.0}
 
 
-@cache
 def disc_rotor(order: int = 2, safety: float = 1.0) -> SolidRotor:
     """Return the rotor of :func:`disc_on_shaft`; made once, for rotors do not change."""
+    return _disc_rotor(order, safety)
+
+
+@cache
+def _disc_rotor(order: int, safety: float) -> SolidRotor:
     return SolidRotor.from_ngsolve(disc_on_shaft(safety=safety), STEEL, "z", order=order)
+
+
+@cache
+def centered_disc(order: int = 2) -> SolidRotor:
+    """Return :func:`disc_rotor` with its interfaces on the axis; made once, with its factors."""
+    return disc_rotor(order).center_interfaces()
+
+
+@cache
+def disc_with_two_modes(heavy: float = 0.0) -> ReducedRotor:
+    """Return :func:`disc_rotor` in two modes, with a point mass [kg] on its rim; made once."""
+    rotor = disc_rotor()
+    return (rotor.add_point_mass([0.15, 0.0, 0.2], heavy) if heavy else rotor).reduce(2)
+
+
+@cache
+def disc_with_craig_bampton_modes() -> ReducedRotor:
+    """Return :func:`disc_rotor` in four Craig-Bampton modes, ends coupled by RBE3; made once."""
+    rotor = disc_rotor()
+    return rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
 
 
 def disc_on_shaft(maxh: float = 0.06, scale: float = 1.0, safety: float = 1.0) -> ngs.Mesh:

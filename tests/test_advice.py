@@ -7,7 +7,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import disc_rotor
+from models import centered_disc
 from point_rotors import ring_rotor
 from run_scenes import scene, solve
 
@@ -33,7 +33,7 @@ SUPPORTS = [Support(name, STIFFNESS, damping=DAMPING) for name in ("left", "righ
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = disc_rotor().center_interfaces()
+    rotor = centered_disc()
     return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from models import disc_rotor
+from models import centered_disc
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor, Support, craig_bampton_modes, unbalance_response
@@ -86,7 +86,7 @@ def test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that(stiff
     The load, the last, is at rest in the rotor frame. It grows by 0.05 Ω there, which adds 5 % to
     the stiffness of supports by their damping.
     """
-    solid = disc_rotor().center_interfaces().add_point_mass([0.15, 0, 0.215], 0.05)
+    solid = centered_disc().add_point_mass([0.15, 0, 0.215], 0.05)
     reduced, speed = solid.reduce(craig_bampton_modes(solid, 12, coupling="RBE3")), 300.0
     springs = stiffness * np.eye(3)
     supports = [Support(name, springs, springs / speed) for name in ("left", "right")]

@@ -11,7 +11,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 import scipy.linalg as la
-from models import STEEL, block_beam, disc_on_shaft, disc_rotor
+from models import STEEL, block_beam, centered_disc, disc_on_shaft
 from run_scenes import scene, solve
 
 from exudyn_rotor import (
@@ -38,7 +38,7 @@ def beam():
 
 @pytest.fixture(scope="module")
 def rotor():
-    return disc_rotor().center_interfaces()
+    return centered_disc()
 
 
 def flexibility(reduced: ReducedRotor) -> np.ndarray:

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from models import STEEL, block_beam, disc_rotor
+from models import STEEL, block_beam, centered_disc, disc_rotor
 from small_results import rotor as stored_rotor
 
 from exudyn_rotor import (
@@ -49,7 +49,7 @@ def supports(kind: str) -> list[Support]:
 
 @cache
 def solid(level: str) -> SolidRotor:
-    rotor = disc_rotor(order=1).center_interfaces()
+    rotor = centered_disc(order=1)
     return rotor.with_prestress(rotor.prestress()) if level == "full" else rotor
 
 

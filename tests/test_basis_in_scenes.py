@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import disc_rotor
+from models import centered_disc
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*errs by about:UserWarning")
 
 @cache
 def reduced(modes):
-    solid = disc_rotor(order=1).center_interfaces()
+    solid = centered_disc(order=1)
     how, count = modes.split()
     if how == "free":
         return solid.reduce(int(count))

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from models import disc_rotor
+from models import centered_disc
 
 from exudyn_rotor import (
     Foundation,
@@ -55,7 +55,7 @@ SHARE = 0.02
 @cache
 def rotors():
     """Return the rotor with 4 free modes, whose bending lacks flexibility, and the true one."""
-    solid = disc_rotor(order=1).center_interfaces()
+    solid = centered_disc(order=1)
     return solid.reduce(4), solid.reduce(craig_bampton_modes(solid, 16, coupling="RBE3"))
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from models import disc_rotor
+from models import disc_with_two_modes
 from test_uneven_films import BLOCK, HEAVY, SPEED, apart
 from void_films import CLEARANCE, SKEW, oil, scene
 
@@ -32,9 +32,7 @@ KINDS = {
 
 def models(left, right, free, base=None, heavy=0.0, gravity=HEAVY):
     """Return the scene, skew in space, and the list of a disc on a shaft, as linear models."""
-    rotor = disc_rotor(safety=1.0)
-    rotor = rotor.add_point_mass([0.15, 0.0, 0.2], heavy) if heavy else rotor
-    reduced = rotor.reduce(2)
+    reduced = disc_with_two_modes(heavy)
     loads = bearing_loads(reduced, ["left", "right"], gravity)
     supports = [
         KINDS[kind](interface=name, load=load)

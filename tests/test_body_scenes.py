@@ -6,7 +6,7 @@ import pytest
 import scipy.sparse as sp
 from exudyn.itemInterface import SensorMarker
 from exudyn.utilities import InertiaSphere
-from models import disc_rotor
+from models import centered_disc
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -30,7 +30,7 @@ UNIT = np.eye(3)
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = disc_rotor(1).center_interfaces()
+    rotor = centered_disc(order=1)
     return rotor.add_point_mass([0.15, 0.0, 0.2], 0.1)
 
 

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.itemInterface import SensorUserFunction
-from models import disc_rotor, two_masses
+from models import centered_disc, two_masses
 from scipy.integrate import simpson
 
 from exudyn_rotor import (
@@ -35,7 +35,7 @@ TORQUE = 7.0
 
 @pytest.fixture(scope="module")
 def reduced():
-    rotor = disc_rotor(1).center_interfaces()
+    rotor = centered_disc(order=1)
     return rotor.add_point_mass([0.15, 0.0, 0.2], 0.1).reduce(2)
 
 

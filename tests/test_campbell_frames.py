@@ -4,7 +4,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
-from models import disc_rotor, two_masses
+from models import centered_disc, two_masses
 from point_rotors import random_rotor, ring_rotor
 
 from exudyn_rotor import SolidRotor, campbell, linear_model, plotting, stability
@@ -206,7 +206,7 @@ def test_few_modes_are_the_same_at_all_speeds(count):
     free rigid body, and ``I_p ≤ 2 I_t`` for every body.
     """
     speeds = np.linspace(0.0, 2500.0, 13)
-    reduced = disc_rotor(1).center_interfaces().reduce(10)
+    reduced = centered_disc(order=1).reduce(10)
     supports = [Support(name, 2e7, 500.0) for name in ("left", "right")]
     every = campbell(reduced, speeds, supports=supports).tracked()
     few = campbell(reduced, speeds, supports=supports, modes=count).tracked()

@@ -5,7 +5,7 @@ import re
 import exudyn
 import numpy as np
 import pytest
-from models import disc_rotor, two_masses
+from models import centered_disc, disc_rotor, two_masses
 from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
@@ -89,7 +89,7 @@ def test_a_free_rotor_is_the_limit_of_soft_supports():
 
     Springs of 1 N/m move frequencies of 3000 rad/s and more by k/(2 m ω²), 1e-8; mass 16 kg.
     """
-    rotor = disc_rotor(1).center_interfaces().reduce(8)
+    rotor = centered_disc(order=1).reduce(8)
     free = critical_speeds(rotor, nodal_diameters=[1])
     soft = [Support(name, 1.0) for name in ("left", "right")]
     held = critical_speeds(rotor, supports=soft, nodal_diameters=[1])

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
-from models import disc_rotor
+from models import disc_with_craig_bampton_modes
 from test_stability import anisotropic
 from transformed import transformed
 
@@ -25,7 +25,6 @@ from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.periodic.remainder import _Remainder, _States, checked
 from exudyn_rotor.linear.periodic.shared_motions import _owners, shared_motions
-from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 TOLERANCE = 1e-9
 
@@ -48,9 +47,7 @@ def both_bounds(system: PeriodicSystem, found: HillMotions, radius: float) -> tu
 
 def on_uneven_supports(speed: float) -> PeriodicSystem:
     """Return a rotor with free motions, which share their exponent."""
-    rotor = disc_rotor()
-    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
-    return LinearRotor.of(reduced, anisotropic()).at(speed)
+    return LinearRotor.of(disc_with_craig_bampton_modes(), anisotropic()).at(speed)
 
 
 def two_motions(damping: float, first: float = 20.0) -> PeriodicSystem:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from models import STEEL, block_beam, disc_rotor
+from models import STEEL, block_beam, centered_disc, disc_rotor
 from point_rotors import ring_rotor
 
 from exudyn_rotor import SolidRotor
@@ -136,7 +136,7 @@ def test_mesh_against_one_sparse_solution_at_each_speed(disc):
 
 def test_reduced_rotor_converges_to_the_full_one():
     """Craig–Bampton with mean interface motions: Craig, Bampton, AIAA J. 6 (1968)."""
-    disc = disc_rotor().center_interfaces()
+    disc = centered_disc()
     speeds = np.array([200.0, 700.0, 1500.0])
     exact = unbalance_response(disc, speeds, DISC_UNBALANCES, supports=DISC_SUPPORTS)
     errors = []

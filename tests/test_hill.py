@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
 from exponent_methods import floquet_exponents
-from models import disc_rotor
+from models import disc_with_craig_bampton_modes
 from scipy.optimize import linear_sum_assignment
 from test_stability import anisotropic, mathieu, random_system
 from transformed import transformed
@@ -18,7 +18,6 @@ from exudyn_rotor.linear.periodic.exponents import motions
 from exudyn_rotor.linear.periodic.floquet_modes import floquet_modes
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
-from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 
 WEAK = 0.2
 
@@ -193,8 +192,7 @@ def test_a_rotor_that_spins_the_other_way_has_the_same_exponents(speed):
 @pytest.mark.parametrize(("stiffness", "damping"), [(1e7, 1e5), (1e8, 1e6)])
 def test_stiff_dampers_do_not_hide_slow_motions(stiffness, damping):
     """Motions that are gone within a turn need many harmonics, and are not waited for."""
-    rotor = disc_rotor()
-    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
+    reduced = disc_with_craig_bampton_modes()
     uneven = stiffness * np.array([[1.0, 0.3], [-0.2, 2.0]]), damping * np.diag([1.0, 3.0])
     model = LinearRotor.of(reduced, [Support(name, *uneven) for name in ("left", "right")])
     system = model.at(100.0)

@@ -6,7 +6,7 @@ An uneven mesh, its axis skew in space, under five times its weight.
 import exudyn as exu
 import numpy as np
 import pytest
-from models import disc_rotor
+from models import disc_with_two_modes
 from point_rotors import ring_rotor
 from test_magnetic_bearing import DELAYED, LINEAR
 from test_uneven_films import BLOCK, HEAVY, SPEED, apart
@@ -91,9 +91,7 @@ THRUST = Support("right", np.diag([0.0, 0.0, 1e6]), np.diag([0.0, 0.0, 100.0]))
 
 def models(make, base=None, free=False, gravity=HEAVY, heavy=0.0, about="equilibrium"):
     """Return the scene and the list of a disc on a shaft, as linear models."""
-    rotor = disc_rotor(safety=1.0)
-    rotor = rotor.add_point_mass([0.15, 0.0, 0.2], heavy) if heavy else rotor
-    return on_ends(rotor.reduce(2), make, base, free, gravity, about)
+    return on_ends(disc_with_two_modes(heavy), make, base, free, gravity, about)
 
 
 def on_ends(reduced, make, base=None, free=False, gravity=HEAVY, about="equilibrium"):

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from models import disc_rotor
+from models import centered_disc, disc_rotor
 from PIL import Image
 from point_rotors import SKEW_AXIS
 
@@ -36,7 +36,7 @@ UNEQUAL = [Support(name, [[2e7, 0.0], [0.0, 8e6]], damping=200.0) for name in ("
 @cache
 def reduced() -> ReducedRotor:
     """Return a disc on a shaft along z with first-order elements."""
-    return disc_rotor(1).center_interfaces().reduce(4)
+    return centered_disc(order=1).reduce(4)
 
 
 @cache
@@ -101,7 +101,7 @@ def test_shapes_of_any_axis():
     """The same orbits about a skew axis that does not pass through the origin."""
     axis = SpinAxis(SKEW_AXIS, [0.3, -0.2, 0.5])
     turn = np.column_stack([axis.plane, axis.direction])
-    plain = disc_rotor(1).center_interfaces()
+    plain = centered_disc(order=1)
     blocks = block_diagonal(turn, plain.node_count)
     rotor = SolidRotor.from_matrices(
         plain.mass, blocks @ plain.stiffness @ blocks.T, plain.nodes @ turn.T + axis.point, axis,
@@ -121,7 +121,7 @@ def test_shapes_of_any_axis():
 
 
 def test_full_models_have_shapes():
-    rotor = disc_rotor(1).center_interfaces()
+    rotor = centered_disc(order=1)
     shapes = mode_shapes(rotor, SPEED, supports=EQUAL, modes=4)
     np.testing.assert_allclose(shapes.frequencies[2:], modes().frequencies[2:4], rtol=2e-2)
 

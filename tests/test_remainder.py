@@ -8,7 +8,7 @@ import pytest
 from asymmetric import asymmetric_shaft
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from models import disc_rotor
+from models import disc_with_craig_bampton_modes
 from scipy.special import mathieu_a, mathieu_b
 from test_stability import anisotropic, mathieu
 from transformed import transformed
@@ -26,7 +26,6 @@ from exudyn_rotor.linear.periodic.hill_motions import HillMotions
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.periodic.remainder import _fastest, _Remainder, checked
 from exudyn_rotor.linear.stability.growth import growth_of
-from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.solid_rotor import SolidRotor
 
 
@@ -208,8 +207,7 @@ def test_meissner_square_wave_by_its_fourier_terms():
 
 def test_two_motions_that_turn_half_a_period_are_both_found():
     """On stiff dampers, seen from outside: overdamped tilts at −92.27 and −92.18 1/s."""
-    rotor = disc_rotor()
-    reduced = rotor.reduce(craig_bampton_modes(rotor, 4, coupling="RBE3"))
+    reduced = disc_with_craig_bampton_modes()
     uneven = 1e8 * np.array([[1.0, 0.3], [-0.2, 2.0]]), 1e6 * np.diag([1.0, 3.0])
     system = LinearRotor.of(reduced, [Support(name, *uneven) for name in ("left", "right")]).at(
         100.0

@@ -10,7 +10,7 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinate,
     MarkerNodeRigid,
 )
-from models import disc_rotor
+from models import centered_disc
 from point_rotors import ring_rotor
 from run_scenes import scene, solve
 
@@ -31,7 +31,7 @@ from exudyn_rotor.theory.nodal import rotations, translations
 
 @pytest.fixture(scope="module")
 def solid():
-    rotor = disc_rotor().center_interfaces()
+    rotor = centered_disc()
     return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
 
 

@@ -9,7 +9,7 @@ from asymmetric import LENGTH, asymmetric_shaft
 from exponent_methods import constant_exponents
 from exudyn.itemInterface import GenericJoint, MarkerBodyRigid, SensorNode
 from exudyn.rigidBodyUtilities import InertiaCuboid
-from models import disc_rotor
+from models import centered_disc
 from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
@@ -369,7 +369,7 @@ def test_a_load_that_nothing_holds_has_no_steady_motion():
 @pytest.mark.parametrize("translation", ["free", "none"])
 def test_free_axial_motion_without_a_load_stays_at_rest(translation):
     """Bearings without axial stiffness: the axial motion is free, and nothing pushes it."""
-    rotor = disc_rotor().center_interfaces()
+    rotor = centered_disc()
     reduced = rotor.add_point_mass([0.1, 0.0, 0.25], 0.005).reduce(2)
     SC = exu.SystemContainer()
     mbs = SC.AddSystem()

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from models import disc_rotor
+from models import disc_with_two_modes
 from void_films import CLEARANCE, SKEW, TO_X, bearings, oil, rotor, scene
 from void_films import SPEED as RIGID_SPEED
 
@@ -38,10 +38,8 @@ def given(heavy=0.0, more=(), rotation=None, free=False, speed=SPEED, foundation
 
     Its coarse mesh is uneven enough that the shaft bends by its weight unlike in two directions.
     """
-    rotor = disc_rotor(safety=1.0)
-    if heavy:
-        rotor = rotor.add_point_mass([0.15, 0.0, 0.2], heavy)
-    reduced, turn = rotor.reduce(2), np.eye(3) if rotation is None else rotation
+    reduced = disc_with_two_modes(heavy)
+    turn = np.eye(3) if rotation is None else rotation
     oiled = replace(oil(**{"nodes": 48, **film}), radius=0.02, length=0.02)
     loads = zip(BLOCK.points, bearing_loads(reduced, list(BLOCK.points), HEAVY), strict=True)
     supports = [JournalBearing(interface=name, film=oiled, load=load) for name, load in loads]
