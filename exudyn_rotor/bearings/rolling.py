@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing, LawWithTorque
+from exudyn_rotor.cached import kept
 from exudyn_rotor.solvers.line_search import step_share
 
 _EXPONENTS = {"balls": 1.5, "rollers": 10.0 / 9.0}
@@ -243,10 +244,18 @@ class RollingBearing(Bearing):
 
         Parameters and errors are those of :meth:`equilibrium`.
         """
-        passage = 2.0 * pi / (self.count * self.cage_ratio)
-        angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES
-        tangents = [self._tangent(self.equilibrium(speed, load, t), t) for t in angles]
-        return np.mean(tangents, axis=0), self.damping * np.eye(2)
+        checks.number(speed, "speed", "rad/s")
+        stiffness = _mean_stiffness(self, *self._static_load(load).tolist())
+        return stiffness.copy(), self.damping * np.eye(2)
+
+
+@kept
+def _mean_stiffness(bearing: RollingBearing, *load: float) -> np.ndarray:
+    """Return the stiffness (2, 2) under a load (2,) [N], its mean over an element's passage."""
+    passage = 2.0 * pi / (bearing.count * bearing.cage_ratio)
+    angles = passage * np.arange(_CAGE_ANGLES) / _CAGE_ANGLES
+    places = [bearing.equilibrium(0.0, load, angle) for angle in angles]
+    return np.mean([bearing._tangent(*each) for each in zip(places, angles, strict=True)], axis=0)
 
 
 def contacts(

@@ -89,6 +89,13 @@ class Support:
         beyond its end.
         """
         checks.number(speed, "speed", "rad/s")
+        at, found = self.__dict__.get("_found", (None, None))
+        if found is None or (at != speed and self.varies):
+            found = self._matrices(speed)
+            object.__setattr__(self, "_found", (speed, found))
+        return found[0].copy(), found[1].copy()
+
+    def _matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
         stiffness[:3, :3] = self._matrix("stiffness", speed)
         stiffness[3:, 3:] = self._matrix("tilt_stiffness", speed)

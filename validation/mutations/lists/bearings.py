@@ -5,6 +5,13 @@ from validation.mutations.mutation import mutations
 BEARINGS = [
     *mutations(
         "bearings/support.py",
+        "test_cached.py",
+        ("first coefficients at all speeds", "at != speed and self.varies", "False"),
+        ("coefficients anew at each force", "at != speed and self.varies", "True"),
+        ("kept coefficients may be changed", "return found[0].copy()", "return found[0]"),
+    ),
+    *mutations(
+        "bearings/support.py",
         "test_stability.py::test_internal_damping_sets_in_at_the_closed_form_speed "
         "test_stability.py::test_a_symmetric_rotor_does_not_depend_on_the_frame",
         ("circulatory part of a damper reversed", "damping @ axial_skew", "-damping @ axial_skew"),

@@ -5,6 +5,16 @@ from validation.mutations.mutation import mutations
 ROLLING_BEARINGS = [
     *mutations(
         "bearings/rolling.py",
+        "test_cached.py",
+        ("kept stiffness may be changed", "return stiffness.copy()", "return stiffness"),
+        (
+            "first load's stiffness kept",
+            "bearing.equilibrium(0.0, load, angle)",
+            "bearing.equilibrium(0.0, np.array([500.0, 0.0]), angle)",
+        ),
+    ),
+    *mutations(
+        "bearings/rolling.py",
         "test_rolling_bearing.py",
         ("cage as fast as for a turning outer ring", "0.5 * (1.0 - self", "0.5 * (1.0 + self"),
         ("cage drives the ring", "self.cage_ratio * (x * py", "-self.cage_ratio * (x * py"),
