@@ -57,7 +57,7 @@ uneven = [Support(b.interface, np.diag([2e7, 0.5e7]), 500.0) for b in bearings]
 speeds = HERTZ * np.linspace(0.0, 400.0, 41)
 reduced = rotor.reduce(craig_bampton_modes(rotor, 20, coupling="RBE3"))
 even_diagram = campbell(reduced, speeds, supports=bearings)
-uneven_diagram = campbell(reduced, speeds[::2], supports=uneven, modes=8)
+uneven_diagram = campbell(reduced, speeds[::4], supports=uneven, modes=8)
 critical = critical_speeds(reduced, supports=bearings, max_speed=HERTZ * 500.0)
 print(critical.table())
 

@@ -46,7 +46,7 @@ def damped(speed: float, damping: float) -> tuple[LinearModel, float]:
     return linear_model(reduced, supports=bearings(SIDEWAYS, UPRIGHT, damping)), speed
 
 
-speeds = np.linspace(440.0, 580.0, 41)
+speeds = np.linspace(440.0, 580.0, 29)
 isotropic = bearings(UPRIGHT, UPRIGHT, 0.0)
 found = unstable_ranges(reduced, speeds, supports=isotropic)
 keep = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]

@@ -27,7 +27,7 @@ tube = occ.Cylinder(occ.Pnt(0, 0, -0.2), occ.Z, BORE + 0.006, 0.4)
 solid = tube + occ.Cylinder(occ.Pnt(0, 0, 0.02), occ.Z, RIM, THICKNESS)
 solid = solid - occ.Cylinder(occ.Pnt(0, 0, -0.3), occ.Z, BORE, 0.6)
 solid.faces.Min(occ.Z).name, solid.faces.Max(occ.Z).name = "left", "right"
-mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.03))
+mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.03, curvaturesafety=1.0))
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 rotor = SolidRotor.from_ngsolve(mesh, steel, axis="z").center_interfaces()
 rotor = rotor.add_point_mass([RIM, 0, 0.03], 0.002)

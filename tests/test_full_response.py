@@ -109,7 +109,7 @@ def test_mesh_against_one_sparse_solution_at_each_speed(disc):
 
     The axial spring and a stiff one on the mean spin hold the rigid motions of the sparse matrix.
     """
-    speeds = np.array([200.0, 700.0])
+    speeds = np.array([700.0])
     supports = [*DISC_SUPPORTS, Support("left", tilt_stiffness=np.diag([0.0, 0.0, 1e6]))]
     options = {"supports": supports, "own": False, "at": ["left", "right"]}
     found = unbalance_response(disc, speeds, DISC_UNBALANCES, stiffening="none", **options)

@@ -367,4 +367,4 @@ def test_own_spin_that_nothing_holds_does_not_twist_in_bearings_off_the_axis(hea
 @pytest.mark.parametrize("heavy", [0.0, 1e-4])
 def test_own_spin_that_nothing_holds_against_a_torque_is_refused(heavy):
     with pytest.raises(UnconvergedError, match="nothing holds"):
-        steady_state(with_own_spin(heavy, torque=0.1))
+        steady_state(with_own_spin(heavy, torque=10.0))
