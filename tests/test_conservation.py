@@ -58,13 +58,12 @@ def test_conservation_with_every_coupling(translation):
     assert max(drifts(motion, 8, start, rate, 1e-10)) < 1e-9  # 5e-11, falls with the tolerance
 
 
-@pytest.mark.parametrize("translation", ["free", "none"])
-def test_conservation_over_1000_revolutions(translation):
+def test_conservation_over_1000_revolutions():
     """Unbalanced body on its centre of mass in the slow one of its wobbles, for long steps."""
     balanced = ring_rotor(0.3, 0.19, 12.0)
     rotor = balanced.add_point_mass(balanced.nodes[2], 0.1)
     invariants = select_modes(rotor.reduce(0), Formulation("free")).invariants
-    motion = Motion(invariants, Formulation(translation), stiffening(invariants, "tilt"))
+    motion = Motion(invariants, Formulation("free"), stiffening(invariants, "tilt"))
     speed, count = 100.0, motion.formulation.translation_count
     zeta, zeta_t = slow_wobble(invariants, speed, 0.05)
     assert np.abs(invariants.h).max() > 1e-3  # the unbalance tilts the body

@@ -236,7 +236,7 @@ def measured_growth(mbs, scene, speed, steps, size=1e-5, revolutions=20):
     return np.polyfit(data[:, 0], np.log(np.hypot(*parts)), 1)[0]
 
 
-@pytest.mark.parametrize(("speed", "stable"), [(150.0, True), (140.0, False), (160.0, False)])
+@pytest.mark.parametrize(("speed", "stable"), [(150.0, True), (160.0, False)])
 def test_growth_is_that_of_the_transient_simulation(speed, stable):
     measured = []
     for steps in (400, 800):
