@@ -41,6 +41,11 @@ def rotor():
     return centered_disc()
 
 
+@pytest.fixture(scope="module")
+def lopsided(rotor):
+    return rotor.add_point_mass([0.15, 0, 0.215], 0.005)
+
+
 def flexibility(reduced: ReducedRotor) -> np.ndarray:
     """Return the flexibility of the flexible modes at the interfaces, (6n, 6n)."""
     flexible = slice(len(reduced.rigid), None)
@@ -218,6 +223,12 @@ def static_motion(rotor: SolidRotor, speed: float) -> np.ndarray:
     return np.concatenate([part @ static for part in parts])
 
 
+@pytest.fixture(scope="module")
+def whole(lopsided):
+    """Return the whole flexibility at the interfaces, and their static motion at 200 rad/s."""
+    return flexibility(lopsided.reduce(0).with_attachments), static_motion(lopsided, 200.0)
+
+
 def modal_stretch(reduced: ReducedRotor, speed: float) -> np.ndarray:
     """Return the share of it that the flexible modes show."""
     modes = np.arange(reduced.size) >= len(reduced.rigid_kinds)
@@ -237,18 +248,16 @@ def modal_stretch(reduced: ReducedRotor, speed: float) -> np.ndarray:
     ],
     ids=lambda options: options["translation"],
 )
-def test_estimate_after_a_run_is_what_the_springs_would_bend(rotor, count, options):
+def test_estimate_after_a_run_is_what_the_springs_would_bend(lopsided, whole, count, options):
     """Forces of the springs on the flexibility that the modes lack, over the displacement.
 
     And the static centrifugal displacement that they lack, from the whole solid's prestress.
     The estimate knows the loads from the equations of motion alone, to Newton's tolerance: springs
     exert no moments, so that rigid motions tell the forces across the axis at both ends.
     """
-    lopsided = rotor.add_point_mass([0.15, 0, 0.215], 0.005)
     reduced = lopsided.reduce(count)
     body, moved, loads = spring_forces(reduced, **options)
-    missing = flexibility(lopsided.reduce(0).with_attachments) - flexibility(reduced)
-    stretch = static_motion(lopsided, 200.0) - modal_stretch(reduced, 200.0)
+    missing, stretch = whole[0] - flexibility(reduced), whole[1] - modal_stretch(reduced, 200.0)
     bent = (loads @ missing + stretch).reshape(-1, 2, 6)[1:, :, :3].reshape(100, 6)
     expected = np.linalg.norm(bent, axis=1).max() / np.linalg.norm(moved, axis=1).max()
     row = check_run(body, warn=False)["residual"]
