@@ -115,19 +115,23 @@ def test_disc_adds_its_mass_and_moments():
     assert rotor.discs[0].nodes.tolist() == rotor.interfaces["seat"].nodes.tolist()
 
 
+@pytest.fixture(scope="module")
+def rigid_and_meshed():
+    mass, inertia = wheel()
+    rotors = shaft().add_disc(BAND[0], mass, inertia, BAND[1]), shaft(with_disc=True)
+    return [rotor.reduce(8, prestress=True) for rotor in rotors]
+
+
 @pytest.mark.parametrize("level", ["tilt", "full"])
-def test_disc_whirls_as_a_meshed_stiff_one(level):
+def test_disc_whirls_as_a_meshed_stiff_one(rigid_and_meshed, level):
     """Both levels of stiffening, up to 1.5 times the first frequency.
 
     The meshed disc stiffens the shaft's section from its surface inwards as the rigid one does;
     1e-3 is what other meshes of the same shaft differ by.
     """
-    mass, inertia = wheel()
-    rotors = shaft().add_disc(BAND[0], mass, inertia, BAND[1]), shaft(with_disc=True)
     supports = [Support(name, 1e8) for name in ("left", "right")]
     found = []
-    for rotor in rotors:
-        reduced = rotor.reduce(8, prestress=level == "full")
+    for reduced in rigid_and_meshed:
         result = campbell(reduced, [0.0, 1500.0], supports=supports, stiffening=level)
         lateral = np.isin(result.whirl, ("forward", "backward", "mixed"))
         rows = zip(result.frequencies_inertial, lateral, strict=True)
