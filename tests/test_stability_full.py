@@ -52,7 +52,7 @@ def shaft() -> SolidRotor:
     solid = Cylinder(Pnt(0, 0, 0), Z, 0.03, 0.3)
     solid.mat("steel")
     solid.faces.Min(Z).name, solid.faces.Max(Z).name = "left", "right"
-    mesh = ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.03))
+    mesh = ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.03, curvaturesafety=1.0))
     return SolidRotor.from_ngsolve(mesh, STEEL, "z", order=2).center_interfaces()
 
 
