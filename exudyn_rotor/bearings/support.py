@@ -89,6 +89,7 @@ class Support:
         beyond its end.
         """
         checks.number(speed, "speed", "rad/s")
+        # the last speed with its matrices as one object, as threads share supports
         at, found = self.__dict__.get("_found", (None, None))
         if found is None or (at != speed and self.varies):
             found = self._matrices(speed)
