@@ -20,6 +20,20 @@ LINEAR_SPIN = [
         ),
     ),
     *mutations(
+        "linear/models/scene/mean_inertia.py",
+        "test_uneven_inertia.py",
+        ("tilts about the other side of the axis", "motion[:3] += skew(", "motion[:3] -= skew("),
+        ("tilts about the centre of mass", "motion[:3] += skew(", "motion[:3] += 0.0 * skew("),
+        ("rigid motions whirl by 2Ω", "@ [1.0, 1.0j]", "@ [1.0, -1.0j]"),
+        ("translations by the Coriolis force reversed", "2.0j * T1 - T)", "-2.0j * T1 - T)"),
+        ("modes by the Coriolis force reversed", "(T1 + 1.0j * T) +", "(T1 - 1.0j * T) +"),
+    ),
+    *mutations(
+        "linear/models/scene/steady_motion.py",
+        "test_uneven_inertia.py",
+        ("mean inertia of a rotor twice", "return found - (self", "return found + (self"),
+    ),
+    *mutations(
         "linear/models/rotor/eccentricity.py",
         "test_uneven_inertia.py",
         ("a free spin changes tilts twice as much", "0.5 * max(1.0 -", "max(1.0 -"),

@@ -23,7 +23,13 @@ def scaled_samples(points: list[LinearPoint]) -> Iterator[tuple[np.ndarray, np.n
         yield X, scale, size
 
 
-def fourier_terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
+def fourier_terms(points: list[LinearPoint]) -> tuple[list[Terms], bool]:
+    """Return the Fourier terms of M, D, K, and whether the samples resolve them."""
+    found = [_fourier_terms(*entry) for entry in scaled_samples(points)]
+    return [terms for terms, _ in found], all(resolved for _, resolved in found)
+
+
+def _fourier_terms(samples: np.ndarray, scale: np.ndarray, largest: float) -> tuple[Terms, bool]:
     """Return the Fourier terms of samples over a revolution, and whether these resolve it."""
     count = len(samples)
     spectrum = np.fft.fft(samples, axis=0) / count

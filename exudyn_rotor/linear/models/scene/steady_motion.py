@@ -23,6 +23,7 @@ from exudyn_rotor.linear.models.scene.equilibrium import (
     solved_in,
 )
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
+from exudyn_rotor.linear.models.scene.mean_inertia import mean_inertia
 from exudyn_rotor.linear.models.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.models.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.models.scene.probe import (
@@ -31,11 +32,7 @@ from exudyn_rotor.linear.models.scene.probe import (
     linearised,
     unbalanced,
 )
-from exudyn_rotor.linear.models.scene.sampled_terms import (
-    fourier_terms,
-    scaled_samples,
-    terms_at_angles,
-)
+from exudyn_rotor.linear.models.scene.sampled_terms import fourier_terms, terms_at_angles
 from exudyn_rotor.linear.models.scene.searched_scene import Scene
 from exudyn_rotor.linear.models.scene.unloaded import check_elements, check_films, free_in_elements
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
@@ -199,6 +196,11 @@ class _Search:
         return scipy.linalg.block_diag(*(every if n else self.mean for n in self.orders))
 
     @cached_property
+    def left_out(self) -> np.ndarray:
+        """Loads (h k, h k) by the harmonics that are left out with the rotor's own unbalance."""
+        return mean_inertia(self.scene, self.probe, self.orders)
+
+    @cached_property
     def spin(self) -> OwnSpin | None:
         names = self.scene.interfaces
         return OwnSpin.of(self.scene, [self.scene.interface_motion(name) for name in names])
@@ -265,7 +267,7 @@ class _Search:
             if not resolved and (self.for_equations or self.samples > _MOST_UNRESOLVED):
                 return None, Y
             metres = 1.0 / self.scene.metre(np.diag(points[0].M))
-            residual = self._residual([point.residual for point in points]) - wanted
+            residual = self._residual([point.residual for point in points], Y) - wanted
             size = float(np.linalg.norm(residual / metres))
             if size > _RISE * before and not shortened:
                 Y, halvings = self._shortened(Y, change, wanted, metres, before)
@@ -273,7 +275,8 @@ class _Search:
                 iteration, shortened = iteration + (halvings - 1) * self.is_free, True
                 continue
             before, shortened = size, False
-            K = hill_matrices(self._discrete(points), self.orders)[2]
+            seen = PeriodicSystem(self.probe.speed, *terms_at_angles(points, self.orders))
+            K = hill_matrices(seen, self.orders)[2] - self.left_out
             change, left = (X.reshape(Y.shape) for X in solved_in(self.kept, K, -residual.ravel()))
             # there are no forces before the first step
             torque, twist = self._own_spin(system, points if iteration else None, K, Y + change)
@@ -317,7 +320,7 @@ class _Search:
         return Y, halvings
 
     def _left(self, Y: np.ndarray) -> np.ndarray:
-        return self._residual([unbalanced(self.probe, *at) for at in self._motion(Y)])
+        return self._residual([unbalanced(self.probe, *at) for at in self._motion(Y)], Y)
 
     def _lost(self) -> UnconvergedError:
         return UnconvergedError(
@@ -329,12 +332,12 @@ class _Search:
             "shows its motion on rolling bearings; about='given' needs no steady motion"
         )
 
-    def _residual(self, left: list[np.ndarray]) -> np.ndarray:
+    def _residual(self, left: list[np.ndarray], Y: np.ndarray) -> np.ndarray:
         """Return the harmonics (h, k) of what the forces leave unbalanced at the angles."""
         found = self.waves.conj().T @ np.array(left) / self.samples
         if self.scene.about == "equilibrium":
             found[self.orders == 0] += self.probe.speed**2 * self.scene.unit_unbalance
-        return found
+        return found - (self.left_out @ Y.ravel()).reshape(Y.shape)
 
     def _start(self, found: np.ndarray | None) -> np.ndarray:
         if found is None:
@@ -362,16 +365,10 @@ class _Search:
 
     def _system(self, points: list[LinearPoint]) -> tuple[PeriodicSystem, bool]:
         """Return the equations, and whether the samples resolve their coefficients."""
-        found = (fourier_terms(*entry) for entry in scaled_samples(points))
-        terms, resolved = zip(*found, strict=True)
+        terms, resolved = fourier_terms(points)
         speed, rounding = self.probe.speed, self.probe.rounding
         system = PeriodicSystem(speed, *terms, self.scene.structural_damping, rounding)
-        return system, all(resolved)
-
-    def _discrete(self, points: list[LinearPoint]) -> PeriodicSystem:
-        """Return those whose Hill matrix is the derivative of the residual at the angles."""
-        terms = terms_at_angles(points, self.orders)
-        return PeriodicSystem(self.probe.speed, *terms)
+        return system, resolved
 
     def _own_spin(
         self, system: PeriodicSystem, points: list[LinearPoint] | None, K: np.ndarray, Y: np.ndarray
