@@ -120,8 +120,8 @@ def draw_surface(
     room : array_like, shape (p, 3), optional
         Points between which the picture reaches, where that is more than the surface [m].
     undeformed : array_like, shape (n, 3), optional
-        Nodes of the body at rest, whose extents a picture without axes tells, where `positions` are
-        displaced ones [m].
+        Nodes of the body at rest, where `positions` are displaced ones [m]; a picture without axes
+        gives their extents.
 
     Raises
     ------

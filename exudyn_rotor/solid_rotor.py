@@ -120,7 +120,7 @@ class SolidRotor(FiniteElementRotor):
             Refuse materials and sizes that cannot be in SI units.
         allow_parts : bool, optional
             Take a mesh of several solids that nothing connects. Each of them moves by itself, so
-            that most analyses refuse such a rotor; :meth:`summary` tells the parts.
+            that most analyses refuse such a rotor; :meth:`summary` lists the parts.
 
         Raises
         ------

@@ -143,7 +143,8 @@ def candidate(
 ) -> Candidate:
     """Take a reduced rotor with its supports, or a scene with its body.
 
-    Where `axial` is None, a scene tells at a `speed` [rad/s] whether anything acts along the axis.
+    Where `axial` is None, whether anything acts along the axis is found in the scene at a `speed`
+    [rad/s].
 
     Raises
     ------

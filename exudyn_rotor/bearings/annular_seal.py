@@ -47,7 +47,7 @@ class AnnularSeal(Bearing):
     """Plain annular seal with turbulent leakage (2), for small motions about the centre.
 
     Scenes and linear analyses take stiffness and damping; the inertia of the leakage, which
-    :meth:`added_mass` tells, is left out of both. That is right where ``ω² M`` is far below the
+    :meth:`added_mass` gives, is left out of both. That is right where ``ω² M`` is far below the
     stiffness of rotor and bearings; a pump's rotor in water may need it.
 
     Parameters

@@ -49,7 +49,7 @@ class RollingBearing(Bearing):
 
     Linear analyses take the mean of its stiffness, in the equilibria under the load, over the
     passage of one element; :func:`rolling_bearing_response` takes the contacts as they are, and
-    tells by how much linear equations err. A scene with it does not repeat with every revolution:
+    gives the error of linear equations. A scene with it does not repeat with every revolution:
     :func:`steady_state` holds the cage where it starts.
 
     Parameters

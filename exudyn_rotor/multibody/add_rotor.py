@@ -187,7 +187,7 @@ def add_rotor(
     position, displacement, velocity, rotation and angular velocity, are put on virtual nodes of the
     flexible body, so that forces, torques, springs and joints there act as on Exudyn's body. They
     cost as much as a marker at an interface. Markers of single coordinates stay;
-    ``body.check_connections()`` tells what they lack.
+    ``body.check_connections()`` names what they lack.
 
     Locking and solvers:
 

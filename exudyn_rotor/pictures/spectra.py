@@ -252,8 +252,8 @@ def spectra(
 def plot_orbit(motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None) -> Axes:
     """Draw an orbit with a dot where the keyphasor passes: at whole turns of the rotor.
 
-    Dots that stay in place tell a motion at the spin speed or its multiples; one more or less of
-    them for each loop tells a part of it, as half of it for whirl of bearings' oil.
+    Dots that stay in place show a motion at the spin speed or its multiples; one more or less of
+    them for each loop shows a fraction of it, as half of it for whirl of bearings' oil.
 
     Parameters
     ----------

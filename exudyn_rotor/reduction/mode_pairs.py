@@ -28,7 +28,7 @@ def lowest_with_pairs(
     available: int,
     rows: np.ndarray | slice = slice(None),
 ) -> Modes:
-    """Return the `count` lowest modes; a warning tells where the next one is the last one's pair.
+    """Return the `count` lowest modes; with a warning where the next one is the last one's pair.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def summary(rotor: FiniteElementRotor) -> str:
 
 
 def _part_lines(rotor: FiniteElementRotor) -> list[str]:
-    """Return a line for each connected part, with its materials, and one that tells loose ones."""
+    """Return a line for each connected part, with its materials, and one for loose ones."""
     loose = loose_parts(rotor.nodes, rotor.stiffness)
     parts = loose or [np.arange(rotor.node_count)]
     described = described_parts(parts, rotor.nodes, rotor.mass, rotor.elements)
@@ -82,7 +82,7 @@ def _disc_line(rotor: FiniteElementRotor, disc: RigidDisc) -> str:
 
 
 def directions(axis: SpinAxis) -> str:
-    """Return n1 and n2, in which supports and motions across the axis are told, as text."""
+    """Return n1 and n2, in which supports and motions across the axis are given, as text."""
     return ", ".join(f"n{i} {_vector(column + 0.0)}" for i, column in enumerate(axis.plane.T, 1))
 
 

@@ -87,7 +87,7 @@ def check_material_units(name: str, material: Material) -> None:
 def check_model_units(nodes: np.ndarray, total_mass: float) -> None:
     """Raise ValueError if size [m] and mass [kg] of a model cannot be in SI units.
 
-    A warning tells where they hardly are: of a small rotor in mm. The mean density is not checked
+    It warns where they hardly are: of a small rotor in mm. The mean density is not checked
     where the bounding box has no volume.
     """
     extent = np.ptp(nodes, axis=0)

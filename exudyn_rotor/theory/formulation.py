@@ -171,7 +171,7 @@ def suited_translation(
       backwards in their coordinates, and costs accuracy with the square of spin speed times step;
       a rotor that travels far is lost.
 
-    :func:`exudyn_rotor.propose`, which is told the supports, weighs the others.
+    :func:`exudyn_rotor.propose` takes the supports, too, and weighs the others.
 
     Raises
     ------

@@ -119,8 +119,8 @@ def campbell(
     Jeffcott rotor (mass m, eccentricity e, inertia Θ about the axis, critical speed ω) then has
     frequencies that differ, relative to ω, by ``½ m e²/Θ`` at rest and ``m r²/Θ`` near ω, with the
     whirl radius r of the centre of mass, and is unstable from ω to ``ω(1 + (½ m e²/Θ)^⅓)``; a
-    product of inertia J adds ``½ J²/(I_t Θ)`` to tilts of the inertia ``I_t``. From 0.1 % at rest
-    on, a warning tells. A scene has its spin prescribed, for elastic motion, too, as
+    product of inertia J adds ``½ J²/(I_t Θ)`` to tilts of the inertia ``I_t``. There is a warning
+    from 0.1 % at rest on. A scene has its spin prescribed, for elastic motion, too, as
     :func:`stability` has it.
 
     Springs in the frame of the rotor that hold its spin, by torsion or off the axis, and springs

@@ -1,9 +1,9 @@
 """Speeds at which a Hermitian matrix function is singular: zeros of its eigenvalues.
 
 Between two speeds with p and q negative eigenvalues, those from the smaller to the larger of these
-numbers, in ascending order, change their sign. How many are negative tells an ``LDLᴴ`` factor
-(Sylvester's law of inertia), in a fifth of the time of the eigenvalues. Where between the speeds
-their zeros are is found in :mod:`.zeros_between`.
+numbers, in ascending order, change their sign. How many are negative is counted in an
+``LDLᴴ`` factor (Sylvester's law of inertia), in a fifth of the time of the eigenvalues. Where
+between the speeds their zeros are is found in :mod:`.zeros_between`.
 """
 
 from __future__ import annotations

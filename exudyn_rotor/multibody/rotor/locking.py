@@ -283,7 +283,7 @@ def add_constraints(
 ) -> dict[str, exudyn.ObjectIndex]:
     """Hold the locked coordinates of the marker body's node by constraints; return them by name.
 
-    `monitor` is told of evaluations; it is needed where some prescribed motion varies with time.
+    `monitor` notes evaluations; it is needed where some prescribed motion varies with time.
     """
     ground = mbs.AddNode(NodePointGround())
     origin = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))

@@ -170,11 +170,11 @@ def _braking_function(
 
 
 def _no_memory(mbs: exudyn.MainSystem, t: float, item: int) -> None:
-    """Tell nothing to a law of place and velocity."""
+    """Do nothing: a law of place and velocity has no memory."""
 
 
 def _beginning(body: RotorItems, law: RememberingLaw, axes: np.ndarray) -> Beginning:
-    """Return what tells a film with a memory where the step of an evaluation begins.
+    """Return what gives a film with a memory the state at the beginning of the step.
 
     Exudyn repeats steps and evaluates forces at trial states; the configuration of the beginning of
     the step alone holds what has been accepted.

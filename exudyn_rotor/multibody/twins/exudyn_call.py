@@ -111,7 +111,7 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         Markers and sensors that a script adds at the node 'nRigidBody' are in the mesh origin and
         move and tilt with the rotor, as on Exudyn's body with these modes. The node's own
         coordinates are the spin and the translation of the centre of mass; mbs.GetNodeOutput() and
-        markers of single coordinates see these, and body.check_connections() tells what such
+        markers of single coordinates see these, and body.check_connections() names what such
         markers lack. It has mesh axes but for
         skew spin axes, for which a warning says what is turned. In local output
         (DisplacementLocal) the modes hold the rigid tilts, which Exudyn's own frame takes.

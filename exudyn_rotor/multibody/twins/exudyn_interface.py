@@ -105,7 +105,7 @@ class ObjectFixedAxisFFRFreducedOrderInterface:
     Markers and sensors at the node ``nRigidBody`` move as on Exudyn's body, in the mesh origin.
     The flexible object is the first object that is added. Stress modes that a script sets later,
     six columns for each mode of the FEMinterface, are converted to the rotor's coordinates.
-    A warning tells where Exudyn's own body would soften falsely with these modes; see
+    It warns where Exudyn's own body would soften falsely with these modes; see
     :func:`exudyn_rotor.use_mean_axis_modes`.
 
     Examples

@@ -122,7 +122,7 @@ class LinearRotor(SupportedRotor, InAllCoordinates):
         return replace(linear, free_motions=free, is_full=True)
 
     def _on_supports(self, rotations: Rotations, twisted: bool) -> Spin:
-        """Return the spin on the supports; a warning tells where the rotor is eccentric."""
+        """Return the spin on the supports; with a warning where the rotor is eccentric."""
         motions = [self.interface_motion(support.interface) for support in self.supports]
         inv, axis = self.invariants, self.rotor.axis
         spin = Spin.of(rotations, self.supports, motions, inv, axis, twisted)

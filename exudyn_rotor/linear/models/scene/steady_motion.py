@@ -309,7 +309,7 @@ class _Search:
     ) -> tuple[np.ndarray, int]:
         """Return harmonics on the way back to those before a change, and how often it is halved.
 
-        What is unbalanced tells. The forces alone cost a fortieth of what their slopes do.
+        The measure is what is unbalanced. The forces alone cost a fortieth of what their slopes do.
         """
         halvings = 0
         while halvings < _MOST_HALVINGS:
