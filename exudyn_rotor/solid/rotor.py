@@ -360,8 +360,8 @@ class FiniteElementRotor:
     def _left_free(self, held: sp.csr_array) -> int:
         """Return how many rigid motions stay free where the directions `held` (3n, d) are."""
         free = free_rigid_motions(self.nodes, self.mass, self.stiffness, self.rigid_motions)
-        sizes = np.linalg.svd(held.T @ free, compute_uv=False)
-        return self.rigid_motions - int(np.count_nonzero(sizes > 1e-9 * np.linalg.norm(free, 2)))
+        sizes, most = (np.linalg.svd(X, compute_uv=False) for X in (held.T @ free, free))
+        return self.rigid_motions - int(np.count_nonzero(sizes > 1e-9 * most.max(initial=0.0)))
 
     def __repr__(self) -> str:
         return (
