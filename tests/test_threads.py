@@ -124,7 +124,7 @@ class Equations:
 
 
 with ThreadpoolController().limit(limits=2, user_api="blas"):
-    print(in_turns(lambda each: each.values.tolist(), [Equations(), Equations()]))
+    print(in_turns(lambda each: each.values.real.tolist(), [Equations(), Equations()]))
 """
 
 
