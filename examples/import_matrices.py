@@ -33,8 +33,8 @@ with TemporaryDirectory() as name:
     nodes = np.loadtxt(folder / "nodes.txt")
     end = np.flatnonzero(np.isclose(nodes[:, 2], 0.0))  # the nodes of the left end face
     rotor = SolidRotor.from_matrices(
-        scipy.io.mmread(folder / "mass.mtx"),
-        scipy.io.mmread(folder / "stiffness.mtx"),
+        scipy.io.mmread(folder / "mass.mtx", spmatrix=False),
+        scipy.io.mmread(folder / "stiffness.mtx", spmatrix=False),
         nodes,
         axis="z",
         interfaces={"left": end},
