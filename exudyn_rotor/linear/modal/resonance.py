@@ -21,7 +21,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.linear.modal.hermitian_zeros import (
     NO_EQUATIONS,
@@ -102,6 +101,8 @@ def resonances(
         critical = _resonances(
             equations, content.within(space.basis), order, waves, limit, tolerance
         )
+        if model.gives_all:
+            return _joined(critical, content)
         if space.basis is not None:
             critical = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in critical]
         if space.holds([(entry.speed, _as_modes(entry)) for entry in critical]):
@@ -278,16 +279,16 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
     Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
     without any, like the spin, stay at rest.
     """
-    values, vectors = la.eigh(A)
+    values, vectors = np.linalg.eigh(A)
     if values[0] < -1e-8 * values[-1]:
         raise ValueError("critical speeds: a support has a negative stiffness; see campbell")
     held = values > 1e-12 * values[-1]
     R, W = vectors[:, ~held], vectors[:, held] / np.sqrt(values[held])
-    inertia, turn = la.eigh(R.conj().T @ B @ R)
+    inertia, turn = np.linalg.eigh(R.conj().T @ B @ R)
     moving = np.abs(inertia) > _NO_INERTIA * np.abs(B).max()
     R = R @ turn[:, moving]
     basis = W - R @ ((R.conj().T @ B @ W) / inertia[moving, None])
-    inverse, shapes = la.eigh(basis.conj().T @ B @ basis)
+    inverse, shapes = np.linalg.eigh(basis.conj().T @ B @ basis)
     positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
     pairs = zip(1.0 / np.sqrt(inverse[positive]), (basis @ shapes[:, positive]).T, strict=True)
     return [(float(speed), vector) for speed, vector in pairs]
@@ -301,7 +302,7 @@ def _turning(
         return []
     ascending = sorted(candidates, key=lambda entry: entry.speed)
     multiples = ascending[0].multiples
-    vectors = np.stack([entry.vectors for entry in ascending], axis=2)
+    vectors = np.stack([entry.vectors for entry in ascending], axis=2).astype(complex)
     vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(ascending)), axis=0)
     for group in same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
         if len(group) > 1:
@@ -336,7 +337,7 @@ def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]
         other = next((j for i, j in pairs if i == index and j not in taken), None)
         if other is not None:
             taken.add(other)
-            entry = replace(entry, upper=critical[other])
+            entry = Resonance(entry.speed, entry.multiples, entry.vectors, critical[other])
         joined.append(entry)
     return joined
 

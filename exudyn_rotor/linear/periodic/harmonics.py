@@ -36,8 +36,12 @@ def dynamic_stiffness(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the Hermitian part of the dynamic stiffness at the frequencies `multiples`·Ω, and M.
 
-    Shape (h k, h k), harmonic by harmonic. The multiples are whole numbers apart.
+    Shape (h k, h k), harmonic by harmonic, real for the harmonic 0 alone. The multiples are whole
+    numbers apart.
     """
+    if len(multiples) == 1 and multiples[0] == 0:
+        M, K = system.M[0].real, system.K[0].real
+        return 0.5 * (K + K.T), M
     M, _, H = hill_matrices(system, multiples)
     return 0.5 * (H + H.conj().T), M
 

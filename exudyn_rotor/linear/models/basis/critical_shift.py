@@ -48,7 +48,8 @@ class _Dynamic(NamedTuple):
 
     def among(self, held: np.ndarray) -> _Dynamic:
         """Return the matrices of some coordinates."""
-        return _Dynamic(*np.stack(self)[:, held[:, None], held])
+        rows = held[:, None]
+        return _Dynamic(*(matrix[rows, held] for matrix in self))
 
 
 def critical_shifts(
@@ -125,7 +126,8 @@ def _moved(
     held = np.flatnonzero(sizes > _FREE * inertia)
     given, x = given.among(held), x[held]
     forces, momenta = given.slope @ x, given.M @ x
-    z, w = np.split(np.linalg.solve(given.H, np.hstack([forces, momenta])), 2, axis=1)
+    answers = np.linalg.solve(given.H, np.hstack([forces, momenta]))
+    z, w = answers[:, : len(speeds)], answers[:, len(speeds) :]
     adjoint = w.conj().T
     constant = adjoint @ forces
     linear, square = (adjoint @ X @ z for X in (given.slope, given.square))
