@@ -11,6 +11,7 @@ from point_rotors import ring_rotor
 from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import (
+    ConstantSpeed,
     Formulation,
     PrescribedMotion,
     SolidRotor,
@@ -310,17 +311,18 @@ def test_python_is_called_only_where_the_report_says_so(
     assert all(bool(physics[f"{kind}UserFunction"]) == python for kind in ("force", "massMatrix"))
 
 
-def test_an_eccentric_rotor_starts_alike_with_and_without_translation():
+@pytest.mark.parametrize("angle", [0.0, 2.0])
+def test_an_eccentric_rotor_starts_alike_with_and_without_translation(angle):
     """With the velocity Ω e × d of the centre of mass at d from the axis, to the order h²."""
     speed, spread = 100.0, []
     rotor = ring_rotor(0.1, 0.1, 2.0).add_point_mass([0.1, 0.0, 0.0], 0.1)
     reduced = rotor.with_interface("all", range(10)).reduce(0)
-    turned = np.cross([0.0, 0.0, speed], rotor.center_of_mass)
+    turned = np.cross([0.0, 0.0, speed], rotor.axis.rotation(angle) @ rotor.center_of_mass)
     for step in (2e-4, 1e-4):
         found = []
         for given in ({"initial_velocity": turned}, {"translation": "none"}):
             mbs = exu.SystemContainer().AddSystem()
-            body = add_rotor(mbs, reduced, spin=speed, **given)
+            body = add_rotor(mbs, reduced, spin=ConstantSpeed(speed, angle), **given)
             add_supports(body, Support("all", 1e5, 20.0, tilt_stiffness=1e3))
             sensor = body.add_interface_sensor("all", exu.OutputVariableType.Displacement)
             mbs.Assemble()

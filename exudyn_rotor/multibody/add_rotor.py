@@ -114,7 +114,7 @@ def add_rotor(
         where the translation is in-plane. Ω e × d starts a rotor whose centre of mass is off the
         axis by d in a turn about the axis, as translation 'none' does.
     initial_angle, initial_speed : float, optional
-        Of a free spin [rad], [rad/s].
+        Of a free spin [rad], [rad/s]. At any angle the rotor starts with its axis in place.
     modal_coordinates, modal_velocities : array_like, optional
         Initial values of the modes named by ``body.selection.labels`` (√kg m, √kg m/s); of a full
         body the displacements [m] of all nodes in the rotor frame and their rates, (3n,) or (n, 3).

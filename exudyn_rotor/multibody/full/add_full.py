@@ -74,9 +74,8 @@ def _add_bare(mbs: exudyn.MainSystem, plan: FullPlan) -> FullRotorBody:
     """Add only the unknowns of the formulation, on one generic node."""
     motion, place = plan.motion, plan.setup.placement
     spin = int(motion.formulation.has_spin)
-    count = motion.formulation.translation_count
     start = (plan.modal_start, plan.modal_start_rate)
-    frame = [*np.zeros(count), *([place.angle] * spin)]
+    frame = [*(motion.free_directions.T @ place.translation), *([place.angle] * spin)]
     rates = [*(motion.free_directions.T @ place.velocity), *([place.speed] * spin)]
     values = (np.r_[frame, start[0]], np.r_[rates, start[1]])
     name = inputs.item_name("NodeGeneric:", plan.setup.name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import exudyn
-import numpy as np
 from exudyn.itemInterface import ObjectGenericODE2
 
 from exudyn_rotor.multibody.rotor import condensed_markers, inputs
@@ -29,7 +28,11 @@ def add_bare(mbs: exudyn.MainSystem, plan: Plan) -> RotorBody:
     motion, start = plan.motion, plan.setup.placement
     formulation = plan.setup.formulation
     spin = int(formulation.has_spin)
-    values = [*np.zeros(formulation.translation_count), *([start.angle] * spin), *plan.modal_start]
+    values = [
+        *(motion.free_directions.T @ start.translation),
+        *([start.angle] * spin),
+        *plan.modal_start,
+    ]
     rates = [
         *(motion.free_directions.T @ start.velocity),
         *([start.speed] * spin),

@@ -103,7 +103,11 @@ def laid_out(
 
     `more` is what else the kind holds.
     """
-    formulation, place, invariants = setup.formulation, setup.placement, selection.invariants
+    formulation, invariants = setup.formulation, selection.invariants
+    place = setup.placement
+    turned = turned_origin(selection, place.rotation, place.angle)
+    place = replace(place, translation=place.translation + turned)
+    setup = replace(setup, placement=place)
     direction = invariants.direction
     frame = BodyFrame.of(
         direction, selection.origin, place.position, place.rotation, setup.frame_node
@@ -142,6 +146,24 @@ def laid_out(
         marker_body_gravity=np.zeros(3) if in_equations else setup.gravity,
         **more,
     )
+
+
+def turned_origin(selection: Selection, rotation: np.ndarray, angle: float) -> np.ndarray:
+    """Return by how much the frame origin moves where the rotor turns about its axis [m].
+
+    The origin is the centre of mass, which may be off the axis, where the translation is free.
+
+    Parameters
+    ----------
+    selection : Selection
+    rotation : ndarray, shape (3, 3)
+        Mesh axes → axes of the result, at θ = 0.
+    angle : float
+        θ [rad].
+    """
+    axis = selection.source.axis
+    off = axis.radial(selection.origin)
+    return rotation @ ((np.cos(angle) - 1.0) * off + np.sin(angle) * axis.skew @ off)
 
 
 def _is_held_by_mass(locking: str, locks: Locks, skew: bool) -> bool:

@@ -269,6 +269,12 @@ LINEAR_MODELS = [
     ),
     *mutations(
         "linear/models/scene/scene_coordinates.py",
+        "test_initial_angle.py",
+        ("rotor not turned back", "body.motion.free_directions.T @ turned", "0.0"),
+        ("angle of a node that counts backwards", "made.spin_sign * rest", "rest"),
+    ),
+    *mutations(
+        "linear/models/scene/scene_coordinates.py",
         "test_steady_state.py",
         (
             "velocity of the turning axes reversed",

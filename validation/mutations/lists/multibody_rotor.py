@@ -7,6 +7,30 @@ _MARKERS = "test_body_native.py::test_position_and_rigid_markers_agree_and_take_
 
 MULTIBODY_ROTOR = [
     *mutations(
+        "multibody/rotor/plan.py",
+        "test_initial_angle.py::test_rotor_starts_on_its_axis",
+        ("rotor turned back", "+ np.sin(angle) * axis.skew", "- np.sin(angle) * axis.skew"),
+        ("turned about its centre of mass", "place.translation + turned", "place.translation"),
+    ),
+    *mutations(
+        "multibody/rotor/add_reduced.py",
+        "test_initial_angle.py::test_rotor_starts_on_its_axis",
+        (
+            "translation of bare coordinates",
+            "*(motion.free_directions.T @ start.translation)",
+            "*(motion.free_directions.T @ (0.0 * start.translation))",
+        ),
+    ),
+    *mutations(
+        "multibody/full/add_full.py",
+        "test_initial_angle.py::test_rotor_starts_on_its_axis",
+        (
+            "translation of bare coordinates",
+            "*(motion.free_directions.T @ place.translation)",
+            "*(motion.free_directions.T @ (0.0 * place.translation))",
+        ),
+    ),
+    *mutations(
         "multibody/rotor/node_markers.py",
         "test_full_bodies.py::test_numbers_of_mesh_nodes_mean_nothing_to_the_marker_body",
         (

@@ -11,6 +11,7 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.theory.axis import SpinAxis
@@ -48,8 +49,13 @@ class SceneCoordinates:
         rotor = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
         rest = np.array(body.mbs.systemData.GetODE2Coordinates(), dtype=float)
         free = rotor[without_spin(body)]
-        rest[free[body.motion.formulation.translation_count :]] = 0.0
-        return cls(body, free, np.eye(len(free)), rest)
+        made = cls(body, free, np.eye(len(free)), rest)
+        rest[free[made.count :]] = 0.0
+        if made.spin_coordinate is not None:  # where the rotor is when it has turned back
+            angle = made.spin_sign * rest[made.spin_coordinate]
+            turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+            rest[free[: made.count]] -= body.motion.free_directions.T @ turned
+        return made
 
     @property
     def size(self) -> int:
