@@ -10,7 +10,7 @@ from dataclasses import replace
 import exudyn as exu
 import numpy as np
 import pytest
-from point_rotors import SKEW_AXIS, free_stiffness
+from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
 
 from exudyn_rotor import (
     AnnularSeal,
@@ -23,12 +23,14 @@ from exudyn_rotor import (
     SqueezeFilmDamper,
     Support,
     TiltingPadBearing,
+    Unbalance,
     add_rotor,
     add_supports,
     grooved_pads,
     linear_model,
     recommended_settings,
     steady_state,
+    unbalance_response,
 )
 from exudyn_rotor.linear.periodic.exponents import exponents
 
@@ -219,3 +221,25 @@ def test_growth_in_lists_and_in_scenes(kind):
         turns = 1j * SPEED * np.arange(-2, 3)[:, None]
         both = np.r_[images, images.conj()]
         assert max(np.abs(both - s + turns).min() for s in slow) < 1e-6 * SPEED
+
+
+def test_response_of_tables_below_zero_is_the_mirror_image():
+    """Nothing asks such tables for their values above zero."""
+    rotor = ring_rotor(0.1, 0.1, 2.0).with_interface("all", range(10)).reduce(0)
+    stiffness, mirror = np.array([[2e5, 4e4], [-1e4, 3e5]]), np.diag([1.0, -1.0])
+    found = []
+    for sign, turn in ((1.0, np.eye(2)), (-1.0, mirror)):
+        shares = np.array([1.0, 1.4, 1.7])[:: int(sign)]
+        table = np.sort(sign * np.array([0.0, 150.0, 300.0]))
+        matrices = shares[:, None, None] * (turn @ stiffness @ turn)
+        response = unbalance_response(
+            rotor,
+            np.sort(sign * np.array([100.0, 200.0, 300.0])),
+            Unbalance("all", 1e-3, sign * 0.6),
+            own=False,
+            supports=Support("all", (table, matrices), 20.0, tilt_stiffness=1e4 * np.eye(2)),
+            allow_negative=True,
+        )
+        motion = np.array([response.phasor("all", name) for name in ("n1", "n2")])
+        found.append(motion[:, :: int(sign)])
+    np.testing.assert_allclose(found[1], mirror @ found[0].conj(), rtol=1e-9)

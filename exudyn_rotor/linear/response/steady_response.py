@@ -179,7 +179,7 @@ def unbalance_response(
         space = finer.space(_MODES, fastest, loads=[load])
         return UnbalanceTask(space, load, observation)
 
-    constant = space.at(fastest).is_constant
+    constant = space.at(values[np.argmax(np.abs(values))]).is_constant
     errors = _basis_errors(basis, observation, at, values, solved, better, constant)
     extra = _kept(model, solved) | {"refined": refine, "basis_errors": errors}
     extra["loads"] = tuple(map(str, unbalances)) + ("the rotor's own unbalance",) * own

@@ -4,6 +4,15 @@ from validation.mutations.mutation import mutations
 
 LINEAR_FORCED = [
     *mutations(
+        "linear/response/steady_response.py",
+        "test_mirror_images.py::test_response_of_tables_below_zero_is_the_mirror_image",
+        (
+            "tables asked above zero",
+            "space.at(values[np.argmax(np.abs(values))])",
+            "space.at(fastest)",
+        ),
+    ),
+    *mutations(
         "linear/periodic/harmonic_balance.py",
         "test_response.py",
         (
