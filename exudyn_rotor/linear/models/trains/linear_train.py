@@ -281,7 +281,8 @@ class LinearTrain(InAllCoordinates):
         if len(motion) > 1:
             raise ValueError(
                 f"at: {name!r}: rotor {owner!r} is uneven and turns with {part.ratio:g} times the "
-                "speed; look at it with relative_to()"
+                f"speed; look at it with relative_to({owner!r}), or name other places, at=…, which "
+                "are all interfaces by default"
             )
         return motion[0]
 
