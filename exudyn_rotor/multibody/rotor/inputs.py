@@ -27,7 +27,8 @@ class Placement:
     rotation : ndarray, shape (3, 3)
         Mesh axes → inertial axes at θ = 0.
     translation : ndarray, shape (3,)
-        Initial translation of the frame origin, inertial axes [m]; zero where it is unknown.
+        Initial translation of the frame origin, inertial axes [m]; a plan adds by how much
+        the initial angle moves it.
     velocity : ndarray, shape (3,)
         Initial velocity of the frame origin, inertial axes [m/s].
     angle, speed : float
