@@ -67,6 +67,24 @@ def test_axial_modes_at_any_order(masses):
         np.testing.assert_allclose(result.frequencies_rotor, [1200, 2000], rtol=1e-12)
 
 
+@pytest.mark.parametrize("stiffness", np.geomspace(1e3, 1e5, 8))
+def test_equal_speeds_are_listed_from_backward_to_forward(stiffness):
+    """Two masses of 2 kg that a rod holds apart, Ω² = k/m in both directions and at both ends.
+
+    Found wave by wave, the four speeds are in the order of their rounding.
+    """
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    supports = [Support(name, stiffness) for name in ("left", "right")]
+    result = critical_speeds(rotor, supports=supports, nodal_diameters=[1])
+    rounding = np.finfo(float).eps * 1e8 / stiffness  # of the rod, in the supports' stiffness
+    np.testing.assert_allclose(result.speeds, np.sqrt(stiffness / 2.0), rtol=10.0 * rounding)
+    assert np.all(np.diff(result.speeds) >= 0.0)
+    assert result.whirl == ("backward", "backward", "forward", "forward")
+
+
 @BODIES
 def test_rigid_rotor_with_gyroscopic_moment(shape):
     """Forward at ``Ω² = k/(I_t − I_p)``, for a shaft only; backward at ``k/(I_t + I_p)``."""

@@ -13,8 +13,9 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal.hermitian_zeros import same_speed
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
-from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -292,6 +293,8 @@ def _collected(
         _, codes[group], diameters[group] = content.classify(
             vectors, multiples, np.zeros(len(group)), speeds[group]
         )
+    places = _places(speeds, codes, diameters)
+    critical = [critical[place] for place in places]
     strongest = [np.argmax(np.linalg.norm(entry.vectors, axis=1)) for entry in critical]
     rates = [abs(entry.multiples[row]) for entry, row in zip(critical, strongest, strict=True)]
     shapes = [entry.vectors[row] for entry, row in zip(critical, strongest, strict=True)]
@@ -299,10 +302,21 @@ def _collected(
         order=order,
         speeds=speeds,
         frequencies_rotor=np.array(rates) * speeds,
-        whirl=tuple(WHIRLS[code] for code in codes),
-        nodal_diameters=diameters,
+        whirl=tuple(WHIRLS[codes[place]] for place in places),
+        nodal_diameters=diameters[places],
         vectors=np.array(shapes, dtype=complex).reshape(-1, model.size).T,
         stiffening=model.stiffening,
         splits=np.array([entry.split for entry in critical]),
-        basis_errors=basis_errors,
+        basis_errors=None if basis_errors is None else basis_errors[places],
     )
+
+
+def _places(speeds: np.ndarray, codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
+    """Return the order of rows: by speed, those of one speed from backward to forward waves.
+
+    Rounding would order the latter by chance; what moves them apart is left in `speeds`.
+    """
+    groups = same_speed(list(range(len(speeds))), speeds.__getitem__)
+    signs = np.where(codes == FORWARD, 1, np.where(codes == BACKWARD, -1, 0))
+    waves = signs * diameters
+    return np.array([i for group in groups for i in sorted(group, key=waves.__getitem__)], int)
