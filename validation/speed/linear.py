@@ -3,9 +3,10 @@
 The demonstration's rotor on two bearings. Each version runs the cases in processes of its own, with
 one thread of the linear algebra libraries and with their default number; all take turns, and the
 shortest time of each case counts. Analyses of another rotor come first, so that no case loads
-libraries; every case is the first one of its kind of its rotor.
+libraries; every case is the first one of its kind of its rotor. With ``--busy N`` as many other
+processes compute meanwhile, as on a machine that is shared.
 
-python -m validation linear [--against FOLDER] [--json FILE] [--quick]
+python -m validation linear [--against FOLDER] [--busy N] [--json FILE] [--quick]
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -120,6 +122,18 @@ def measured_in(folder: Path, threads: str | None, quick: bool) -> Times:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@contextmanager
+def others_computing(count: int) -> Iterator[None]:
+    """Keep `count` other processes busy, each with one thread."""
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
 def shortest(runs: list[Times]) -> Times:
     """Return the shortest CPU time and the shortest wall time of each case."""
     return {
@@ -148,6 +162,7 @@ def main() -> None:
     """Measure and print a table for each number of threads."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--against", type=Path, help="folder with another version's exudyn_rotor")
+    parser.add_argument("--busy", type=int, default=0, help="processes that compute beside it")
     parser.add_argument("--json", type=Path, help="write the numbers to this file")
     parser.add_argument("--quick", action="store_true", help="a coarse mesh, one repeat")
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
@@ -158,10 +173,11 @@ def main() -> None:
         return
     folders = [Path(__file__).resolve().parents[2], *filter(None, [options.against])]
     runs: dict[str, list[list[Times]]] = {how: [[] for _ in folders] for how in THREADS}
-    for _ in range(1 if options.quick else REPEATS):
-        for how, threads in THREADS.items():
-            for done, folder in zip(runs[how], folders, strict=True):
-                done.append(measured_in(folder.resolve(), threads, options.quick))
+    with others_computing(options.busy):
+        for _ in range(1 if options.quick else REPEATS):
+            for how, threads in THREADS.items():
+                for done, folder in zip(runs[how], folders, strict=True):
+                    done.append(measured_in(folder.resolve(), threads, options.quick))
     result = {}
     for how, versions in runs.items():
         own, *others = result[how] = [shortest(done) for done in versions]
