@@ -15,9 +15,10 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.damping import damping_of, decays_alone, oscillates
+from exudyn_rotor.linear.modal.listing import listed, ranks
 from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
 from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import WhirlContent, named_overdamped
+from exudyn_rotor.linear.modal.whirl import WhirlContent, named_still
 from exudyn_rotor.linear.models.basis.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -36,7 +37,6 @@ from exudyn_rotor.units import Units
 _FULL_MODES = 10  # that are sought of a large SolidRotor by default
 _SLOW = 1.0  # rad/s
 _MOSTLY = 0.9  # share of a motion's energy
-_SAME = 1e-9  # relative distance of frequencies in the inertial frame that is none
 
 
 def campbell(
@@ -168,7 +168,8 @@ def campbell(
         modes_at = _modes_at(space, values, tolerance, executor, progress)
         basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
-    tracks = track([entry.modes for entry in solved], values, model.mass_matrix.__matmul__)
+    found = [entry.modes for entry in solved]
+    tracks = track(found, values, model.mass_matrix.__matmul__)
     solved, tracks = _lowest(solved, tracks, count, seen, model)
     inertial = np.array([entry.inertial for entry in solved])
     growth = np.array([entry.modes.values.real for entry in solved])
@@ -240,10 +241,13 @@ def _classified(
     resolution = np.array([[entry.resolution] for entry in modes])
     moves = oscillates(growth, inertial, resolution)
     moves &= ~decays_alone(growth, values.imag, np.reshape(speeds, (-1, 1)))
-    codes = named_overdamped(codes, ~moves & decays)
+    codes = named_still(codes, ~moves & decays, ~moves & ~decays)
     inertial = np.where(moves, inertial, 0.0)
-    key = _ranks(inertial) if seen else np.broadcast_to(np.arange(count), inertial.shape)
-    order = np.lexsort((key, ~moves & decays))
+    bounds = np.array(
+        [np.broadcast_to(_rounding(each), each.values.shape)[:count] for each in modes]
+    )
+    found = values, bounds, inertial, codes, diameters
+    order = listed(*found, last=~moves & decays, seen=seen)
     solved = zip(modes, vectors, inertial, codes, diameters, order, strict=True)
     return [
         _Solved(
@@ -261,15 +265,6 @@ def _decays(modes: FloquetModes) -> np.ndarray:
 def _rounding(modes: FloquetModes) -> np.ndarray | float:
     """Return the error of real parts by rounding, shape (k,) or one for all."""
     return modes.resolution if modes.bounds is None else modes.bounds
-
-
-def _ranks(frequencies: np.ndarray) -> np.ndarray:
-    """Return the rank of each frequency in its row, one where only rounding tells some apart."""
-    order = np.argsort(frequencies, axis=1, kind="stable")
-    ascending, ranks = np.take_along_axis(frequencies, order, axis=1), np.zeros_like(order)
-    larger = np.diff(ascending) > _SAME * ascending[:, 1:]
-    np.put_along_axis(ranks, order[:, 1:], np.cumsum(larger, axis=1), axis=1)
-    return ranks
 
 
 def _computed(
@@ -315,7 +310,7 @@ def _lowest(
     modes = first.modes
     last = (first.inertial == 0.0) & _decays(modes) | _of_voids(modes, model)
     frequencies = first.inertial if seen else modes.values.imag
-    chosen = np.sort(np.lexsort((frequencies, last))[:count])
+    chosen = np.sort(np.lexsort((ranks(frequencies, _rounding(modes)), last))[:count])
     used = tracks.columns[:, chosen]
     ascending = np.sort(used, axis=1)
     places = [np.searchsorted(*rows) for rows in zip(ascending, used, strict=True)]

@@ -14,8 +14,9 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.modal.hermitian_zeros import same_speed
+from exudyn_rotor.linear.modal.listing import signed_diameters
 from exudyn_rotor.linear.modal.resonance import Resonance, resonances
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
+from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -317,6 +318,5 @@ def _places(speeds: np.ndarray, codes: np.ndarray, diameters: np.ndarray) -> np.
     Rounding would order the latter by chance; what moves them apart is left in `speeds`.
     """
     groups = same_speed(list(range(len(speeds))), speeds.__getitem__)
-    signs = np.where(codes == FORWARD, 1, np.where(codes == BACKWARD, -1, 0))
-    waves = signs * diameters
-    return np.array([i for group in groups for i in sorted(group, key=waves.__getitem__)], int)
+    senses = signed_diameters(codes, diameters)
+    return np.array([i for group in groups for i in sorted(group, key=senses.__getitem__)], int)

@@ -352,9 +352,10 @@ def families(codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
     return np.array(FAMILIES)[kinds]
 
 
-def named_overdamped(codes: np.ndarray, overdamped: np.ndarray) -> np.ndarray:
-    """Return whirl codes; lateral motions that are overdamped have no sense."""
+def named_still(codes: np.ndarray, overdamped: np.ndarray, static: np.ndarray) -> np.ndarray:
+    """Return whirl codes; lateral motions that are overdamped or stand still have no sense."""
     lateral = np.isin(codes, (FORWARD, BACKWARD, MIXED, STATIC))
+    codes = np.where(static & lateral, STATIC, codes)
     return np.where(overdamped & lateral, OVERDAMPED, codes)
 
 

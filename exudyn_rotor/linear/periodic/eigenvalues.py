@@ -91,7 +91,7 @@ def quadratic_modes(
     vectors = np.take_along_axis(states[:, :size], chosen[:, None], axis=2)
     vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
     _iterate_doubtful(found, chosen, values, vectors, M, D, K)
-    _set_free_motions(values == 0.0, vectors, M, K)
+    _set_free_motions(values == 0.0, vectors, M, D, K)
     return values, vectors, resolutions, bounds
 
 
@@ -138,7 +138,9 @@ def _iterate_doubtful(
         vectors[i][:, rest] = inverse_iterated(*given, M, D[i], K[i])
 
 
-def _set_free_motions(free: np.ndarray, vectors: np.ndarray, M: np.ndarray, K: np.ndarray) -> None:
+def _set_free_motions(
+    free: np.ndarray, vectors: np.ndarray, M: np.ndarray, D: np.ndarray, K: np.ndarray
+) -> None:
     """Put :func:`free_motions` in the place of `vectors` (s, k, j) that are `free` (s, j).
 
     Those of one system are taken where as many are free in another, too.
@@ -146,7 +148,7 @@ def _set_free_motions(free: np.ndarray, vectors: np.ndarray, M: np.ndarray, K: n
     left = np.count_nonzero(free, axis=1)
     while np.any(left > 1):
         i = np.argmax(left > 1)
-        found = free_motions(M, K[i], vectors[i][:, free[i]])
+        found = free_motions(M, K[i], vectors[i][:, free[i]], D[i])
         forces = np.linalg.norm(K @ found, axis=(1, 2))
         alike = forces <= _STILL_NULL * np.linalg.norm(K, axis=(1, 2))
         alike = (alike | (np.arange(len(K)) == i)) & (left == left[i])
@@ -178,11 +180,13 @@ def _errors_of_vectors(
     return np.linalg.norm(residual, axis=1) / np.maximum(moved, 1e-300)
 
 
-def free_motions(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
+def free_motions(
+    M: np.ndarray, K: np.ndarray, otherwise: np.ndarray, D: np.ndarray | None = None
+) -> np.ndarray:
     """Return unit vectors of free motions, ``Kx = 0``; as many as, and else, those given.
 
     Copies of one free motion (a Jordan block at zero) would hide another. K is a matrix, or several
-    that all have to vanish, shape (n, k, k).
+    that all have to vanish, shape (n, k, k). The damping D parts them, see :func:`_one_of_each`.
     """
     count = otherwise.shape[1]
     if count < 2:
@@ -190,8 +194,33 @@ def free_motions(M: np.ndarray, K: np.ndarray, otherwise: np.ndarray) -> np.ndar
     _, lengths, rows = la.svd(_per_mass(M, K), full_matrices=False)
     if lengths[-count] > _NULL * lengths[0]:
         return otherwise
-    vectors = _inverse_root(M).T @ rows[-count:].conj().T
+    root = _inverse_root(M)
+    null = rows[np.count_nonzero(lengths > _NULL * lengths[0]) :].conj().T
+    chosen = None if D is None else _one_of_each(null, root @ D @ root.T, count)
+    vectors = root.T @ (null[:, -count:] if chosen is None else chosen)
     return vectors / np.linalg.norm(vectors, axis=0)
+
+
+def _one_of_each(null: np.ndarray, D: np.ndarray, count: int) -> np.ndarray | None:
+    """Return one of each pair of motions (k, count) that stand for all; None where that is unclear.
+
+    A displacement that nothing resists has two zeros, but only one where Coriolis forces turn it,
+    as at a critical speed, where two displacements are a wave and its conjugate.
+
+    Parameters
+    ----------
+    null : ndarray, shape (k, n)
+        Orthonormal displacements without force, per root of mass.
+    D : ndarray, shape (k, k)
+        Damping, likewise.
+    count : int
+    """
+    coupling = null.T @ D @ null
+    turning, waves = la.eigh(0.5j * (coupling - coupling.T))
+    least = _NULL * np.abs(D).max(initial=0.0)
+    if null.shape[1] - np.count_nonzero(turning > least) != count:
+        return None
+    return null @ waves[:, turning <= least]
 
 
 def inverse_iterated(

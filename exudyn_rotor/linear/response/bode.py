@@ -10,6 +10,9 @@ from matplotlib.ticker import MultipleLocator
 
 from exudyn_rotor.plotting import COLORS, LINES
 
+_NO_MOTION = 1e-12  # of the largest amplitude
+_ROUNDING = 1e-9  # of an angle [rad]
+
 
 def draw_bode(
     size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
@@ -63,9 +66,25 @@ def draw_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> None:
 def _phase(values: np.ndarray) -> np.ndarray:
     """Return phases [deg] without jumps; none where there is no motion."""
     phase = np.full(len(values), np.nan)
-    moving = np.abs(values) > 1e-12 * np.abs(values).max(initial=0.0)
-    phase[moving] = np.degrees(np.unwrap(np.angle(values[moving])))
+    moving = np.abs(values) > _NO_MOTION * np.abs(values).max(initial=0.0)
+    phase[moving] = np.degrees(np.unwrap(_angles(values[moving])))
     return phase
+
+
+def least(motion: np.ndarray) -> np.ndarray:
+    """Return up to which amplitude the displacements of a motion (s, …, 6) are rounding, (s,)."""
+    return _NO_MOTION * np.abs(motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
+
+
+def degrees(values: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """Return phases, above −180° up to 180°; 0 of amplitudes up to the `least` that is told."""
+    return np.where(np.abs(values) <= least, 0.0, np.degrees(_angles(values)))
+
+
+def _angles(values: np.ndarray) -> np.ndarray:
+    """Return angles above −π up to π; what is −π but for rounding is π."""
+    found = np.angle(values)
+    return np.where(found <= _ROUNDING - np.pi, found + 2.0 * np.pi, found)
 
 
 def _spread(values: np.ndarray, count: int) -> np.ndarray:

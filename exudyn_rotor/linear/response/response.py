@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table
-from exudyn_rotor.linear.response.bode import draw_bode, draw_orbits, draw_polar
+from exudyn_rotor.linear.response import bode
 from exudyn_rotor.linear.response.refinement import resolved_peak
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
@@ -185,7 +185,7 @@ class Response(RunStart, ABC):
         self, place: str, order: int, values: np.ndarray, unit: str
     ) -> dict[str, np.ndarray]:
         """Return the columns of one place and harmonic."""
-        count = len(values)
+        count, least = len(values), bode.least(self.motion)
         columns = {
             f"{self._what} [{unit}]": values,
             "place": np.full(count, place),
@@ -193,7 +193,10 @@ class Response(RunStart, ABC):
         }
         for name in ("n1", "n2", "e"):
             phasor = self.phasor(place, name, order)
-            columns |= {f"{name} [m]": np.abs(phasor), f"{name} phase [deg]": _degrees(phasor)}
+            columns |= {
+                f"{name} [m]": np.abs(phasor),
+                f"{name} phase [deg]": bode.degrees(phasor, least),
+            }
         forward, backward = np.abs(self.whirl(place, order))
         errors = np.full(count, np.nan)
         if self.basis_errors is not None:
@@ -220,6 +223,7 @@ class Response(RunStart, ABC):
         place, order = self._place(place), self._order(order)
         values, unit = self._shown(units)
         a, b = (self.phasor(place, name, order) for name in ("n1", "n2"))
+        phases = (bode.degrees(phasor, bode.least(self.motion)) for phasor in (a, b))
         forward, backward = self.whirl(place, order)
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors > 0.0)
@@ -232,11 +236,11 @@ class Response(RunStart, ABC):
             f"{'[m]':>11} {'[m]':>11}{labels[1]}",
         ]
         column = np.zeros(len(values)) if errors is None else errors[:, self.places.index(place)]
-        for row in zip(values, a, b, forward, backward, column, strict=True):
-            at, x, y, f, g, error = row
+        for row in zip(values, a, b, *phases, forward, backward, column, strict=True):
+            at, x, y, p, q, f, g, error = row
             shown = f"  {in_table(error, 0):>5}" if reduced else ""
             lines.append(
-                f"{at:16.6g}  {abs(x):11.4e} {_degrees(x):7.1f}  {abs(y):11.4e} {_degrees(y):7.1f}"
+                f"{at:16.6g}  {abs(x):11.4e} {p:7.1f}  {abs(y):11.4e} {q:7.1f}"
                 f"  {abs(f):11.4e} {abs(g):11.4e}{shown}"
             )
         if self.stiffening:
@@ -287,7 +291,7 @@ class Response(RunStart, ABC):
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
         curves = {name: self._drawn(name, place, order) for name in names}
-        draw_bode(*pair, values, curves, log)
+        bode.draw_bode(*pair, values, curves, log)
         pair[0].set_title(self._title(place, order), loc="right", fontsize=10)
         pair[1].set_xlabel(f"{self._what} [{unit}]")
         return np.array(pair)
@@ -319,7 +323,7 @@ class Response(RunStart, ABC):
         marks = checks.count(marks, "marks")
         place, order = self._place(place), self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        draw_polar(ax, IN_HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
+        bode.draw_polar(ax, IN_HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
         ax.set_xlabel(f"in phase, {direction} [µm]")
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -353,7 +357,7 @@ class Response(RunStart, ABC):
             names = checks.labels(places, "places", self.places)
         order = self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
+        bode.draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
         nearest = self.abscissa[np.argmin(np.abs(self.abscissa - value))]
         ax.set_title(f"{self._what} {IN_HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
         return ax
@@ -390,7 +394,3 @@ class Response(RunStart, ABC):
             known = ", ".join(str(n) for n in self.orders)
             raise ValueError(f"order: there is no harmonic {order}; there are {known}")
         return order
-
-
-def _degrees(values: np.ndarray) -> np.ndarray:
-    return np.degrees(np.angle(values))

@@ -10,6 +10,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal.listing import ranks, signed_diameters
 from exudyn_rotor.linear.modal.whirl import WhirlContent
 from exudyn_rotor.linear.models.linear_model import (
     warn_of_left_out_stiffening,
@@ -17,7 +18,7 @@ from exudyn_rotor.linear.models.linear_model import (
 )
 from exudyn_rotor.linear.models.protocol import LinearModel, Space
 from exudyn_rotor.linear.models.whole_space import WholeSpace
-from exudyn_rotor.linear.periodic.exponents import METHODS, descending
+from exudyn_rotor.linear.periodic.exponents import METHODS
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.linear.periodic.inverse_iteration import moved, settled
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
@@ -81,11 +82,8 @@ class GrowthAt:
     def __call__(self, speed: float) -> Growth:
         shapes = self.content is not None
         modes, system = self.space.motions(speed, self.method, self.tolerance, shapes)
-        growth = growth_of(modes, system, self.content)
-        if not self.keeps or len(modes.orders) == 1:
-            return growth
-        order = descending(fold(modes.values, growth.base))
-        return growth._replace(motions=modes.columns(order))
+        names = () if self.content is None else self.content.named(modes, speed)[1:]
+        return _growth(modes, system, names, self.keeps and len(modes.orders) > 1)
 
     def system(self, speed: float) -> PeriodicSystem | None:
         """Return the equations; None of a large rotor."""
@@ -177,16 +175,32 @@ def constant_growths(
     ]
 
 
-def _growth(modes: FloquetModes, system: PeriodicSystem, names: Sequence[np.ndarray]) -> Growth:
+def _growth(
+    modes: FloquetModes, system: PeriodicSystem, names: Sequence[np.ndarray], keeps: bool = False
+) -> Growth:
     """Return the growth of all motions, whose names are given in their order."""
     bounds = np.maximum(modes.bounds, _drifts(modes.values, system))
     folded = fold(modes.values, abs(system.base))
-    order = descending(folded)
+    order = _order(folded, bounds, names)
     names = tuple(name[order] for name in names)
     growth = Growth(folded[order], bounds[order], abs(system.base), names)
+    if keeps:
+        growth = growth._replace(motions=modes.columns(order))
     if not (system.stands_still or len(modes.orders) > 1):
         return growth
     return growth._replace(critical=modes.columns(order[[growth.least_stable]]))
+
+
+def _order(values: np.ndarray, bounds: np.ndarray, names: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the order of descending real parts.
+
+    Where they are one but for their bounds, by frequency and from backward to forward waves.
+    """
+    keys = [-values.imag]
+    if names:
+        inertial, codes, diameters = names
+        keys += [signed_diameters(codes, diameters), ranks(inertial, bounds)]
+    return np.lexsort([*keys, ranks(-values.real, bounds)])
 
 
 def _drifts(values: np.ndarray, system: PeriodicSystem) -> np.ndarray:

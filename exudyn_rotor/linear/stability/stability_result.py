@@ -189,7 +189,8 @@ class Stability(Result):
     def least_stable_of(self, family: str) -> tuple[int, int] | None:
         """Return row and column of a family's least stable motion over all speeds.
 
-        None where the family has no motion, or only neutral ones.
+        The first of several that are one but for their bounds; None where the family has no motion,
+        or only neutral ones.
 
         Parameters
         ----------
@@ -198,7 +199,9 @@ class Stability(Result):
         checks.choice(family, "family", FAMILIES)
         told = (self.families == family) & (np.abs(self.exponents.real) > self.bounds)
         growth = np.where(told, self.exponents.real, -np.inf)
-        row, column = np.unravel_index(np.argmax(growth), growth.shape)
+        # the first of those that only rounding tells apart
+        largest = growth.flat[np.argmax(growth)] - self.bounds.flat[np.argmax(growth)]
+        row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
         return (int(row), int(column)) if told[row, column] else None
 
     def _least_stable_line(self, family: str, shown: Units) -> str | None:

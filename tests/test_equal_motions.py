@@ -1,0 +1,118 @@
+"""Order, names and lines of motions that are equal do not depend on how they were rounded."""
+
+import numpy as np
+import pytest
+
+from exudyn_rotor import (
+    SolidRotor,
+    Support,
+    Unbalance,
+    campbell,
+    stability,
+    unbalance_response,
+)
+from exudyn_rotor.linear.modal.listing import ranks
+from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
+
+STIFFNESS, DAMPING, MASS = 2e4, 10.0, 2.0
+NATURAL = np.sqrt(STIFFNESS / MASS)
+TURNS = range(4)
+
+
+def rod(turn: int) -> SolidRotor:
+    """Return two masses of 2 kg on a rod along the axis, in axes that make another rounding."""
+    axes = np.linalg.qr(np.random.default_rng(turn).normal(size=(3, 3)))[0]
+    spring = 1e8 * np.kron([[1, -1], [-1, 1]], np.outer(axes[2], axes[2]))
+    nodes = np.outer([-0.1, 0.1], axes[2])
+    made = SolidRotor.from_matrices(MASS * np.eye(6), spring, nodes, axes[2])
+    return made.with_interface("left", [0]).with_interface("right", [1])
+
+
+def both(*coefficients, **others) -> list[Support]:
+    return [Support(name, *coefficients, **others) for name in ("left", "right")]
+
+
+def wave_pairs(result) -> list[list[str]]:
+    return [sorted(set(column)) for column in result.tracked().whirl.T]
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_of_motions_that_decay_alike_the_slowest_backward_one_is_named(turn):
+    """All decay with c/2m: two whirls each way and two axial motions, one of the stiff rod."""
+    supports = both(STIFFNESS * np.eye(3), DAMPING * np.eye(3))
+    result = stability(rod(turn), [0.0, 50.0, 300.0], supports=supports)
+    rate = DAMPING / (2.0 * MASS)
+    rows = np.arange(3), result.least_stable
+    np.testing.assert_allclose(result.exponents[rows].real, -rate, rtol=1e-9)
+    heard = np.sqrt(NATURAL**2 - rate**2)
+    np.testing.assert_allclose(result.frequencies_inertial[rows], heard, rtol=1e-9)
+    assert result.whirl[rows].tolist() == ["backward"] * 3
+    assert result.least_stable_of("lateral")[0] == 0
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_modes_of_one_frequency_stand_from_backward_to_forward_at_rest(turn):
+    """Cross-coupling q damps backward whirl by q/2mω and drives forward whirl, at one frequency."""
+    cross = 1e-2 * STIFFNESS
+    supports = both([[STIFFNESS, cross], [-cross, STIFFNESS]], DAMPING)
+    result = campbell(rod(turn), [0.0], supports=supports)
+    assert result.whirl[0].tolist() == ["axial", *2 * ["backward"], *2 * ["forward"], "axial"]
+    rates = DAMPING / (2.0 * MASS) + np.repeat([1.0, -1.0], 2) * cross / (2.0 * MASS * NATURAL)
+    np.testing.assert_allclose(result.growth[0, 1:5], -rates, rtol=1e-3)  # of the order (c/2mω)²
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_few_of_equal_modes_are_the_backward_ones(turn):
+    """Four lateral modes and an axial one have the frequency √(k/m): of five, four are kept."""
+    supports = both(STIFFNESS * np.eye(3))
+    result = campbell(rod(turn), [0.0, 50.0, 250.0], supports=supports, modes=4)
+    assert wave_pairs(result) == [["backward"], ["backward"], ["axial"], ["forward"]]
+    np.testing.assert_allclose(result.frequencies_inertial, NATURAL, rtol=1e-6)
+    assert np.all(result.continued)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_lines_pass_a_speed_at_which_the_rotor_frame_sees_no_motion(turn):
+    """At Ω = √(k/m) all forward whirls stand still in the rotor frame, λ = 0 four times."""
+    result = campbell(rod(turn), [50.0, NATURAL, 150.0], supports=both(STIFFNESS))
+    assert np.all(result.continued)
+    lateral = [["forward"], ["forward"], ["backward"], ["backward"]]
+    assert wave_pairs(result) == [["axial"], *lateral, ["axial"]]
+
+
+def test_displacements_that_turn_stand_for_two():
+    """``ẍ + 2Ω(e × x)˙ = 0`` in two planes: at λ = 0 circles; their conjugates are the others."""
+    turning = np.kron(np.eye(2), [[0.0, -200.0], [200.0, 0.0]])
+    free = np.zeros((1, 4, 4))
+    values, vectors = (found[0] for found in quadratic_modes(np.eye(4), turning[None], free)[:2])
+    np.testing.assert_allclose(values, [0.0, 0.0, 200j, 200j], atol=1e-9)
+    still = vectors[:, :2]
+    np.testing.assert_allclose(np.abs(still[::2]), np.abs(still[1::2]), atol=1e-12)
+    lengths = np.linalg.svd(np.hstack([still, still.conj()]), compute_uv=False)
+    np.testing.assert_allclose(lengths, 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_a_free_rotor_stands_still_in_space_at_any_speed(turn):
+    result = campbell(rod(turn), [0.0, 100.0, 1000.0])
+    lateral = result.nodal_diameters == 1
+    assert np.all(lateral.sum(axis=1) == 4)
+    assert set(result.whirl[lateral].tolist()) == {"static"}
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_a_motion_against_its_unbalance_has_the_phase_180_degrees(turn):
+    """Above the critical speed, without damping, it is real and negative in the rotor frame."""
+    given = {"supports": both(STIFFNESS), "frame": "rotor"}
+    loads = [Unbalance(name, 1e-4) for name in ("left", "right")]
+    speeds = NATURAL * np.linspace(1.1, 4.0, 8)
+    columns = unbalance_response(rod(turn), speeds, loads, **given).columns()
+    np.testing.assert_array_equal(columns["n1 phase [deg]"], 180.0)
+    np.testing.assert_array_equal(columns["e phase [deg]"], 0.0)
+
+
+def test_values_that_only_rounding_tells_apart_have_one_rank():
+    values = np.array([3.0, 1.0, 1.0 + 1e-12, 2.0, 2.001])
+    np.testing.assert_array_equal(ranks(values), [3, 0, 0, 1, 2])
+    np.testing.assert_array_equal(ranks(values, [0, 0, 0, 1e-3, 1e-3]), [2, 0, 0, 1, 1])
+    np.testing.assert_array_equal(ranks(values, [0, 0, 0, 1e-3, 0.0]), [3, 0, 0, 1, 2])
