@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from point_rotors import ring_rotor
 
 from exudyn_rotor import (
     SolidRotor,
@@ -109,6 +110,33 @@ def test_a_motion_against_its_unbalance_has_the_phase_180_degrees(turn):
     columns = unbalance_response(rod(turn), speeds, loads, **given).columns()
     np.testing.assert_array_equal(columns["n1 phase [deg]"], 180.0)
     np.testing.assert_array_equal(columns["e phase [deg]"], 0.0)
+
+
+@pytest.mark.parametrize(("share", "step"), [(0.5, 400.0), (0.3, 500.0), (0.7, 500.0)])
+def test_lines_in_steps_larger_than_the_distance_of_forward_and_backward_whirl(share, step):
+    """A rigid rotor on bearings k and `share`·k at its ends, in z = x + iy and φ = φ_x + iφ_y:
+
+    ``m z̈ + s₀z + s₁lφ = 0``, ``I_t φ̈ − iΩI_p φ̇ + s₁lz + s₀l²φ = 0``, s₀ and s₁ the sum and the
+    difference of the stiffnesses: two frequencies each way, which never pass zero. Forward whirl of
+    the frequency ω has Ω − ω in the rotor frame and the shape of backward whirl. The rotor is
+    elastic, with ``(Ω/1e4)²`` of its frequencies.
+    """
+    radius, half, mass, k = 0.1, 0.2, 10.0, 1e4
+    made = ring_rotor(radius, half, mass)
+    made = made.with_interface("left", range(5)).with_interface("right", range(5, 10))
+    supports = [Support("left", k), Support("right", share * k)]
+    speeds = step * np.arange(6)
+    result = campbell(made, speeds, supports=supports).tracked()
+    lines = (result.nodal_diameters == 1).all(axis=0) & (result.frequencies_inertial[0] < 1e3)
+    polar, across = mass * radius**2, mass * (0.5 * radius**2 + half**2)
+    total, apart = (1.0 + share) * k, (share - 1.0) * k * half
+    found = result.whirl_frequencies[:, lines]
+    for speed, row in zip(speeds, found, strict=True):
+        translation, tilt = [-mass, 0.0, total], [-across, polar * speed, total * half**2]
+        roots = np.roots(np.polysub(np.polymul(translation, tilt), [apart**2])).real
+        np.testing.assert_allclose(np.sort(row), np.sort(roots), rtol=1e-3 + (speed / 1e4) ** 2)
+    np.testing.assert_array_equal(np.sign(found), np.sign(found[[0]]).repeat(6, axis=0))
+    assert np.all(result.continued[:, lines])
 
 
 def test_values_that_only_rounding_tells_apart_have_one_rank():

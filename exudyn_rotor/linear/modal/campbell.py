@@ -169,7 +169,7 @@ def campbell(
         basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
     found = [entry.modes for entry in solved]
-    tracks = track(found, values, model.mass_matrix.__matmul__)
+    tracks = track(found, values, model.mass_matrix.__matmul__, content.mean_waves(found))
     solved, tracks = _lowest(solved, tracks, count, seen, model)
     inertial = np.array([entry.inertial for entry in solved])
     growth = np.array([entry.modes.values.real for entry in solved])

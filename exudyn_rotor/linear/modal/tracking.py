@@ -11,8 +11,9 @@ from scipy.optimize import linear_sum_assignment
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
-# how strongly a jump in frequency counts against a likeness of shapes
-_JUMP_WEIGHT = 0.5
+# how strongly a jump in frequency counts against a likeness of shapes, in the rotor frame and seen
+# from outside
+_JUMP_WEIGHT, _SEEN_WEIGHT = 0.5, 0.5
 # a frequency in the rotor frame moves by nΩ at most; waves up to four nodal diameters are allowed
 _STEEPEST = 4.0
 # a match is another mode below this likeness, or beyond this many steepest changes of frequency
@@ -103,13 +104,16 @@ def track(
     modes: Sequence[FloquetModes],
     speeds: np.ndarray,
     weigh: Callable[[np.ndarray], np.ndarray],
+    waves: np.ndarray | None = None,
 ) -> Tracks:
     """Return which column continues each mode of the first speed.
 
     Neighbouring speeds are matched as a whole (assignment problem) by the mass-weighted modal
     assurance criterion ``|φᴴMψ|² / (φᴴMφ ψᴴMψ)`` and the distance of the signed frequencies. A
     frequency that passes zero in the rotor frame goes on as the conjugate motion; copies
-    ``λ + ipΩ`` of a Floquet exponent count as one motion.
+    ``λ + ipΩ`` of a Floquet exponent count as one motion. Above its frequency a forward whirl turns
+    backward in the rotor frame, in the shape of the backward one: what tells them apart in large
+    steps is that frequencies seen from outside change little.
 
     Parameters
     ----------
@@ -119,13 +123,21 @@ def track(
         [rad/s]
     weigh : callable
         Multiplies vectors (c, k) by the mass matrix.
+    waves : ndarray, shape (s, k), optional
+        Mean wave numbers n of the motions: a wave that is seen at one frequency changes it by
+        ``−nΔΩ`` in the rotor frame. For equations that do not change in time.
     """
     count = modes[0].values.size
     columns = np.empty((len(modes), count), dtype=np.int64)
     columns[0] = np.arange(count)
     continued = np.ones((len(modes), count), dtype=bool)
     constant = all(len(entry.orders) == 1 for entry in modes)
-    steps = (_steps_of_constant if constant else _steps_of_periodic)(modes, speeds, weigh)
+    waves = np.zeros((len(modes), count)) if waves is None else waves
+    steps = (
+        _steps_of_constant(modes, speeds, weigh, waves)
+        if constant
+        else _steps_of_periodic(modes, speeds, weigh)
+    )
     for step, (matched, same) in enumerate(steps, start=1):
         last = columns[step - 1]
         columns[step], continued[step] = matched[last], same[last]
@@ -136,7 +148,10 @@ Steps = Iterator[tuple[np.ndarray, np.ndarray]]
 
 
 def _steps_of_constant(
-    modes: Sequence[FloquetModes], speeds: np.ndarray, weigh: Callable[[np.ndarray], np.ndarray]
+    modes: Sequence[FloquetModes],
+    speeds: np.ndarray,
+    weigh: Callable[[np.ndarray], np.ndarray],
+    waves: np.ndarray,
 ) -> Steps:
     """Yield which column continues each, and whether as the same mode, each (k,), step by step.
 
@@ -155,7 +170,8 @@ def _steps_of_constant(
         frequencies = np.array([entry.values.imag for entry in modes[few]])
         forms = np.stack([frequencies[1:], -frequencies[1:]], axis=1)
         changes, after = np.diff(speeds[few]), modes[few][1:]
-        matched, _, same = _matched(likeness, frequencies[:-1], forms, changes, after)
+        shifts = -waves[few][:-1] * changes[:, None]
+        matched, _, same = _matched(likeness, frequencies[:-1], forms, changes, after, shifts)
         yield from zip(matched, same, strict=True)
 
 
@@ -186,6 +202,7 @@ def _matched(
     frequencies: np.ndarray,
     changes: np.ndarray,
     modes: Sequence[FloquetModes],
+    shifts: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return which columns continue those before, in which form, and whether as the same mode.
 
@@ -199,12 +216,18 @@ def _matched(
         Of the speed [rad/s].
     modes : sequence of FloquetModes
         Those at the next speeds.
+    shifts : ndarray, shape (s, k), optional
+        By which frequencies change that are seen from outside as before [rad/s].
     """
     values, resolution = (np.array([getattr(entry, name) for entry in modes])
                           for name in ("values", "resolution"))  # fmt: skip
     jump = np.abs(frequencies[:, :, None, :] - before[:, None, :, None])
     allowed = _STEEPEST * np.abs(changes)[:, None] + 1e-3 * np.abs(before) + resolution[:, None]
     cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed[:, None, :, None], 4.0)
+    if shifts is not None:
+        seen = np.abs(frequencies[:, :, None, :] - (before + shifts)[:, None, :, None])
+        steps = np.maximum(np.abs(changes), 1e-300)[:, None, None, None]
+        cost += _SEEN_WEIGHT * np.minimum(seen / steps, 1.0)
     matched = np.array([linear_sum_assignment(each)[1] for each in cost.min(axis=1)])
     steps, rows = np.ogrid[: matched.shape[0], : matched.shape[1]]
     used = cost.argmin(axis=1)[steps, rows, matched]

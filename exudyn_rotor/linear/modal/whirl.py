@@ -292,6 +292,12 @@ class WhirlContent:
         """Return the energy of what stands still, which counts as waves n = 0, shape (h, k)."""
         return _energy(self.standing, self._chosen(vectors))
 
+    @one_thread()
+    def mean_waves(self, modes: Sequence[FloquetModes]) -> np.ndarray:
+        """Return the mean wave numbers of the central harmonics, shape (s, k); 0 of no motion."""
+        energy = np.array([self.energies(entry.central[None])[0] for entry in modes])
+        return self.orders @ energy / np.maximum(energy.sum(axis=1), 1e-300)
+
     def whole_energy(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of the whole motion, all harmonics, shape (k,)."""
         return np.sum(_energy(self.whole, self._chosen(vectors)), axis=0)

@@ -9,6 +9,11 @@ LINEAR = [
         ("motions of voids take places of a shaft's", "own > _MOSTLY", "own < 0.0 * _MOSTLY"),
     ),
     *mutations(
+        "linear/modal/tracking.py",
+        "test_equal_motions.py",
+        ("waves expected the wrong way", "shifts = -waves[few]", "shifts = waves[few]"),
+    ),
+    *mutations(
         "linear/modal/resonance.py",
         "test_journal_bearing.py::test_analyses_of_a_scene_whose_films_carry_nothing_at_rest",
         (
