@@ -14,6 +14,20 @@ LINEAR = [
         ("waves expected the wrong way", "shifts = -waves[few]", "shifts = waves[few]"),
     ),
     *mutations(
+        "linear/modal/listing.py",
+        "test_equal_motions.py",
+        ("forward waves before backward ones", "FORWARD, 1, np.where", "FORWARD, -2, np.where"),
+    ),
+    *mutations(
+        "linear/periodic/eigenvalues.py",
+        "test_equal_motions.py",
+        (
+            "half of the displacements of waves",
+            "turning > least) != count",
+            "turning > least) == count",
+        ),
+    ),
+    *mutations(
         "linear/modal/resonance.py",
         "test_journal_bearing.py::test_analyses_of_a_scene_whose_films_carry_nothing_at_rest",
         (
@@ -304,8 +318,8 @@ LINEAR = [
         "test_campbell_kinds.py",
         (
             "overdamped motions in front of the others",
-            "order = np.lexsort((key, ~moves &",
-            "order = np.lexsort((key, moves |",
+            "last=~moves & decays",
+            "last=moves | ~decays",
         ),
     ),
     *mutations(
@@ -316,11 +330,7 @@ LINEAR = [
     *mutations(
         "linear/modal/campbell.py",
         "test_campbell_frames.py test_campbell_full.py",
-        (
-            "order in the other frame",
-            "key = _ranks(inertial) if seen else",
-            "key = _ranks(inertial) if not seen else",
-        ),
+        ("order in the other frame", ", seen=seen)", ", seen=not seen)"),
         (
             "a large rotor is not solved for more modes",
             "lowest.max() + abs(speed) or",
