@@ -52,6 +52,15 @@ def test_of_motions_that_decay_alike_the_slowest_backward_one_is_named(turn):
 
 
 @pytest.mark.parametrize("turn", TURNS)
+def test_without_damping_no_motion_is_the_least_stable(turn):
+    columns = stability(rod(turn), [0.0, 50.0], supports=both(STIFFNESS)).columns()
+    assert columns["growth [1/s]"].tolist() == [0.0, 0.0]
+    assert np.all(np.isnan(columns["inertial [rad/s]"]))
+    assert columns["nodal diameters"].tolist() == [-1, -1]
+    assert columns["whirl"].tolist() == ["-", "-"]
+
+
+@pytest.mark.parametrize("turn", TURNS)
 def test_modes_of_one_frequency_stand_from_backward_to_forward_at_rest(turn):
     """Cross-coupling q damps backward whirl by q/2mω and drives forward whirl, at one frequency."""
     cross = 1e-2 * STIFFNESS

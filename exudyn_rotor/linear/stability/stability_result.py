@@ -232,18 +232,22 @@ class Stability(Result):
         ]
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return the table as columns; `units` are those of :meth:`plot`."""
+        """Return the table as columns; `units` are those of :meth:`plot`.
+
+        Where all motions are neutral none is the least stable: no growth, frequency NaN, '-'.
+        """
         shown = Units.of(units)
-        rows = np.arange(len(self.speeds)), self.least_stable
+        rows, none = (np.arange(len(self.speeds)), self.least_stable), self.neutral
         errors = self.basis_errors
+        heard = np.where(none, np.nan, shown.frequencies(self.frequencies_inertial[rows]))
         growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
         return {
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
-            "growth [1/s]": self.exponents[rows].real,
+            "growth [1/s]": np.where(none, 0.0, self.exponents[rows].real),
             **growth,
-            f"inertial [{shown.frequency}]": shown.frequencies(self.frequencies_inertial[rows]),
-            "nodal diameters": self.nodal_diameters[rows],
-            "whirl": self.whirl[rows],
+            f"inertial [{shown.frequency}]": heard,
+            "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
+            "whirl": np.where(none, "-", self.whirl[rows]),
             "stable": self.stable,
             "basis error": np.full(len(self.speeds), np.nan) if errors is None else errors,
         }
