@@ -11,6 +11,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.evaluation import STATES
 from exudyn_rotor.multibody.mark import Mark, mark_of, set_mark
+from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor, note_rotor
 from exudyn_rotor.multibody.rotor.equations import Layout
 from exudyn_rotor.multibody.rotor.frame import BodyFrame
 from exudyn_rotor.multibody.rotor.inputs import main_system
@@ -90,7 +91,12 @@ class RotorItems:
             checks.instance(self.gravity_load, "gravity_load", exudyn.LoadIndex)
         checks.count(self.mesh_node_count, "mesh_node_count")
         checks.flag(self.mesh_stress, "mesh_stress")
-        object.__setattr__(self, "mark", set_mark(self.mbs, self.objects["physics"]))
+        physics = self.objects["physics"]
+        object.__setattr__(self, "mark", set_mark(self.mbs, physics))
+        if "rigid" in self.nodes:  # markers hang on it
+            locks, e = self.locks, self.standing_axes[:, 2]
+            turns = int(self.nodes["rigid"]), locks.spin, float(locks.sign), tuple(e.tolist())
+            note_rotor(self.mbs, CarryingRotor(*turns, int(physics), self.mark))
 
     @property
     def name(self) -> str | None:

@@ -18,9 +18,10 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.bearings.support import Support, acts
+from exudyn_rotor.bearings.support import Support, acts, varies
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
+from exudyn_rotor.multibody.rotor.carrying_rotor import carrying_rotor
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.supports.magnetic_connectors import add_magnetic
 from exudyn_rotor.multibody.supports.seats import Base, Seat
@@ -31,6 +32,8 @@ from exudyn_rotor.multibody.supports.support_connectors import (
     tilt_connector,
 )
 from exudyn_rotor.multibody.supports.tilting_pads import add_pads
+
+_PARALLEL = 1e-9  # of the cosine between axes of two rotors
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,9 +100,9 @@ def add_supports(
         depends on the spin.
     base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
         What carries them: a foundation, by its point of the interface's name; a marker at the place
-        of the interface, along the axis to a hundredth of its radius, as a mesh may shift it; a
-        rigid body, which gets such a marker; the ground by default. Forces act
-        along the inertial axes, also where the base tilts.
+        of the interface, along the axis to a hundredth of its radius, as a mesh may shift it, also
+        that of another rotor; a rigid body, which gets such a marker; the ground by default. Forces
+        act along the inertial axes, also where the base tilts.
 
     Returns
     -------
@@ -125,6 +128,11 @@ def add_supports(
     its drive lacks it. What carries the bearing takes the reaction; where it turns about the axis,
     bearings see a free spin against it. The force of a bearing pulls at the middles of journal and
     bore, so that about the axis the base lacks the moment ``u × F`` of their distance u.
+
+    On a marker of another rotor (an inter-shaft bearing) bearings see the difference of both
+    spins, free or prescribed: their bore, with its grooves, or the outer ring turns with that
+    rotor. Tables of a `Support` are over the difference of the speeds there, as those of a
+    :class:`Link`.
 
     Examples
     --------
@@ -157,6 +165,8 @@ def add_supports(
             _check_about_the_axis(body, support)
     _check_base(body, base)
     seats = [Seat.of(body, support.interface, base) for support in supports]
+    for support, seat in zip(supports, seats, strict=True):
+        _check_on_rotor(body, support, seat)
     sensed = [_seat_of_sensor(body, support, base) for support in supports]
     added = tuple(
         _added(body, support, *places)
@@ -212,6 +222,43 @@ def _check_about_the_axis(body: RotorBody | FullRotorBody, support: Support) -> 
                 f"spin, and that of rotor {body.name!r} is free; use a matrix with zeros there, or "
                 "a torsional spring on the frame's node"
             )
+
+
+def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat) -> None:
+    """Refuse what another rotor cannot carry: its markers have axes that turn."""
+    rotor = carrying_rotor(body.mbs, seat.base)
+    if rotor is None:
+        return
+    where = f"base: the support at {support.interface!r} stands on another rotor"
+    tilts = isinstance(support, Support) and (
+        acts(support.tilt_stiffness) or acts(support.tilt_damping)
+    )
+    across = isinstance(support, Support) and not tilts
+    if not across and abs(rotor.axis @ seat.axes[:, 2]) < 1.0 - _PARALLEL:
+        raise ValueError(
+            f"{where}, whose axis is not parallel to that of rotor {body.name!r}; mount both on "
+            "parallel axes"
+        )
+    if isinstance(support, TiltingPadBearing):
+        raise ValueError(
+            f"{where}, with which its pads would turn; give add_supports another bearing there"
+        )
+    if tilts and not _is_alike_in_all_tilts(support):
+        raise ValueError(
+            f"{where}, against whose tilts it has to be constant and alike in all directions, "
+            "without tilt_damping and without moments about the axis; between rotors of one speed "
+            "connect_rotors with a FlexibleCoupling has torsion, tilts and their damping"
+        )
+
+
+def _is_alike_in_all_tilts(support: Support) -> bool:
+    """Return whether the moments of a support are the same in axes that turn."""
+    given = support.tilt_stiffness, support.tilt_damping
+    if support.frame == "rotor" or any(map(varies, given)) or acts(support.tilt_damping):
+        return False
+    K = support.matrices(0.0)[0][3:, 3:]
+    about = np.any(K[2]) or np.any(K[:, 2])
+    return not about and K[0, 0] == K[1, 1] and K[0, 1] == -K[1, 0]
 
 
 def _seat_of_sensor(

@@ -28,11 +28,17 @@ from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.journal_bearing import FilmLaw, JournalBearing, RememberingLaw
 from exudyn_rotor.bearings.support import Support, varies
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
+from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor, carrying_rotor
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 from exudyn_rotor.multibody.supports.differenced_law import DifferencedLaw
 from exudyn_rotor.multibody.supports.differences import differences_of
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
-from exudyn_rotor.multibody.supports.turning_base import in_axes_at_rest, on_turning_base
+from exudyn_rotor.multibody.supports.turning_base import (
+    in_axes_at_rest,
+    on_turning_base,
+    on_turning_rotor,
+    seen_from_rotor,
+)
 from exudyn_rotor.theory.rotating_axes import axial_rotation
 
 NATIVE, SYMBOLIC, PYTHON = "Exudyn", "symbolic function", "Python function"
@@ -57,7 +63,7 @@ def displacement_connector(
     mbs = body.mbs
     item = CartesianSpringDamper(markerNumbers=[base, point_marker(body, support.interface)])
     if _follows_the_spin(support, ("stiffness", "damping")):
-        item.springForceUserFunction = _varying_force(body, support, seat.axes)
+        item.springForceUserFunction = _varying_force(body, support, seat)
         return mbs.AddObject(item), PYTHON
     K, D = (_turned(seat.axes, X[:3, :3]) for X in support.matrices(0.0))
     if not np.any(K - np.diag(np.diag(K))) and not np.any(D - np.diag(np.diag(D))):
@@ -71,14 +77,16 @@ def displacement_connector(
     return mbs.AddObject(item), SYMBOLIC
 
 
-def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Callable:
-    spin = spin_reader(body)
+def _varying_force(body: RotorItems, support: Support, seat: Seat) -> Callable:
+    spin, axes = spin_reader(body), seat.axes
+    against = _speed_of_base(body.mbs, seat)
     turns = support.frame == "rotor"
 
     def force(mbs, t, item, u, v, stiffness, damping, offset):
         angle, speed = spin(mbs)
-        support.check_range(speed)
-        K, D = (X[:3, :3] for X in support.matrices(speed))
+        relative = speed - against(mbs)
+        support.check_range(relative)
+        K, D = (X[:3, :3] for X in support.matrices(relative))
         into = axes @ axial_rotation(angle) if turns else axes
         x, x_t = np.dot(u, into), np.dot(v, into)
         if turns:
@@ -86,6 +94,18 @@ def _varying_force(body: RotorItems, support: Support, axes: np.ndarray) -> Call
         return (into @ (K @ x + D @ x_t)).tolist()
 
     return force
+
+
+def _speed_of_base(mbs: exudyn.MainSystem, seat: Seat) -> Callable:
+    """Return a function that reads the speed of a rotor that carries a support, about e [rad/s].
+
+    Zero on anything else; tables between two rotors are over the difference of their speeds.
+    """
+    rotor = carrying_rotor(mbs, seat.base)
+    if rotor is None:
+        return lambda mbs: 0.0
+    sense = float(np.sign(rotor.axis @ seat.axes[:, 2]))
+    return lambda mbs: sense * rotor.spin(mbs)[1]
 
 
 def bearing_connector(
@@ -122,9 +142,10 @@ def bearing_function(
     """Return the user function of a bearing's connector, and the name that Exudyn gives it."""
     brakes, begin = body.formulation.has_spin, _no_memory
     least, note = bearing.clearance_along() ** 2, noting_outside(body.mbs, bearing)
+    rotor = carrying_rotor(body.mbs, base)
     if isinstance(bearing, JournalBearing) and bearing.remembers:
         law = RememberingLaw(bearing.film, torque=brakes)
-        begin = _beginning(body, law, axes)
+        begin = _beginning(body, law, axes, rotor)
     else:
         brakes = brakes and bearing.law_with_torque is not None
         law = bearing.law_with_torque if brakes else bearing.law
@@ -132,7 +153,9 @@ def bearing_function(
         spin = _speed_reader(body)
     if isinstance(law, FilmLaw):
         law = DifferencedLaw(law, bearing.film.clearance, differences_of(body))
-    if body.formulation.has_spin and not isinstance(bearing, HeldLaw):
+    if rotor is not None:
+        law = on_turning_rotor(law, body.mbs, rotor, axes)
+    elif body.formulation.has_spin and not isinstance(bearing, HeldLaw):
         law = on_turning_base(law, body.mbs, base, axes)
     if brakes:
         function = _braking_function(law, spin, begin, least, note)
@@ -173,13 +196,16 @@ def _no_memory(mbs: exudyn.MainSystem, t: float, item: int) -> None:
     """Do nothing: a law of place and velocity has no memory."""
 
 
-def _beginning(body: RotorItems, law: RememberingLaw, axes: np.ndarray) -> Beginning:
+def _beginning(
+    body: RotorItems, law: RememberingLaw, axes: np.ndarray, rotor: CarryingRotor | None
+) -> Beginning:
     """Return what gives a film with a memory the state at the beginning of the step.
 
     Exudyn repeats steps and evaluates forces at trial states; the configuration of the beginning of
     the step alone holds what has been accepted.
     """
     across, spin, begun = axes[:, :2], spin_reader(body, _START), []
+    seen = None if rotor is None else seen_from_rotor(body.mbs, rotor, axes, _START)
 
     def begin(mbs: exudyn.MainSystem, t: float, item: int) -> None:
         time = mbs.systemData.GetTime(_START)
@@ -192,7 +218,9 @@ def _beginning(body: RotorItems, law: RememberingLaw, axes: np.ndarray) -> Begin
             for kind in (_KINDS.Position, _KINDS.Velocity)
         )
         place, rate = ((b - a) @ across for a, b in ((p0, p1), (v0, v1)))
-        law.begin(time, *place.tolist(), *rate.tolist(), spin(mbs)[1], t)
+        motion = *place.tolist(), *rate.tolist(), *spin(mbs)
+        *moved, _, speed = motion if seen is None else seen(motion)[1]
+        law.begin(time, *moved, speed, t)
 
     return begin
 

@@ -5,6 +5,10 @@ A law holds in axes of the bore. One that turns about the axis at the rate w see
 against it: a film drags by what the two turn against each other. The angle of the bore is small and
 left out. With a prescribed spin, which feels no friction, so is w, as in linear analyses.
 
+On another rotor neither is small: the bore turns by its spin angle, and w is its speed, whether
+spins are free or prescribed. Grooves turn with it, and so does the outer ring whose elements an
+inner ring takes along.
+
 Forces act along the axes at rest, also where the base tilts. With a static force F₀ and a tilt φ
 this leaves out ``φ × F₀``, as foundations leave out what their weight does in a deflection: beside
 the bearing's stiffness K at a lever l it is F₀/(K l), the journal's displacement over the lever.
@@ -13,12 +17,16 @@ the bearing's stiffness K at a lever l it is F₀/(K l), the journal's displacem
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import cos, sin
 
 import exudyn
 import numpy as np
 
+from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor
+
 _ANGULAR_VELOCITY = exudyn.OutputVariableType.AngularVelocity
 _ROTATION = exudyn.OutputVariableType.RotationMatrix
+_CURRENT = exudyn.ConfigurationType.Current
 
 
 def carrying_marker(
@@ -44,6 +52,43 @@ def on_turning_base(
         return law(x, y, vx + w * y, vy - w * x, angle, speed - w)
 
     return turned
+
+
+def on_turning_rotor(
+    law: Callable, mbs: exudyn.MainSystem, rotor: CarryingRotor, axes: np.ndarray
+) -> Callable:
+    """Return a law as it is on another rotor; `axes` are (n1, n2, e) as columns."""
+    seen = seen_from_rotor(mbs, rotor, axes)
+
+    def turned(*motion: float) -> tuple[float, ...]:
+        (c, s), within = seen(motion)
+        fx, fy, *torque = law(*within)
+        return c * fx - s * fy, s * fx + c * fy, *torque
+
+    return turned
+
+
+def seen_from_rotor(
+    mbs: exudyn.MainSystem,
+    rotor: CarryingRotor,
+    axes: np.ndarray,
+    state: exudyn.ConfigurationType = _CURRENT,
+) -> Callable:
+    """Return what gives x, y, ẋ, ẏ, θ and Ω of a journal as its bore on another rotor sees them.
+
+    Before them cosine and sine of the angle by which the bore has turned.
+    """
+    sense = float(np.sign(rotor.axis @ axes[:, 2]))
+
+    def seen(motion: tuple[float, ...]) -> tuple[tuple[float, float], tuple[float, ...]]:
+        x, y, vx, vy, angle, speed = motion
+        turn, w = (sense * value for value in rotor.spin(mbs, state))
+        c, s = cos(turn), sin(turn)
+        vx, vy = w * y + vx, vy - w * x
+        place, rate = (c * x + s * y, c * y - s * x), (c * vx + s * vy, c * vy - s * vx)
+        return (c, s), (*place, *rate, angle - turn, speed - w)
+
+    return seen
 
 
 def in_axes_at_rest(

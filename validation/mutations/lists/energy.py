@@ -137,6 +137,20 @@ ENERGY = [
     ),
     *mutations(
         "multibody/supports/turning_base.py",
+        "test_inter_shaft.py",
+        ("elements stay with the ground", "angle - turn, speed - w", "angle, speed - w"),
+        ("a bore on a rotor leaves the spin", "turn, speed - w", "turn, speed"),
+        ("journal moves by minus the rotor's bore", "w * y + vx", "vx - w * y"),
+        ("forces turn back with the bore", "c * fx - s * fy", "c * fx + s * fy"),
+    ),
+    *mutations(
+        "multibody/supports/support_connectors.py",
+        "test_inter_shaft.py",
+        ("voids begin on a bore at rest", "seen is None else seen(motion)[1]", "True else ()"),
+        ("tables over the own speed alone", "speed - against(mbs)", "speed"),
+    ),
+    *mutations(
+        "multibody/supports/turning_base.py",
         "test_uneven_films.py",
         ("forces tilt twice with the base", "(loads @ turn)", "(loads @ turn.T)"),
         ("forces tilt with the base", "(loads @ turn).r", "loads.r"),

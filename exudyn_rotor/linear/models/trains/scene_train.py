@@ -170,10 +170,11 @@ def _other_end(body: RotorBody, one: SceneSupport, markers: dict[int, str]) -> s
             f"{where} stands on a body or a foundation, which a train does not have; linearise a "
             "scene of one rotor on it"
         )
-    if not isinstance(one.support, Support) or one.support.varies:
+    if not isinstance(one.support, Support):
         raise ValueError(
             f"{where} stands on another rotor and depends on the speed; between rotors a train has "
-            f"constant supports, and tables over the difference of their speeds; {_BY_HAND}"
+            "supports alone, with tables over the difference of both speeds; give a Support with "
+            f"the bearing's coefficients, or {_BY_HAND}"
         )
     return markers[int(one.base)]
 

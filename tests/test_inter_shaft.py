@@ -1,0 +1,142 @@
+"""Bearings between two rotors in scenes: the bore, or the outer ring, turns with one of them."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from test_scene_trains import HELD, SPEED, accelerations_left
+from train_models import FIRST, SECOND, rings
+
+from exudyn_rotor import (
+    JournalBearing,
+    OilFilm,
+    RollingBearing,
+    ShortJournalBearing,
+    Support,
+    TiltingPadBearing,
+    add_rotor,
+    add_supports,
+    grooved_pads,
+    linear_model,
+    recommended_settings,
+)
+
+RADIUS, LENGTH, CLEARANCE, VISCOSITY, OFF = 0.02, 0.02, 1e-4, 0.02, 6e-5
+SHORT = ShortJournalBearing(
+    interface="a", radius=RADIUS, length=LENGTH, clearance=CLEARANCE, viscosity=VISCOSITY
+)
+BALLS = RollingBearing(
+    interface="a", count=7, pitch_radius=0.03, element_radius=0.006, stiffness=5e8
+)
+KINDS = exu.OutputVariableType
+
+
+def scene(support, outer, inner, **changes):
+    """Return a system with an inner rotor on an outer one, its centre OFF along n1 = x."""
+    mbs = exu.SystemContainer().AddSystem()
+    carrying = add_rotor(mbs, rings(*FIRST).reduce(0), name="outer", **outer)
+    body = add_rotor(mbs, rings(*SECOND).reduce(0), name="inner", **(inner | changes))
+    (added,) = add_supports(body, [support], base=carrying.marker("a"))
+    mbs.Assemble()
+    q = mbs.systemData.GetODE2Coordinates()
+    q[mbs.GetNodeODE2Index(body.nodes["rigid"])] += OFF
+    mbs.systemData.SetODE2Coordinates(q)
+    return mbs, added.objects[0]
+
+
+def force_on_inner(mbs, connector):
+    """Return what the connector does to the inner rotor along x and y, the outer one not turned."""
+    free = mbs.GetObject(connector)["objectType"] == "ConnectorRigidBodySpringDamper"
+    return -mbs.GetObjectOutput(connector, KINDS.ForceLocal if free else KINDS.Force)[:2]
+
+
+@pytest.mark.parametrize("kind", ["spin", "initial_speed"])
+@pytest.mark.parametrize("outer", [60.0, -20.0, 0.0])
+def test_a_film_is_dragged_by_both_surfaces(kind, outer):
+    """Ocvirk's film of a journal that stands, with the sum of both speeds (Reynolds)."""
+    inner = 90.0
+    mbs, connector = scene(SHORT, {kind: outer}, {kind: inner})
+    # velocities of both middles are zero, those of the mesh are not
+    ratio, speed = OFF / CLEARANCE, outer + inner
+    size = VISCOSITY * speed * RADIUS * LENGTH**3 / CLEARANCE**2
+    radial = size * ratio**2 / (1.0 - ratio**2) ** 2
+    across = size * np.pi * ratio / (4.0 * (1.0 - ratio**2) ** 1.5)
+    assert force_on_inner(mbs, connector) == pytest.approx([-radial, across], rel=1e-9)
+
+
+def test_elements_go_with_both_rings():
+    """The cage has turned by κ θ_i + (1 − κ) θ_o (Harris, Ch. 8)."""
+    inner, outer = 0.7, -1.1
+    mbs, connector = scene(
+        BALLS,
+        {"initial_speed": 60.0, "initial_angle": outer},
+        {"initial_speed": 90.0, "initial_angle": inner},
+    )
+    share = 0.5 * (1.0 - 0.006 / 0.03)
+    angles = 2.0 * np.pi * np.arange(7) / 7.0 + share * inner + (1.0 - share) * outer
+    n = np.array([np.cos(angles), np.sin(angles)])
+    expected = -n @ (5e8 * np.maximum(OFF * n[0], 0.0) ** 1.5)
+    c, s = np.cos(outer), np.sin(outer)  # axes of the outer ring's marker
+    found = np.array([[c, -s], [s, c]]) @ force_on_inner(mbs, connector)
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("cavitation", ["reynolds", "mass-conserving"])
+def test_a_turn_of_both_rotors_changes_nothing(cavitation):
+    """The film is that of a bore at rest, but for w² OFF t of the velocity, 1e-5 of c Ω."""
+    pads = grooved_pads(CLEARANCE, [0.3], 0.4)
+    film = OilFilm(RADIUS, LENGTH, VISCOSITY, pads, cavitation, nodes=16, axial_nodes=0)
+    forces = []
+    for turn in (0.0, 30.0):
+        spins = {"spin": turn}, {"spin": SPEED + turn}
+        bearing = JournalBearing(interface="a", film=film)
+        mbs, connector = scene(bearing, *spins, initial_velocity=[0.0, turn * OFF, 0.0])
+        initial = exu.ConfigurationType.Initial
+        mbs.systemData.SetODE2Coordinates(mbs.systemData.GetODE2Coordinates(), initial)
+        settings = recommended_settings(2e-6, 1e-6)
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        assert mbs.SolveDynamic(settings)
+        forces.append(mbs.GetObjectOutput(connector, KINDS.Force))
+    assert forces[1] == pytest.approx(forces[0], abs=1e-3 * np.linalg.norm(forces[0]))
+
+
+def test_tables_are_over_the_difference_of_the_speeds():
+    """As those of a link in a train: a scene's accelerations are those of its equations."""
+    table = Support("a", ([0.0, 100.0], [1e5, 4e5]), ([0.0, 100.0], [9.0, 30.0]))
+    mbs = exu.SystemContainer().AddSystem()
+    first, second = (
+        add_rotor(mbs, rings(*sizes).reduce(0), name=name, spin=speed)
+        for sizes, name, speed in ((FIRST, "LP", SPEED), (SECOND, "HP", 1.7 * SPEED))
+    )
+    add_supports(first, HELD)
+    add_supports(second, Support("b", 1e5 * np.eye(3), 9.0, 1e3))
+    add_supports(second, table, base=first.marker("a"))
+    mbs.Assemble()
+    model = linear_model(mbs, body=[first, second])
+    assert accelerations_left(mbs, [first, second], model, (1.0, 1.7)) < 1e-9
+
+
+PADS = OilFilm(RADIUS, LENGTH, VISCOSITY, grooved_pads(CLEARANCE, [0.0, 3.0], 0.5), axial_nodes=0)
+REFUSED = {
+    "alike in all directions": Support("a", 1e5, 0.0, np.diag([300.0, 200.0])),
+    "without tilt_damping": Support("a", 1e5, 0.0, 300.0, 2.0),
+    "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
+    "constant": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
+    "pads would turn": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
+}
+
+
+@pytest.mark.parametrize("match", REFUSED)
+def test_what_a_marker_that_turns_cannot_carry_is_refused(match):
+    with pytest.raises(ValueError, match=f"(?s)stands on another rotor.*{match}"):
+        scene(REFUSED[match], {"spin": 60.0}, {"spin": 90.0})
+
+
+def test_a_bearing_between_axes_that_are_not_parallel_is_refused():
+    turn = Rotation.from_euler("x", 0.1).as_matrix()
+    inner = {"spin": 90.0, "rotation": turn, "position": [0.0, 0.0, 0.0]}
+    at = rings(*FIRST).interfaces["a"].reference
+    inner["position"] = at - turn @ at
+    with pytest.raises(ValueError, match="not parallel"):
+        scene(SHORT, {"spin": 60.0}, inner)
