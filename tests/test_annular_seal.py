@@ -53,6 +53,14 @@ def test_coefficients_are_those_of_the_perturbed_bulk_flow(xi, length):
     np.testing.assert_allclose(K[0, 1], 0.5 * SPEED * d, rtol=1e-9)
 
 
+def test_slow_leakage_of_a_long_and_narrow_gap():
+    """Friction by the journal's turn alone: λ = 0.079 (7/16 RΩ)^{3/4} (2 ρc/η)^{−1/4}/V."""
+    one = seal(length=0.5, clearance=1e-6, viscosity=1e-3)
+    friction = 0.079 * (7.0 / 16.0 * one.radius * SPEED) ** 0.75 * (2e6 * 1e-6) ** -0.25
+    velocity = 1.2e6 / (1000.0 * friction * 0.5 / 1e-6)  # Δp = ρ V² σ
+    assert one.axial_velocity(SPEED) == pytest.approx(velocity, rel=1e-3)
+
+
 def test_without_friction_nothing_centres_and_a_seal_carries_no_load():
     smooth = seal(viscosity=1e-12)
     assert smooth.coefficients(0.0)[0][0, 0] < 0.1 * seal().coefficients(0.0)[0][0, 0]

@@ -166,6 +166,19 @@ def test_supply_pressure_pushes_the_journal_away_from_its_groove():
     assert np.linalg.norm(long) < 8.0 * 1e5 * RADIUS**2  # of the ends, about R long each
 
 
+def test_side_flow_of_a_supply_grows_with_the_nodes():
+    """At a corner p goes from p_s to 0 along a circle: a flow of h³ p_s/(6π μ) ∫dr/r there."""
+    flows = []
+    for nodes in (60, 120):
+        pads = grooved_pads(CLEARANCE, [0.0, np.pi], 0.3)
+        oil = OilFilm(
+            RADIUS, RADIUS, 0.02, pads, supply_pressure=2e5, nodes=nodes, axial_nodes=nodes // 10
+        )
+        flows.append(oil.state(STILL, STILL, 1e-6).side_flow)
+    corner = CLEARANCE**3 * 2e5 / (6.0 * np.pi * 0.02)
+    assert flows[1] - flows[0] == pytest.approx(8.0 * np.log(2.0) * corner, rel=0.02)
+
+
 # ------------------------------------------------------------------ derivatives, symmetries
 
 
@@ -274,6 +287,7 @@ def test_rigid_mass_is_at_the_limit_of_whirl():
         (lambda: film(grooves=(), supply_pressure=1e5), "supply_pressure: needs pads"),
         (lambda: film(grooves=(), cavitation="mass-conserving"), "cavitation: 'mass-conserving'"),
         (lambda: film(axial_nodes=1), "axial_nodes: needs 0"),
+        (lambda: OilFilm(RADIUS, 0.05, 0.02, grooved_pads(RADIUS)), "pads: need clearances far"),
         (lambda: film().force([1.1e-4, 0.0], STILL, 1.0), "displacement: [0.00011, 0.0"),
         (lambda: film().equilibrium(1.0, [0.0, 0.0]), "load: needs a force other than 0"),
         (lambda: film().equilibrium(0.0, [1e3, 0.0]), "speed: needs a number other than 0"),

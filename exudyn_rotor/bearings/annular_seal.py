@@ -39,7 +39,7 @@ from scipy.optimize import brentq
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
 
-_FASTEST = 1e3  # of the axial velocity without friction, below which it is looked for
+_LEAST = 1e-3  # of the axial velocity without friction, above which it is looked for first
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -124,7 +124,10 @@ class AnnularSeal(Bearing):
             friction = self._friction(velocity, speed) * self.length / self.clearance
             return share**2 * (1.0 + self.inlet_loss + 2.0 * friction) - 1.0
 
-        return free * brentq(left, 1.0 / _FASTEST, 1.0, xtol=1e-15, rtol=1e-14)
+        least = _LEAST
+        while left(least) > 0.0:  # long and narrow gaps; the term of friction falls as the velocity
+            least *= _LEAST
+        return free * brentq(left, least, 1.0, xtol=1e-15 * least, rtol=1e-14)
 
     def _friction(self, velocity: float, speed: float) -> float:
         """Return λ by (3)."""

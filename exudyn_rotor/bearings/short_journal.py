@@ -179,7 +179,8 @@ class ShortJournalBearing(ShortFilmBearing):
         D = [[0.5 * pi * (1.0 + 2.0 * ratio**2) / s**5, -2.0 * ratio / s2**2],
              [-2.0 * ratio / s2**2, 0.5 * pi / s**3]]  # fmt: skip
         load = self._static_load(load)
-        r = self._direction(ratio, speed, load) if np.any(load) else np.array([1.0, 0.0])
+        # in the middle, also under what rounding leaves of a load, all directions are alike
+        r = self._direction(ratio, speed, load) if ratio > 0.0 else np.array([1.0, 0.0])
         turn = np.column_stack([r, sense * np.array([-r[1], r[0]])])
         size = self._size / self.clearance
         return size * abs(speed) * turn @ K @ turn.T, size * turn @ D @ turn.T

@@ -40,6 +40,11 @@ class FilmData:
         if self.axial_nodes == 1:
             raise ValueError("axial_nodes: needs 0 (one profile), or 2 nodes or more, got 1")
         pads = _in_order(checks.instances(self.pads, "pads", Pad))
+        widest = max(pad.clearance for pad in pads)
+        if widest >= self.radius:
+            raise ValueError(
+                f"pads: need clearances far below the radius of {self.radius:g} m, got {widest:g} m"
+            )
         if pads[0].closed and self.supply_pressure > 0.0:
             raise ValueError("supply_pressure: needs pads with a groove between them")
         if pads[0].closed and self.cavitation == "mass-conserving":

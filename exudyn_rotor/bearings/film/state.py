@@ -216,7 +216,12 @@ class FilmState:
 
     @property
     def side_flow(self) -> float:
-        """Oil that leaves the pads at both ends [m³/s]."""
+        """Oil that leaves the pads at both ends [m³/s].
+
+        A supply pressure drops to zero where a pad's edge meets an end, so that the flow there is
+        not bounded: every doubling of the nodes, along and around, adds ``ln 2 h³ p_s/(6π μ)`` at
+        each such corner. What leaves the grooves' own ends is not in it.
+        """
         film, grid = self.film, self.film.grid
         slope = self.solution.bearing @ grid.axial.edge
         return float((grid.step * self.heights**3) @ slope / (6.0 * film.viscosity))
