@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from os import PathLike
 
 import numpy as np
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator, NullLocator
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -29,6 +30,7 @@ COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", ":", "-.", (0, (1, 1)))
 
 _WIDEST = 1.1  # a legend, in widths of its axes
+_LINE = 1.2  # from a line of text to the next, in sizes of its letters
 
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 4.5), **options):
@@ -254,6 +256,19 @@ def _fit(ax: Axes3D, points: np.ndarray, margin: float) -> tuple[float, float, f
     ax.figure.set_size_inches(with_bar)
     ax.set_position((*((0.5 * body - side * (low + 0.5 * size)) / with_bar), *(side / with_bar)))
     return (body[0] + 0.15) / with_bar[0], 0.15, 0.2 / with_bar[0], 0.7
+
+
+def keep_apart(labels: Sequence[Annotation]) -> None:
+    """Move each label, offset in points from its place, up until it is clear of those before."""
+    for index, label in enumerate(labels):
+        if index == 0:
+            label.figure.draw_without_rendering()  # limits and layout are settled by drawing
+        for _ in labels:
+            box = label.get_window_extent()
+            if not any(box.overlaps(other.get_window_extent()) for other in labels[:index]):
+                break
+            x, y = label.get_position()
+            label.set_position((x, y + _LINE * label.get_fontsize()))
 
 
 def legend_above(ax: Axes, columns: int = 2) -> None:

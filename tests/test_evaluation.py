@@ -1,5 +1,7 @@
 """Evaluation by API RP 684: against closed forms of the Jeffcott rotor and the printed rules."""
 
+import itertools
+
 import numpy as np
 import pytest
 from matplotlib import pyplot
@@ -160,6 +162,21 @@ def test_peaks_of_one_resonance_have_one_label_in_the_picture():
         ("AF 9.0–10.0", (101.0, 40.0)),
         ("AF 4.0", (300.0, 1.0)),
     ]
+    pyplot.close(ax.figure)
+
+
+def test_labels_of_peaks_close_together_do_not_cover_each_other():
+    """Of three places, at speeds that differ by 4 % of the range, which are less than a label."""
+    places, peaks = ("a", "b", "c"), [200.0, 216.0, 232.0]
+    margins = SeparationMargins(
+        places, peaks, [1e-5, 1.02e-5, 1e-5], [[190.0, 240.0]] * 3, [9.0, 10.0, 8.0],
+        [0.1] * 3, [0.1] * 3, [300.0, 350.0], places, [0.0, 400.0], [[1e-6, 1.2e-5]] * 3,
+    )  # fmt: skip
+    ax = margins.plot(units="SI")
+    ax.figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in ax.texts]
+    assert len(boxes) == 3
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
     pyplot.close(ax.figure)
 
 

@@ -141,7 +141,6 @@ class SeparationMargins(Result):
             ax.semilogy(shown.speeds(self.speeds), 1e6 * curve, label=place, **style)
         for size, sides in zip(self.sizes, self.half_power, strict=True):
             ax.plot(shown.speeds(sides), [1e6 * HALF_POWER * size] * 2, "k|-", lw=0.8, ms=6)
-        self._annotate(ax, shown)
         low, high = self.operating_range
         sides = [self.required[self.peaks < low], self.required[self.peaks > high]]
         largest = np.array([side.max(initial=0.0) for side in sides])
@@ -150,6 +149,7 @@ class SeparationMargins(Result):
         ax.set_ylabel("major semi-axis [µm]")
         ax.grid(alpha=0.3, which="both")
         plotting.legend_above(ax, 4)
+        self._annotate(ax, shown)
         return ax
 
     def _annotate(self, ax: Axes, shown: Units) -> None:
@@ -157,12 +157,15 @@ class SeparationMargins(Result):
         known = np.flatnonzero(~np.isnan(self.amplification))
         known = known[np.argsort(self.peaks[known], kind="stable")]
         apart = np.diff(self.peaks[known]) > _ONE_LABEL * np.ptp(self.speeds)
+        labels = []
         for group in np.split(known, np.flatnonzero(apart) + 1) if known.size else ():
             factors = sorted({f"{factor:.1f}" for factor in self.amplification[group]}, key=float)
             top = group[np.argmax(self.sizes[group])]
-            ax.annotate("AF " + "–".join([factors[0], *factors[1:][-1:]]),
-                        (shown.speeds(self.peaks[top]), 1e6 * self.sizes[top]),
-                        textcoords="offset points", xytext=(4, 3), fontsize=8)  # fmt: skip
+            place = shown.speeds(self.peaks[top]), 1e6 * self.sizes[top]
+            text = "AF " + "–".join([factors[0], *factors[1:][-1:]])
+            given = {"textcoords": "offset points", "xytext": (4, 3), "fontsize": 8}
+            labels.append(ax.annotate(text, place, **given))
+        plotting.keep_apart(labels)
 
 
 def separation_margins(
