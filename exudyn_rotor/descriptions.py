@@ -142,7 +142,7 @@ def _lines(named: Iterable[tuple[str, Any]]) -> list[Line]:
     for where, one in named:
         if isinstance(one, Support):
             lines += [
-                (where, one.frame, name.replace("_", " "), f"{_coefficient(value)} {_UNITS[name]}")
+                (where, one.frame, name.replace("_", " "), _coefficient(value, _UNITS[name]))
                 for name in COEFFICIENTS
                 if acts(value := getattr(one, name))
             ]
@@ -177,17 +177,18 @@ def _values(one: object) -> str:
     return ", ".join(parts)
 
 
-def _coefficient(value: Any) -> str:
+def _coefficient(value: Any, unit: str) -> str:
     if isinstance(value, Linearised):
-        return f"of the {_words(value.bearing)} at each speed,"
+        return f"{unit}, of the {_words(value.bearing)} at each speed"
     if callable(value):
-        return "by a function of the speed"
+        return f"{unit}, by a function of the speed"
     if isinstance(value, tuple):
         low, high = (value[0][place] * 30.0 / np.pi for place in (0, -1))
-        return f"by a table of {len(value[0])} speeds, {low:.6g} to {high:.6g} rpm"
+        return f"{unit}, by a table of {len(value[0])} speeds, {low:.6g} to {high:.6g} rpm"
     if np.ndim(value) == 0:
-        return f"{value:.6g}"
-    return "[" + "; ".join(", ".join(f"{entry:.6g}" for entry in row) for row in value) + "]"
+        return f"{value:.6g} {unit}"
+    rows = (", ".join(f"{entry:.6g}" for entry in row) for row in value)
+    return f"[{'; '.join(rows)}] {unit}"
 
 
 def _vector(values: np.ndarray) -> str:

@@ -141,8 +141,8 @@ def test_rotor_supports_and_model_are_described(written, ring):
     assert "polar 0.1, mean transverse 0.45 kg m²" in text
     assert "[400000, 0; 0, 800000] N/m" in text
     assert "200 N s/m" in text
-    assert "by a table of 2 speeds, 0 to 954.93 rpm" in text
-    assert "by a function of the speed" in text
+    assert "N s/m, by a table of 2 speeds, 0 to 954.93 rpm\n" in text
+    assert "N/m, by a function of the speed<" in text
     assert "centrifugal stiffening: tilt\nfree motions: translation along axis" in text
     assert "Foundation(1 coordinates, 47.75 to 47.75 Hz, points: mid)" in text
     assert Page(text).headings[1:] == ["Rotor", "Rotor", "Supports", *["Linear model"] * 2]
@@ -194,7 +194,7 @@ def test_every_model_of_a_campbell_diagram_is_described(written):
         "A:left – B:right             gear mesh",
         "PID controller: proportional 20000",
         "left          inertial   magnetic        6 coordinates of its own",
-        "of the short journal bearing at each speed, N/m",
+        "N/m, of the short journal bearing at each speed",
         "scene of 5 coordinates, about its steady motion",
     ):
         assert found in re.sub(r"\n +", " ", text)
