@@ -1,5 +1,6 @@
 """Shapes of modes and responses, their files; spectra and orbits of runs."""
 
+import dataclasses
 import re
 from functools import cache
 
@@ -14,6 +15,7 @@ from exudyn_rotor import (
     MotionShapes,
     ReducedRotor,
     SolidRotor,
+    Spectra,
     SpinAxis,
     StressField,
     Support,
@@ -134,6 +136,39 @@ def test_pictures_colour_forward_and_backward():
         pyplot.close(ax.figure)
 
 
+def test_shapes_in_engineering_units():
+    """300 rad/s are 2864.8 rpm and 47.746 Hz."""
+    shown = modes().frequencies[3] / (2.0 * np.pi)
+    ax = modes().plot(3, units="rpm")
+    titles = [text.get_text() for text in ax.figure.texts]
+    assert f"{modes().labels[3]}\n{shown:.5g} Hz at a spin of 2864.8 rpm" in titles
+    pyplot.close(ax.figure)
+    assert "47.746" in modes().table()
+    assert "2864.8" in modes().table(units="rpm").splitlines()[1]
+    assert "[rad/s]" in modes().table(units="SI").splitlines()[0]
+
+
+def test_responses_tell_their_size_and_speed(tmp_path):
+    """Masses of 2 kg on springs of 20 kN/m at the ends of a rod, U Ω²/(k − m Ω²) of one of them."""
+    meshio = pytest.importorskip("meshio")
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    speeds = np.array([50.0, 80.0])
+    # of springs that differ, along n2 the half: the larger semi-axis
+    supports = [Support(name, np.diag([2e4, 8e4])) for name in ("left", "right")]
+    shapes = response_shapes(rotor, speeds, Unbalance("left", 1e-4), supports=supports)
+    sizes = 1e-4 * speeds**2 / (2e4 - 2.0 * speeds**2)
+    assert shapes.labels == tuple(f"unbalance, largest {size:.3g} m" for size in sizes)
+    shown = dataclasses.replace(shapes, triangles=np.array([[0, 1, 0]]))
+    shown.to_vtk(tmp_path / "response.vtu")
+    names = meshio.read(tmp_path / "response.vtu").point_data
+    for index, speed in enumerate(speeds):
+        assert any(name.startswith(f"{index} unbalance") and f"{speed:g} rad" in name
+                   for name in names)  # fmt: skip
+
+
 @pytest.mark.parametrize("share", [0.01, 0.04])
 def test_captions_tell_the_extents_of_the_rotor_at_rest(share):
     """Of a shaft along z from 0 to 0.5 m and a disc of 0.3 m, however large its motion is drawn."""
@@ -228,6 +263,25 @@ def test_spectra_part_forward_from_backward():
     assert len(found.table().splitlines()) == len(found.times) + 1
 
 
+@pytest.mark.parametrize(
+    ("units", "per_speed", "per_rate"),
+    [("Hz", 0.5 / np.pi, 0.5 / np.pi), ("rpm", 30.0 / np.pi, 0.5 / np.pi), ("SI", 1.0, 1.0)],
+)
+def test_spectra_in_engineering_units(units, per_speed, per_rate):
+    """Motion that runs twice as fast as the spin of 100 and 200 rad/s is on the line of order 2."""
+    found = Spectra([0.5, 1.5], [100.0, 200.0], [0.0, 200.0, 400.0], [[0, 1, 0], [0, 0, 1]])
+    speeds, rates = per_speed * found.speeds, per_rate * 2.0 * found.speeds
+    figure, (cascade, spectrogram) = pyplot.subplots(1, 2)
+    found.plot(cascade, orders=[2.0], units=units)
+    np.testing.assert_allclose(cascade.lines[0].get_xydata(), np.column_stack([rates, speeds]))
+    found.plot_spectrogram(spectrogram, units=units)
+    np.testing.assert_allclose(spectrogram.lines[0].get_ydata(), 0.5 * rates)
+    assert [text.get_text() for text in spectrogram.get_legend().get_texts()] == ["spin speed"]
+    first = found.table(units=units).splitlines()[1].split()
+    np.testing.assert_allclose([float(word) for word in first[1:3]], [speeds[0], rates[0]], 1e-4)
+    pyplot.close(figure)
+
+
 @pytest.mark.parametrize(("orders", "last"), [((1.0,), 60.0), ((1.0, 3.0), 180.0)])
 def test_pictures_end_where_nothing_is_left(orders, last):
     """20 to 60 Hz in samples of 1 kHz: not 500 Hz, of which the spectra would be a tenth.
@@ -286,6 +340,7 @@ def test_keyphasor_marks_stand_at_whole_turns(sign):
     ax = plot_orbit(1e-6 * np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]), angle)
     marks = ax.lines[1].get_xydata()
     np.testing.assert_allclose(marks, [[1.0, 0.0]] * 4, atol=1e-5)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("n1 [µm]", "n2 [µm]")  # of any axis
     pyplot.close(ax.figure)
     with pytest.raises(ValueError, match="one way"):
         plot_orbit(np.zeros((3, 2)), [0.0, 1.0, 0.5])

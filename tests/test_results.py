@@ -241,6 +241,8 @@ def test_polar_diagram_draws_the_phasor(ellipses):
     drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
     assert np.allclose(drawn, 1e6 * ellipses.whirl("mid")[0])
     assert "0 Hz" in [text.get_text() for text in axes.texts]
+    last = f"{30.0 / np.pi * ellipses.speeds[-1]:.5g} rpm"
+    assert last in [text.get_text() for text in ellipses.plot_polar("mid", units="rpm").texts]
 
 
 def test_orbit_is_drawn_for_every_place(ellipses):
@@ -254,6 +256,8 @@ def test_orbit_is_drawn_for_every_place(ellipses):
     expected = np.pi * 1e12 * major[index] * minor[index]  # negative: it turns backward
     assert area == pytest.approx(expected, rel=1e-3)
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
+    title = ellipses.plot_orbit(240.0, units="rpm").get_title(loc="right")
+    assert title == f"spin speed {30.0 / np.pi * ellipses.speeds[index]:.4g} rpm"
 
 
 def test_table_and_peak(ellipses):

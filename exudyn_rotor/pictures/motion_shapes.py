@@ -17,7 +17,7 @@ from exudyn_rotor.solid.interface import Interface
 from exudyn_rotor.storage import write_bytes
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import FRAMES, axes_of
-from exudyn_rotor.units import IN_HERTZ, Units
+from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
 
 _STATIONS = 15  # along the axis
@@ -110,13 +110,18 @@ class MotionShapes(Result):
             "what": np.array(self.labels),
         }
 
-    def table(self) -> str:
-        """Return the frequencies of all shapes as text."""
-        lines = ["shape  speed [Hz]  frequency [Hz]  what"]
+    def table(self, *, units: str = "Hz") -> str:
+        """Return the frequencies of all shapes as text, with the `index` of :meth:`plot`.
+
+        With the `units` 'rpm' speeds are in rpm and frequencies in Hz, with 'SI' both in rad/s.
+        """
+        shown = Units.of(units)
+        speed, frequency = f"speed [{shown.speed}]", f"frequency [{shown.frequency}]"
+        lines = [f"index{speed:>14}{frequency:>19}  what"]
         for index, label in enumerate(self.labels):
             lines.append(
-                f"{index:5d}{IN_HERTZ * self.speeds[index]:12.5g}"
-                f"{IN_HERTZ * self.frequencies[index]:16.6g}  {label}"
+                f"{index:5d}{shown.speeds(self.speeds[index]):14.5g}"
+                f"{shown.frequencies(self.frequencies[index]):19.6g}  {label}"
             )
         return "\n".join(lines)
 
@@ -147,7 +152,14 @@ class MotionShapes(Result):
             axial_places.append((center, local @ axes.T))
         return axial_places
 
-    def plot(self, index: int = 0, ax: Axes3D | None = None, *, share: float = 0.1) -> Axes3D:
+    def plot(
+        self,
+        index: int = 0,
+        ax: Axes3D | None = None,
+        *,
+        share: float = 0.1,
+        units: str = "Hz",
+    ) -> Axes3D:
         """Draw the rotor at the time zero and the orbits of its centre line.
 
         Orbits are blue where the rotor whirls forward, seen from outside and relative to the spin,
@@ -156,11 +168,13 @@ class MotionShapes(Result):
         Parameters
         ----------
         index : int, optional
-            Which shape.
+            Which shape, counted from 0.
         ax : Axes3D, optional
             3D axes to draw in; those of a new figure by default.
         share : float, optional
             Largest displacement as drawn, over the size of the rotor.
+        units : {'Hz', 'rpm', 'SI'}, optional
+            Of speed and frequency in the title, see :meth:`table`.
 
         Raises
         ------
@@ -168,7 +182,7 @@ class MotionShapes(Result):
             If there is no surface, no motion, or no such shape.
         """
         index = checks.count(index, "index", most=len(self.labels) - 1)
-        scale = self._scale(index, share)
+        shown, scale = Units.of(units), self._scale(index, share)
         moved = self.displacement(index, 0.0)
         reach = scale * self._amplitudes(index)
         low, high = (self.positions - reach).min(axis=0), (self.positions + reach).max(axis=0)
@@ -179,8 +193,8 @@ class MotionShapes(Result):
         sizes = np.linalg.norm(reach, axis=1)
         sizes = sizes / sizes.max()
         title = (
-            f"{self.labels[index]}\n{IN_HERTZ * self.frequencies[index]:.5g} Hz at a spin of "
-            f"{IN_HERTZ * self.speeds[index]:.5g} Hz"
+            f"{self.labels[index]}\n{shown.frequencies(self.frequencies[index]):.5g} "
+            f"{shown.frequency} at a spin of {shown.speeds(self.speeds[index]):.5g} {shown.speed}"
         )
         places = self.positions + scale * moved
         room = np.array([low, high])
@@ -195,6 +209,7 @@ class MotionShapes(Result):
         share: float = 0.1,
         frames: int = 24,
         seconds: float = 2.0,
+        units: str = "Hz",
     ) -> None:
         """Write one period of the motion as an animated GIF.
 
@@ -206,7 +221,7 @@ class MotionShapes(Result):
         path : str or path-like
             Ends with '.gif'; a file there is replaced by a complete one only.
         index : int, optional
-            Which shape.
+            Which shape, counted from 0.
         frame : {'inertial', 'rotor'}
         share : float, optional
             See :meth:`plot`.
@@ -214,6 +229,8 @@ class MotionShapes(Result):
             Number of pictures.
         seconds : float, optional
             How long one period lasts in the film [s].
+        units : {'Hz', 'rpm', 'SI'}, optional
+            See :meth:`plot`.
 
         Raises
         ------
@@ -232,7 +249,7 @@ class MotionShapes(Result):
         rate = self.frequencies[index] if inertial else abs(self.rates[index])
         rate = rate or abs(speed) or 1.0
         times = 2.0 * np.pi / rate * np.arange(count) / count
-        ax = self.plot(index, share=share)
+        ax = self.plot(index, share=share, units=units)
         shown = self.triangles[:, :3]
         if self.triangles.shape[1] == 6:
             shown = self.triangles[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
@@ -254,7 +271,8 @@ class MotionShapes(Result):
 
         Every harmonic of a shape gives two vectors, its real and its imaginary part, in mesh axes
         of the rotor frame: the displacement at the time zero, and with the opposite sign that of
-        a quarter of its period later.
+        a quarter of its period later. Names begin with the index of the shape, and have its speed
+        where speeds differ.
 
         Parameters
         ----------
@@ -268,11 +286,13 @@ class MotionShapes(Result):
         ValueError
             For another ending, or without a surface.
         """
-        values = {}
+        values, at = {}, [""] * len(self.labels)
+        if np.ptp(self.speeds) > 0.0:
+            at = [f", {speed:.6g} rad per s" for speed in self.speeds]
         for index, label in enumerate(self.labels):
             sizes = np.abs(self.motion[index]).max(axis=1)
             for row in np.flatnonzero(sizes > _WRITTEN * sizes.max()):
-                name = f"{index} {label}, order {self.orders[row]}"
+                name = f"{index} {label}{at[index]}, order {self.orders[row]}"
                 shape = self.motion[index, row].reshape(-1, 3)
                 values[f"{name}, real"] = shape.real
                 values[f"{name}, imaginary"] = shape.imag

@@ -23,6 +23,7 @@ from exudyn_rotor.pictures.motion_shapes import MotionShapes
 from exudyn_rotor.sweep import ascending_from_zero
 
 _MODES = 6  # that the subspace of a full rotor begins with
+_ANGLES = 90  # of a revolution, at which the size of a response is looked up: 0.1 % of an ellipse
 
 
 def mode_shapes(
@@ -106,6 +107,8 @@ def response_shapes(
 ) -> MotionShapes:
     """Return the shapes of the steady motion under unbalance at some spin speeds.
 
+    Each label gives the largest displacement of any node of the mesh.
+
     Parameters
     ----------
     target : ReducedRotor, SolidRotor or linear model of these
@@ -152,16 +155,25 @@ def response_shapes(
     ]
     orders = np.array(sorted({n for motion in motions for n in motion}))
     zero = np.zeros(model.size, dtype=complex)
-    motion = [[mesh.columns @ found.get(n, zero) for n in orders] for found in motions]
+    motion = np.array(
+        [[mesh.columns @ found.get(n, zero) for n in orders] for found in motions], dtype=complex
+    )
     return MotionShapes(
         **_surface(mesh),
         speeds=values,
-        labels=tuple("unbalance" for _ in values),
+        labels=tuple(f"unbalance, largest {_largest(orders, part):.3g} m" for part in motion),
         rates=np.zeros(len(values)),
         frequencies=values,
         orders=orders,
-        motion=np.array(motion),
+        motion=motion,
     )
+
+
+def _largest(orders: np.ndarray, motion: np.ndarray) -> float:
+    """Return the largest displacement of a node in a revolution, of harmonics (h, 3n)."""
+    turns = np.exp(1j * np.outer(np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False), orders))
+    each = (np.linalg.norm((turn @ motion).real.reshape(-1, 3), axis=1).max() for turn in turns)
+    return float(max(each))
 
 
 def _unit(motion: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
-from exudyn_rotor.units import IN_HERTZ, Units
+from exudyn_rotor.units import Units
 
 # of the largest amplitude: what a spectrogram shows [dB]
 _RANGE = 60.0
@@ -42,9 +42,9 @@ class Spectra(Result):
     --------
     >>> from exudyn_rotor import Spectra
     >>> print(Spectra([0.5, 1.5], [60.0, 90.0], [-90.0, 0.0, 90.0], [[0, 0, 1], [2, 0, 1]]).table())
-      time [s]  speed [Hz]  strongest [Hz]   amplitude
-           0.5      9.5493          14.324           1
-           1.5      14.324         -14.324           2
+      time [s]    speed [Hz]     strongest [Hz]   amplitude
+           0.5        9.5493             14.324           1
+           1.5        14.324            -14.324           2
     """
 
     times: np.ndarray = numbers("windows")
@@ -58,6 +58,7 @@ class Spectra(Result):
         *,
         highest: float | None = None,
         orders: ArrayLike = (1.0,),
+        units: str = "Hz",
     ) -> Axes:
         """Draw the cascade: one spectrum above the other, by spin speed.
 
@@ -70,14 +71,17 @@ class Spectra(Result):
             hundredth of the largest amplitude (in a spectrogram a thousandth), and all `orders`.
         orders : array_like, optional
             Multiples of the spin speed to draw as lines.
+        units : {'Hz', 'rpm', 'SI'}, optional
+            'rpm' has the spin speed in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
+        shown = Units.of(units)
         orders = checks.array(orders, "orders", shape=(None,))
         inside, most = self._inside(highest, _LEAST, np.abs(orders).max(initial=0.0))
         ax = plotting.axes_or_new(ax)
-        base = IN_HERTZ * self.speeds
+        base = shown.speeds(self.speeds)
         step = np.ptp(base) / max(len(base) - 1, 1) or 1.0
         scale = 4.0 * step / (most or 1.0)
-        abscissa = IN_HERTZ * self.frequencies[inside]
+        abscissa = shown.frequencies(self.frequencies[inside])
         ends = abscissa[[-1, 0]]
         rows = []
         for index in np.argsort(-base, kind="stable"):
@@ -88,33 +92,40 @@ class Spectra(Result):
             PolyCollection(rows, facecolors="white", edgecolors=plotting.COLORS[0], lw=0.7)
         )
         for order, style in zip(orders, itertools.cycle(plotting.LINES[1:]), strict=False):
-            ax.plot(order * base, base, ls=style, color="0.4", lw=0.9, label=f"{order:g} ×")
+            line = order * shown.frequencies(self.speeds)
+            ax.plot(line, base, ls=style, color="0.4", lw=0.9, label=f"{order:g} ×")
         ax.set_xlim(*_limits(abscissa))
         ax.set_ylim(base.min() - step, base.max() + 5.0 * step)
-        ax.set_xlabel(_FREQUENCY)
-        ax.set_ylabel(f"spin speed [Hz]; amplitudes: {step / scale:.2g} per {step:.3g} Hz")
+        ax.set_xlabel(f"frequency [{shown.frequency}]")
+        per = f"{step / scale:.2g} per {step:.3g} {shown.speed}"
+        ax.set_ylabel(f"spin speed [{shown.speed}]; amplitudes: {per}")
         if orders.size:
             plotting.legend_above(ax, 4)
         return ax
 
-    def plot_spectrogram(self, ax: Axes | None = None, *, highest: float | None = None) -> Axes:
+    def plot_spectrogram(
+        self, ax: Axes | None = None, *, highest: float | None = None, units: str = "Hz"
+    ) -> Axes:
         """Draw the amplitudes over time and frequency in decibels below the largest one.
 
         Parameters as of :meth:`plot`.
         """
-        floor = 10.0 ** (-_RANGE / 20.0)
+        shown, floor = Units.of(units), 10.0 ** (-_RANGE / 20.0)
         inside, most = self._inside(highest, floor, 1.0)
         ax = plotting.axes_or_new(ax)
         sizes = np.maximum(self.amplitudes[:, inside] / (most or 1.0), floor)
+        abscissa = shown.frequencies(self.frequencies[inside])
         mesh = ax.pcolormesh(
-            self.times, IN_HERTZ * self.frequencies[inside], 20.0 * np.log10(sizes).T,
+            self.times, abscissa, 20.0 * np.log10(sizes).T,
             shading="nearest", cmap="viridis", vmin=-_RANGE, vmax=0.0,
         )  # fmt: skip
-        ax.plot(self.times, IN_HERTZ * self.speeds, "--", color="white", lw=0.9, label="spin speed")
-        ax.set_ylim(*_limits(IN_HERTZ * self.frequencies[inside]))
+        spin = shown.frequencies(self.speeds)
+        ax.plot(self.times, spin, "--", color="white", lw=0.9, label="spin speed")
+        ax.set_ylim(*_limits(abscissa))
         ax.set_xlabel("time [s]")
-        ax.set_ylabel(_FREQUENCY)
-        ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB of {most:.3g}]")
+        ax.set_ylabel(f"frequency [{shown.frequency}]")
+        ax.legend(loc="upper left", facecolor="0.4", labelcolor="white", framealpha=0.7)
+        ax.figure.colorbar(mesh, ax=ax, label=f"amplitude [dB, 0 dB = {most:.3g}]")
         return ax
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
@@ -128,12 +139,14 @@ class Spectra(Result):
             "amplitude": self.amplitudes.max(axis=1),
         }
 
-    def table(self) -> str:
-        """Return the strongest frequency of every window as text."""
-        lines = ["  time [s]  speed [Hz]  strongest [Hz]   amplitude"]
-        for row in zip(*self.columns("Hz").values(), strict=True):
+    def table(self, *, units: str = "Hz") -> str:
+        """Return the strongest frequency of every window as text; `units` as of :meth:`plot`."""
+        shown = Units.of(units)
+        speed, strongest = f"speed [{shown.speed}]", f"strongest [{shown.frequency}]"
+        lines = [f"  time [s]{speed:>14}{strongest:>19}   amplitude"]
+        for row in zip(*self.columns(units).values(), strict=True):
             time, speed, frequency, amplitude = row
-            lines.append(f"{time:10.4g}{speed:12.5g}{frequency:16.5g}{amplitude:12.4g}")
+            lines.append(f"{time:10.4g}{speed:14.5g}{frequency:19.5g}{amplitude:12.4g}")
         return "\n".join(lines)
 
     def _inside(self, highest: float | None, least: float, order: float) -> tuple:
@@ -154,9 +167,6 @@ class Spectra(Result):
                 f"{np.diff(self.frequencies).max():.4g} rad/s"
             )
         return inside, float(self.amplitudes[:, inside].max())
-
-
-_FREQUENCY = "frequency [Hz]"
 
 
 def spectra(
@@ -298,6 +308,8 @@ def plot_orbit(motion: ArrayLike, angle: ArrayLike, ax: Axes | None = None) -> A
     marks = np.column_stack([np.interp(passages, turns, part) for part in motion[order].T])
     ax = plotting.axes_or_new(ax, (5.0, 5.0))
     plotting.plot_orbits(ax, {"orbit": motion})
+    ax.set_xlabel("n1 [µm]")  # which need not be horizontal
+    ax.set_ylabel("n2 [µm]")
     ax.plot(*(1e6 * marks.T), "o", color=plotting.COLORS[1], ms=6, label="keyphasor")
     plotting.legend_above(ax)
     return ax

@@ -33,13 +33,13 @@ def draw_bode(
     size.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False)
 
 
-def draw_polar(ax: Axes, hertz: np.ndarray, amplitudes: np.ndarray, marks: int) -> None:
-    """Draw complex amplitudes [m] in their plane [µm]; some points carry their frequency."""
+def draw_polar(ax: Axes, at: np.ndarray, unit: str, amplitudes: np.ndarray, marks: int) -> None:
+    """Draw complex amplitudes [m] in their plane [µm]; some points carry where they are."""
     values = 1e6 * amplitudes
     ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
     for index in _spread(values, marks):
         ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
-        ax.annotate(f"{hertz[index]:.3g} Hz", (values.real[index], values.imag[index]),
+        ax.annotate(f"{at[index]:.5g} {unit}", (values.real[index], values.imag[index]),
                     textcoords="offset points", xytext=(5, 4), fontsize=8)  # fmt: skip
     ax.axhline(0.0, color="0.6", lw=0.7)
     ax.axvline(0.0, color="0.6", lw=0.7)

@@ -18,7 +18,7 @@ from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
-from exudyn_rotor.units import IN_HERTZ, Units
+from exudyn_rotor.units import Units
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
@@ -304,6 +304,7 @@ class Response(RunStart, ABC):
         order: int | None = None,
         ax: Axes | None = None,
         marks: int = 5,
+        units: str = "Hz",
     ) -> Axes:
         """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
 
@@ -311,19 +312,19 @@ class Response(RunStart, ABC):
 
         Parameters
         ----------
-        place, order
+        place, order, units
             See :meth:`plot`.
         direction : {'n1', 'n2', 'e', 'forward', 'backward'}
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
         marks : int, optional
-            How many points are labelled with their speed or frequency [Hz].
+            How many points are labelled with their speed or frequency.
         """
         checks.choice(direction, "direction", _DRAWN)
-        marks = checks.count(marks, "marks")
+        marks, shown = checks.count(marks, "marks"), self._shown(units)
         place, order = self._place(place), self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
-        bode.draw_polar(ax, IN_HERTZ * self.abscissa, self._drawn(direction, place, order), marks)
+        bode.draw_polar(ax, *shown, self._drawn(direction, place, order), marks)
         ax.set_xlabel(f"in phase, {direction} [µm]")
         ax.set_title(self._title(place, order), loc="right", fontsize=10)
         return ax
@@ -335,6 +336,7 @@ class Response(RunStart, ABC):
         places: Sequence[str] | None = None,
         order: int | None = None,
         ax: Axes | None = None,
+        units: str = "Hz",
     ) -> Axes:
         """Draw one revolution of the orbits [µm] at a speed or frequency [rad/s].
 
@@ -350,16 +352,18 @@ class Response(RunStart, ABC):
             Harmonic; the main one by default.
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
+        units : {'Hz', 'rpm', 'SI'}
+            Of the title.
         """
-        value = checks.number(value, "value", "rad/s")
+        value, (shown, unit) = checks.number(value, "value", "rad/s"), self._shown(units)
         names = self.places
         if places is not None:
             names = checks.labels(places, "places", self.places)
         order = self._order(order)
         ax = axes_or_new(ax, (5.5, 5.5))
         bode.draw_orbits(ax, {name: self.orbit(value, name, order) for name in names})
-        nearest = self.abscissa[np.argmin(np.abs(self.abscissa - value))]
-        ax.set_title(f"{self._what} {IN_HERTZ * nearest:.4g} Hz", loc="right", fontsize=10)
+        nearest = shown[np.argmin(np.abs(self.abscissa - value))]
+        ax.set_title(f"{self._what} {nearest:.4g} {unit}", loc="right", fontsize=10)
         return ax
 
     def _drawn(self, name: str, place: str, order: int) -> np.ndarray:
