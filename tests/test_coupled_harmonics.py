@@ -69,6 +69,17 @@ def test_harmonics_and_condition_are_those_of_one_matrix(multiples, rate):
     assert true / 10.0 < condition < 3.0 * true
 
 
+def test_nothing_couples_harmonics_of_constant_coefficients(capfd):
+    """Masses of 1 kg on springs of 2 to 3 N/m at 0.5 rad/s, F/(k − ω²); LAPACK has no complaint."""
+    size = 2 * coupled_harmonics._LARGE
+    stiffness = np.linspace(2.0, 3.0, size)
+    system = PeriodicSystem(1.0, {0: np.eye(size)}, {0: np.zeros((size, size))},
+                            {0: np.diag(stiffness)})  # fmt: skip
+    found = forced_motion(system, {0: np.ones(size, dtype=complex)}, 0.5, 1e-10)
+    np.testing.assert_allclose(found[0], 1.0 / (stiffness - 0.25), rtol=1e-13)
+    assert capfd.readouterr() == ("", "")
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_norm_of_an_inverse_is_estimated_from_below(seed):
     rng = np.random.default_rng(seed)

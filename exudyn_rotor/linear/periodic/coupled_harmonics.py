@@ -36,7 +36,8 @@ _ESTIMATES = 5  # of a norm
 
 def worth_it(system: PeriodicSystem, count: int) -> bool:
     """Return whether so many harmonics are solved faster by what couples them."""
-    return count * system.size >= _LARGE and 2 * system.ports.shape[1] <= system.size
+    # of constant coefficients nothing couples them, and LAPACK has no factor of an empty matrix
+    return count * system.size >= _LARGE and 0 < 2 * system.ports.shape[1] <= system.size
 
 
 def links_of(system: PeriodicSystem, orders: np.ndarray, rate: float) -> np.ndarray:
