@@ -34,7 +34,7 @@ def reduced(solid: occ.TopoDS_Shape) -> ReducedRotor:
     """Return a spool in Craig–Bampton modes with its centrifugal prestress."""
     mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.06, curvaturesafety=1.0))
     rotor = SolidRotor.from_ngsolve(mesh, STEEL, axis="z").center_interfaces()
-    return rotor.reduce(craig_bampton_modes(rotor, 8, coupling="RBE3"), prestress=True)
+    return rotor.reduce(craig_bampton_modes(rotor, 16, coupling="RBE3"), prestress=True)
 
 
 def tube(start: float, end: float, radius: float, bore: float = 0.0) -> occ.TopoDS_Shape:

@@ -19,7 +19,7 @@ solid = shaft + occ.Cylinder(occ.Pnt(0, 0.05, 0), occ.Y, 0.08, 0.03)
 solid.faces.Min(occ.Y).name, solid.faces.Max(occ.Y).name = "left", "right"
 mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.04, curvaturesafety=1.0))
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
-reduced = SolidRotor.from_ngsolve(mesh, steel, axis="y").center_interfaces().reduce(8)
+reduced = SolidRotor.from_ngsolve(mesh, steel, axis="y").center_interfaces().reduce(9)
 
 SC = exudyn.SystemContainer()
 mbs = SC.AddSystem()

@@ -4,7 +4,8 @@ On isotropic bearings the matrices are constant in the rotor frame, and the shaf
 between the speeds at which its stiffness there becomes singular, a small eigenvalue problem.
 These bearings, however, are softer sideways than upright, so the equations are periodic and the
 growth is that of Floquet's theory: there are three narrower ranges, two at the critical speeds of
-each direction and a combination resonance between them. Damping closes them one by one.
+each direction and a combination resonance between them. Damping closes them one by one. Two
+flexible modes are enough for the picture: its limits are about 1 % too high.
 """
 
 import ngsolve
@@ -48,7 +49,7 @@ def damped(speed: float, damping: float) -> tuple[LinearModel, float]:
 
 speeds = np.linspace(440.0, 580.0, 29)
 isotropic = bearings(UPRIGHT, UPRIGHT, 0.0)
-found = unstable_ranges(reduced, speeds, supports=isotropic)
+found = unstable_ranges(reduced, speeds, supports=isotropic, accuracy=None)  # off by 1 %
 keep = [i for i, kind in enumerate(reduced.kinds) if kind is not ModeKind.SPIN]
 model = linear_model(reduced, supports=isotropic)
 at_rest, turning = (model.at(speed).K[0][np.ix_(keep, keep)] for speed in (0.0, 1.0))
@@ -58,9 +59,8 @@ print(f"isotropic bearings: unstable from {found[0, 0]:.4f} to {found[0, 1]:.4f}
 print(f"  stiffness singular at {expected[0]:.4f} and {expected[1]:.4f} rad/s")
 
 for damping in (0.0, 400.0):
-    ranges = unstable_ranges(
-        reduced, speeds, supports=bearings(SIDEWAYS, UPRIGHT, damping), tolerance=1e-7
-    )
+    uneven = bearings(SIDEWAYS, UPRIGHT, damping)
+    ranges = unstable_ranges(reduced, speeds, supports=uneven, tolerance=1e-7, accuracy=None)
     listed = ", ".join(f"{low:.2f} to {high:.2f}" for low, high in ranges) or "nowhere"
     print(f"softer sideways, {damping:3.0f} N s/m: unstable {listed} rad/s")
 
@@ -70,6 +70,7 @@ result = stability_map(
     np.linspace(0.0, 400.0, 5),
     labels=("spin speed [rad/s]", "damping of a bearing [N s/m]"),
     tolerance=1e-6,
+    accuracy=None,
 )
 ax = result.plot()
 ax.set_title("shaft with two flats on bearings softer sideways; black: limit of stability")

@@ -31,7 +31,7 @@ mesh = ngsolve.Mesh(occ.OCCGeometry(solid).GenerateMesh(maxh=0.03, curvaturesafe
 steel = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
 rotor = SolidRotor.from_ngsolve(mesh, steel, axis="z").center_interfaces()
 rotor = rotor.add_point_mass([RIM, 0, 0.03], 0.002)
-reduced = rotor.reduce(10, stress=True, prestress=True)
+reduced = rotor.reduce(11, stress=True, prestress=True)
 
 mbs = exudyn.SystemContainer().AddSystem()
 run_up = PrescribedMotion.run_up(0.0, END_SPEED, DURATION)

@@ -19,6 +19,7 @@ def _no_display(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.filterwarnings("error::UserWarning")  # what an example shows needs no excuse
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_example(path):
     runpy.run_path(str(path), run_name="__main__")
