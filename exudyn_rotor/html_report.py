@@ -83,7 +83,7 @@ def report(
     Parameters
     ----------
     path : str or path-like
-        A file of that name is replaced only by a complete one.
+        Ends with '.html'; a file of that name is replaced only by a complete one.
     contents : sequence of objects, mapping of heading to object or objects, or sequence of both
         In the order of the report. An object is a SolidRotor (its summary), a ReducedRotor (mass,
         inertia, modes, interfaces), a RotorTrain, a support, a bearing or a sequence of them, a
@@ -102,7 +102,7 @@ def report(
     TypeError
         If a content is none of these, or `path` is no path.
     ValueError
-        If `units` is unknown, or there is no content.
+        If `units` is unknown, the path ends otherwise, or there is no content.
     OSError
         If the file cannot be written.
 
@@ -118,7 +118,8 @@ def report(
     >>> "<h1>Pump</h1>" in text, "954.93" in text
     (True, True)
     """
-    checks.path(path)
+    if checks.path(path).suffix not in (".html", ".htm"):
+        raise ValueError(f"path: needs the ending .html, got {str(path)!r}")
     checks.label(title, "title")
     Units.of(units)
     messages = [_message(one) for one in checks.items(raised, "raised", "warnings in a sequence")]

@@ -251,3 +251,5 @@ def test_wrong_input_leaves_the_old_file(written, tmp_path):
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == kept
     with pytest.raises(FileNotFoundError, match="path: the folder"):
         report(tmp_path / "nowhere" / "report.html", "text")
+    with pytest.raises(ValueError, match=r"path: needs the ending .html, got .*report.pdf"):
+        report(tmp_path / "report.pdf", "text")
