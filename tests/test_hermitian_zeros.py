@@ -51,6 +51,16 @@ def test_a_motion_that_is_free_up_to_some_speed_is_no_free_one():
         assert np.abs(speeds - expected).min() < 1e-9
 
 
+def test_zeros_below_the_first_bracket_are_found():
+    """Brackets up to 100 begin at 0.5; what nothing holds, −Ω², is negative without a zero."""
+
+    def matrix(speed: float) -> np.ndarray:
+        return np.diag([0.123**2 - speed**2, 0.02**2 - speed**2, 60.0 - speed, -(speed**2)]) + 0j
+
+    speeds = [speed for speed, _ in zeros_of_eigenvalues(matrix, 100.0)]
+    np.testing.assert_allclose(speeds, [0.02, 0.123, 60.0], rtol=0.0, atol=2e-10)
+
+
 def thin_below_forty(speed: float) -> np.ndarray:
     """Return a matrix with zeros at 30 and 60, where a film is not too thin."""
     if speed < 40.3:

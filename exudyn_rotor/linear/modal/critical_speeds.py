@@ -165,9 +165,9 @@ def critical_speeds(
     max_speed : float, optional
         Largest speed of interest [rad/s]; needed for a scene, for a large SolidRotor and for
         supports that depend on the speed or an initial displacement: there the zeros are
-        bracketed at 200 speeds up to it, and two of one mode that are closer than a 200th of it
-        may be missed. Where tables begin above 0 rad/s, speeds from there on are looked at, with a
-        warning.
+        bracketed at 200 speeds up to it and ten below these, and two of one mode that are closer
+        than a 200th of it may be missed. Where tables begin above 0 rad/s, speeds from there on
+        are looked at, with a warning.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
     stiffening : {'auto', 'none', 'tilt', 'full'}

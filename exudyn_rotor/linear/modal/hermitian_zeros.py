@@ -26,6 +26,7 @@ from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 NO_EQUATIONS = UnconvergedError, NoEquilibriumError, BelowTableError
 _HALVINGS = 30  # between two of the brackets
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at
+_HALVES = 10  # of the first of these
 _SAME = 1e-7  # relative distance of speeds that are one
 _INDEPENDENT = 0.1  # least length of a vector less what others of the same speed have of it
 Entry = TypeVar("Entry")
@@ -34,10 +35,10 @@ Entry = TypeVar("Entry")
 def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.ndarray]]:
     """Return the speeds on (0, limit] where `matrix` is singular, each with its null vector.
 
-    The zeros of the sorted eigenvalues are bracketed at 200 speeds. What is a free motion at
-    every speed, like a spin or an axial motion that nothing holds, is left out first: the sign of
-    its eigenvalue is rounding. Speeds end above the highest one at which there are no equations, as
-    films are too thin there, or a table begins higher.
+    The zeros of the sorted eigenvalues are bracketed at 200 speeds, and below the first of these at
+    halves of it. What is a free motion at every speed, like a spin or an axial motion that nothing
+    holds, is left out first: the sign of its eigenvalue is rounding. Speeds end above the highest
+    one at which there are no equations, as films are too thin there, or a table begins higher.
     """
     free, grid, negative = _free_and_negative(
         matrix, np.linspace(limit / _BRACKETS, limit, _BRACKETS)
@@ -47,7 +48,8 @@ def zeros_of_eigenvalues(matrix: Matrix, limit: float) -> list[tuple[float, np.n
         return _held(matrix(speed), free)
 
     found: list[Pair] = []
-    ends = list(zip(grid.tolist(), negative, strict=True))
+    ends = _below(at, grid[0]) if len(grid) == _BRACKETS else []
+    ends += zip(grid.tolist(), negative, strict=True)
     for (low, before), (high, after) in pairwise(ends):
         if before != after:
             found += zeros_between(at, (low, high), (before, after), limit)
@@ -126,6 +128,24 @@ def _free_and_negative(
                 continue
         negative.append(count_negative(_held(H, free)))
     return free, grid, negative[::-1]
+
+
+def _below(at: Matrix, first: float) -> list[tuple[float, int]]:
+    """Return ascending speeds below the first one, and how many eigenvalues are negative there.
+
+    As far down as there are equations, and all signs are beyond rounding.
+    """
+    ends: list[tuple[float, int]] = []
+    for speed in first * 0.5 ** np.arange(1.0, _HALVES + 1.0):
+        try:
+            H = at(float(speed))
+        except NO_EQUATIONS:
+            break
+        values = la.eigvalsh(H)
+        if np.abs(values).min() <= 10.0 * len(H) * np.finfo(float).eps * np.linalg.norm(H):
+            break
+        ends.insert(0, (float(speed), int(np.count_nonzero(values < 0.0))))
+    return ends
 
 
 def _first_speed(matrix: Matrix, without: float, with_equations: float) -> float:
