@@ -3,12 +3,15 @@
 import exudyn as exu
 import numpy as np
 import pytest
+from exudyn.rigidBodyUtilities import InertiaCuboid
 from scipy.spatial.transform import Rotation
+from test_magnetic_bearing import DELAYED, bearing
 from test_scene_trains import HELD, SPEED, accelerations_left
 from train_models import FIRST, SECOND, rings
 
 from exudyn_rotor import (
     JournalBearing,
+    LinearActuator,
     OilFilm,
     RollingBearing,
     ShortJournalBearing,
@@ -28,6 +31,7 @@ SHORT = ShortJournalBearing(
 BALLS = RollingBearing(
     interface="a", count=7, pitch_radius=0.03, element_radius=0.006, stiffness=5e8
 )
+CASING = InertiaCuboid(1000.0, [0.1, 0.1, 0.1])
 KINDS = exu.OutputVariableType
 
 
@@ -64,6 +68,22 @@ def test_a_film_is_dragged_by_both_surfaces(kind, outer):
     assert force_on_inner(mbs, connector) == pytest.approx([-radial, across], rel=1e-9)
 
 
+@pytest.mark.parametrize("kind", ["spin", "initial_speed"])
+def test_a_film_in_a_casing_that_turns(kind):
+    """As on another rotor: N. Petroff's casing drags as much oil as the journal."""
+    mbs = exu.SystemContainer().AddSystem()
+    casing = mbs.CreateRigidBody(inertia=CASING, initialAngularVelocity=[0.0, 0.0, 60.0])
+    body = add_rotor(mbs, rings(*SECOND).reduce(0), **{kind: 90.0})
+    (added,) = add_supports(body, [SHORT], base=casing)
+    mbs.Assemble()
+    q = mbs.systemData.GetODE2Coordinates()
+    q[mbs.GetNodeODE2Index(body.nodes["rigid"])] += OFF
+    mbs.systemData.SetODE2Coordinates(q)
+    other, connector = scene(SHORT, {kind: 60.0}, {kind: 90.0})
+    expected = force_on_inner(other, connector)
+    assert force_on_inner(mbs, added.objects[0]) == pytest.approx(expected, rel=1e-9)
+
+
 def test_elements_go_with_both_rings():
     """The cage has turned by κ θ_i + (1 − κ) θ_o (Harris, Ch. 8)."""
     inner, outer = 0.7, -1.1
@@ -89,8 +109,8 @@ def test_a_turn_of_both_rotors_changes_nothing(cavitation):
     forces = []
     for turn in (0.0, 30.0):
         spins = {"spin": turn}, {"spin": SPEED + turn}
-        bearing = JournalBearing(interface="a", film=film)
-        mbs, connector = scene(bearing, *spins, initial_velocity=[0.0, turn * OFF, 0.0])
+        journal = JournalBearing(interface="a", film=film)
+        mbs, connector = scene(journal, *spins, initial_velocity=[0.0, turn * OFF, 0.0])
         initial = exu.ConfigurationType.Initial
         mbs.systemData.SetODE2Coordinates(mbs.systemData.GetODE2Coordinates(), initial)
         settings = recommended_settings(2e-6, 1e-6)
@@ -123,7 +143,8 @@ REFUSED = {
     "without tilt_damping": Support("a", 1e5, 0.0, 300.0, 2.0),
     "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
     "constant": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
-    "pads would turn": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
+    "its pads": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
+    "magnets would turn": bearing("a", DELAYED, LinearActuator(80.0, 1e5)),
 }
 
 

@@ -126,12 +126,13 @@ def add_supports(
     The friction of journal films and stops, and what a rolling bearing's contacts store, act as a
     torque on a free spin, at twice the cost. A prescribed spin does not feel it, and the torque of
     its drive lacks it. What carries the bearing takes the reaction; where it turns about the axis,
-    bearings see a free spin against it. The force of a bearing pulls at the middles of journal and
-    bore, so that about the axis the base lacks the moment ``u × F`` of their distance u.
+    bearings see the spin against it, a prescribed one but on a foundation, which hardly turns. The
+    force of a bearing pulls at the middles of journal and bore, so that about the axis the base
+    lacks the moment ``u × F`` of their distance u.
 
-    On a marker of another rotor (an inter-shaft bearing) bearings see the difference of both
-    spins, free or prescribed: their bore, with its grooves, or the outer ring turns with that
-    rotor. Tables of a `Support` are over the difference of the speeds there, as those of a
+    On a marker of another rotor (an inter-shaft bearing) the bore, with its grooves, or the outer
+    ring turns with that rotor; of a body of Exudyn that turns, bearings see the rate alone. Tables
+    of a `Support` on another rotor are over the difference of the speeds, as those of a
     :class:`Link`.
 
     Examples
@@ -239,9 +240,9 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
             f"{where}, whose axis is not parallel to that of rotor {body.name!r}; mount both on "
             "parallel axes"
         )
-    if isinstance(support, TiltingPadBearing):
+    if isinstance(support, TiltingPadBearing | MagneticBearing):
         raise ValueError(
-            f"{where}, with which its pads would turn; give add_supports another bearing there"
+            f"{where}, with which its pads or magnets would turn; give another bearing there"
         )
     if tilts and not _is_alike_in_all_tilts(support):
         raise ValueError(

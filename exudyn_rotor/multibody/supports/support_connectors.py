@@ -34,6 +34,7 @@ from exudyn_rotor.multibody.supports.differenced_law import DifferencedLaw
 from exudyn_rotor.multibody.supports.differences import differences_of
 from exudyn_rotor.multibody.supports.seats import Seat, point_marker, rigid_marker
 from exudyn_rotor.multibody.supports.turning_base import (
+    feels_turning,
     in_axes_at_rest,
     on_turning_base,
     on_turning_rotor,
@@ -155,7 +156,7 @@ def bearing_function(
         law = DifferencedLaw(law, bearing.film.clearance, differences_of(body))
     if rotor is not None:
         law = on_turning_rotor(law, body.mbs, rotor, axes)
-    elif body.formulation.has_spin and not isinstance(bearing, HeldLaw):
+    elif feels_turning(body, base) and not isinstance(bearing, HeldLaw):
         law = on_turning_base(law, body.mbs, base, axes)
     if brakes:
         function = _braking_function(law, spin, begin, least, note)

@@ -3,7 +3,8 @@
 A law holds in axes of the bore. One that turns about the axis at the rate w sees the rotor turn at
 Ω − w, and move by ``v − w e × u``, with the displacement u and the velocity v of the journal
 against it: a film drags by what the two turn against each other. The angle of the bore is small and
-left out. With a prescribed spin, which feels no friction, so is w, as in linear analyses.
+left out. On a linear foundation, which hardly turns, so is w with a prescribed spin, which feels no
+friction, as in linear analyses.
 
 On another rotor neither is small: the bore turns by its spin angle, and w is its speed, whether
 spins are free or prescribed. Grooves turn with it, and so does the outer ring whose elements an
@@ -23,10 +24,12 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor.multibody.rotor.carrying_rotor import CarryingRotor
+from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
 
 _ANGULAR_VELOCITY = exudyn.OutputVariableType.AngularVelocity
 _ROTATION = exudyn.OutputVariableType.RotationMatrix
 _CURRENT = exudyn.ConfigurationType.Current
+_LINEAR = "FFRFreducedOrder"  # of the markers of foundations, and of pads on them
 
 
 def carrying_marker(
@@ -34,6 +37,14 @@ def carrying_marker(
 ) -> exudyn.MarkerIndex | None:
     """Return the marker of the base in a bearing's connector; None for the ground."""
     return None if base is None else mbs.GetObject(connector)["markerNumbers"][0]
+
+
+def feels_turning(body: RotorItems, base: exudyn.MarkerIndex | None) -> bool:
+    """Return whether bearings on a marker feel the rate at which it turns about the axis."""
+    if body.formulation.has_spin or base is None:
+        return base is not None
+    item = body.mbs.GetMarker(base)
+    return "bodyNumber" in item and body.mbs.GetObject(item["bodyNumber"])["objectType"] != _LINEAR
 
 
 def on_turning_base(
