@@ -35,10 +35,10 @@ CASING = InertiaCuboid(1000.0, [0.1, 0.1, 0.1])
 KINDS = exu.OutputVariableType
 
 
-def scene(support, outer, inner, **changes):
+def scene(support, outer, inner, full=False, **changes):
     """Return a system with an inner rotor on an outer one, its centre OFF along n1 = x."""
-    mbs = exu.SystemContainer().AddSystem()
-    carrying = add_rotor(mbs, rings(*FIRST).reduce(0), name="outer", **outer)
+    mbs, solid = exu.SystemContainer().AddSystem(), rings(*FIRST)
+    carrying = add_rotor(mbs, solid if full else solid.reduce(0), name="outer", **outer)
     body = add_rotor(mbs, rings(*SECOND).reduce(0), name="inner", **(inner | changes))
     (added,) = add_supports(body, [support], base=carrying.marker("a"))
     mbs.Assemble()
@@ -54,12 +54,13 @@ def force_on_inner(mbs, connector):
     return -mbs.GetObjectOutput(connector, KINDS.ForceLocal if free else KINDS.Force)[:2]
 
 
+@pytest.mark.parametrize("full", [False, True], ids=["in modes", "full"])
 @pytest.mark.parametrize("kind", ["spin", "initial_speed"])
 @pytest.mark.parametrize("outer", [60.0, -20.0, 0.0])
-def test_a_film_is_dragged_by_both_surfaces(kind, outer):
+def test_a_film_is_dragged_by_both_surfaces(kind, outer, full):
     """Ocvirk's film of a journal that stands, with the sum of both speeds (Reynolds)."""
     inner = 90.0
-    mbs, connector = scene(SHORT, {kind: outer}, {kind: inner})
+    mbs, connector = scene(SHORT, {kind: outer}, {kind: inner}, full)
     # velocities of both middles are zero, those of the mesh are not
     ratio, speed = OFF / CLEARANCE, outer + inner
     size = VISCOSITY * speed * RADIUS * LENGTH**3 / CLEARANCE**2

@@ -202,8 +202,14 @@ def _refuse_mesh_nodes(mbs: exudyn.MainSystem, entries: dict) -> None:
             )
 
 
+class CopiedMarker(dict):
+    """Entries of a marker that a system has, for another one: its nodes are what they are."""
+
+
 def _moved_marker(mbs: exudyn.MainSystem, item: object) -> object:
     """Return a marker of the flexible body in place of one of its frame's node."""
+    if isinstance(item, CopiedMarker):
+        return item
     entries = _entries(item)
     _refuse_mesh_nodes(mbs, entries)
     kind = entries.get("markerType")
