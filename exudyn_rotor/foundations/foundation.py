@@ -87,7 +87,7 @@ class Foundation:
         _check_definite(
             self.stiffness,
             "stiffness: needs a positive definite matrix [N/m], so that the ground holds every "
-            "coordinate; add mounts, or clamp the structure,",
+            "coordinate; add mounts, or clamp the structure",
         )
         if _least(self.damping) < -_SINGULAR:
             raise ValueError(f"damping: needs a matrix ≥ 0 [N s/m], got {_lowest(self.damping)}")
@@ -387,4 +387,4 @@ def _lowest(matrix: np.ndarray) -> str:
 
 def _check_definite(matrix: np.ndarray, needed: str) -> None:
     if np.any(np.diag(matrix) <= 0.0) or _least(matrix) < _SINGULAR:
-        raise ValueError(f"{needed} got {_lowest(matrix)}")
+        raise ValueError(f"{needed}, got {_lowest(matrix)}")
