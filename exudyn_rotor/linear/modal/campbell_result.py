@@ -182,11 +182,19 @@ class Campbell(Result):
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
         return replace(self, **moved)
 
-    def crossings(self, order: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-        """Return where modes have the frequency pΩ in the inertial frame, p the `order`.
+    def crossings(
+        self, order: float = 1.0, frame: str = "inertial"
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return where modes have the frequency pΩ in a frame, p the `order`.
 
         By linear interpolation between neighbouring speeds, with damping; :func:`critical_speeds`
-        finds undamped ones without a grid.
+        finds undamped ones in the inertial frame without a grid.
+
+        Parameters
+        ----------
+        order : float, optional
+            In the rotor frame an engine order, see :meth:`plot`.
+        frame : {'inertial', 'rotor'}, optional
 
         Returns
         -------
@@ -196,9 +204,10 @@ class Campbell(Result):
             Columns of :meth:`tracked`.
         """
         order = checks.number(order, "order", above=0.0)
+        inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
         tracked = self.tracked()
-        values = tracked.frequencies_inertial
-        return excitation.crossings(self.speeds, values, tracked._joined(True), order)
+        values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
+        return excitation.crossings(self.speeds, values, tracked._joined(inertial), order)
 
     def _joined(self, inertial: bool) -> np.ndarray:
         """Return where a line goes on from the speed before, in one of the frames, shape (s, k)."""
@@ -232,7 +241,8 @@ class Campbell(Result):
             Of the picture: 'rpm' has speeds in rpm and frequencies in Hz, 'SI' rad/s.
         orders : sequence of float, optional
             Lines of excitation pΩ with p in `orders`, with the modes' crossings marked; by default
-            the spin speed alone without marks. Only in the inertial frame.
+            the spin speed alone without marks, and none in the rotor frame. There p is an engine
+            order: of a load that stands in space with p periods around the circle.
         operating_range : two floats, optional
             Lowest and highest operating speed [rad/s], shaded.
         margins : two floats, optional
@@ -242,7 +252,7 @@ class Campbell(Result):
         Raises
         ------
         TypeError, ValueError
-            For an unknown frame or unit, orders in the rotor frame, or numbers out of range.
+            For an unknown frame or unit, or numbers out of range.
         """
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
         shown, inertial = Units.of(units), frame == "inertial"
@@ -250,8 +260,6 @@ class Campbell(Result):
         shares = excitation.checked_margins(margins, limits is not None)
         if orders is not None:
             orders = excitation.checked_orders(orders)
-            if not inertial:
-                raise ValueError("orders: lines of excitation are drawn in the inertial frame only")
         ax = plotting.axes_or_new(ax)
         tracked, speeds = self.tracked(), shown.speeds(self.speeds)
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor

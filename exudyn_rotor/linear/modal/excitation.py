@@ -66,7 +66,7 @@ def crossings(
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
     values : ndarray, shape (s, k)
-        Frequencies of each mode in the inertial frame [rad/s].
+        Frequencies of each mode in the frame of the diagram [rad/s].
     continued : ndarray of bool, shape (s, k)
         Where a column is the same mode as at the speed before.
     order : float
