@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
+from matplotlib import pyplot
 from point_rotors import ring_rotor
 from test_stability import (
     BEARING,
@@ -267,3 +268,23 @@ def test_growth_below_its_bound_is_told_with_the_bound():
     names["bounds"] = [[1e-3, 4e-3, 1e-12]]
     result = Stability([50.0], values, values, [-2e-3], [True], [0.0], **names, tolerance=1e-9)
     assert result.table().splitlines()[1].split()[:4] == ["50.0000", "-1", "0", "±0.004"]
+
+
+def test_limits_over_the_speed_in_engineering_units():
+    """300 rad/s are 2864.8 rpm, 100 rad/s are 15.915 Hz; a damping keeps its unit."""
+    given = [300.0], [True], [100.0], [0], [1], 0.0, 400.0, False
+    limits = StabilityThresholds(*given)
+    assert limits.table(units="rpm").splitlines()[1].split()[:3] == [
+        "2864.789",
+        "unstable",
+        "15.915",
+    ]
+    assert next(iter(limits.columns("rpm"))) == "speed [rpm]"
+    ax = limits.plot(units="rpm")
+    np.testing.assert_allclose(ax.lines[0].get_xydata(), [[9000.0 / np.pi, 50.0 / np.pi]])
+    np.testing.assert_allclose(ax.get_xlim(), (0.0, 12000.0 / np.pi))
+    assert ax.get_xlabel() == "speed [rpm]"
+    pyplot.close(ax.figure)
+    damping = StabilityThresholds(*given, label="damping [N s/m]")
+    row = damping.table(units="rpm").splitlines()[1].split()
+    assert row[:3] == ["300", "unstable", "15.915"]

@@ -14,6 +14,7 @@ from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
 
 _SMALL = 0.1  # share of the range that a limit counts as at least
+_SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
 
 
 def limit_errors(shifts: np.ndarray, values: np.ndarray, span: float) -> np.ndarray:
@@ -67,7 +68,7 @@ class StabilityThresholds(Result):
     low: float
     high: float
     unstable_at_low: bool
-    label: str = "speed [rad/s]"
+    label: str = _SPEED
     basis_shifts: np.ndarray | None = numbers("thresholds", finite=False, optional=True)
 
     @property
@@ -89,12 +90,13 @@ class StabilityThresholds(Result):
         return limit_errors(self.basis_shifts, self.values, self.high - self.low)
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return the table as columns; `units` are those of the frequencies."""
+        """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
+        label, factor = self._parameter(shown)
         frequencies = shown.frequencies(self.frequencies_inertial)
         errors = self.basis_errors
         return {
-            self.label: self.values,
+            label: factor * self.values,
             "onset": self.onset,
             f"inertial [{shown.frequency}]": frequencies,
             "nodal diameters": self.nodal_diameters,
@@ -103,24 +105,32 @@ class StabilityThresholds(Result):
             "basis error": np.full(self.values.shape, np.nan) if errors is None else errors,
         }
 
-    def table(self) -> str:
+    def table(self, *, units: str = "SI") -> str:
         """Return the thresholds with the modes that grow there as lines of text.
 
         The error of the basis is '-' where it is not estimated, see :attr:`basis_shifts`.
+
+        Parameters
+        ----------
+        units : {'SI', 'Hz', 'rpm'}
+            Of frequencies, and of the parameter where it is called a speed in rad/s: 'SI' has both
+            in rad/s, 'rpm' speeds in rpm and frequencies in Hz.
         """
-        width = max(13, len(self.label))
-        lines = [f"{self.label:>{width}}   above      frequency [rad/s]  n  whirl      kind"]
+        shown = Units.of(units)
+        label, factor = self._parameter(shown)
+        width, frequency = max(13, len(label)), f"frequency [{shown.frequency}]"
+        lines = [f"{label:>{width}}   above   {frequency:>20}  n  whirl      kind"]
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors != 0.0)
         if reduced:
             lines[0] += "       basis error"
         kinds = families(self.whirl_codes, self.nodal_diameters)
-        for row, (value, onset) in enumerate(zip(self.values, self.onset, strict=True)):
+        for row, (value, onset) in enumerate(zip(factor * self.values, self.onset, strict=True)):
             n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
             lines.append(
                 f"{value:{width}.7g}   {'unstable' if onset else 'stable':8}"
-                f"{self.frequencies_inertial[row]:20.5g}  {n if n >= 0 else '-'}  {word:9}  "
-                f"{kinds[row]}"
+                f"{shown.frequencies(self.frequencies_inertial[row]):20.5g}  {n if n >= 0 else '-'}"
+                f"  {word:9}  {kinds[row]}"
             )
             if reduced:
                 lines[-1] = f"{lines[-1].ljust(len(lines[0]) - 11)}{in_table(errors[row]):>11}"
@@ -128,19 +138,31 @@ class StabilityThresholds(Result):
             lines.append(self._without_limit)
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
+    def _parameter(self, shown: Units) -> tuple[str, float]:
+        """Return the parameter's name as shown, and its unit there over that of the values."""
+        if not self.label.endswith(_SPEED):
+            return self.label, 1.0
+        return f"{self.label.removesuffix(_SPEED)}speed [{shown.speed}]", shown.speeds(1.0)
+
     @property
     def _without_limit(self) -> str:
         return f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range"
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded."""
+    def plot(self, ax: Axes | None = None, *, units: str = "SI") -> Axes:
+        """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded.
+
+        `units` are those of :meth:`table`.
+        """
+        shown = Units.of(units)
+        label, factor = self._parameter(shown)
         ax = plotting.axes_or_new(ax)
-        for low, high in self.ranges:
+        for low, high in factor * self.ranges:
             ax.axvspan(low, high, color=plotting.COLORS[1], alpha=0.2, lw=0.0)
-        ax.plot(self.values, self.frequencies_inertial, "o", color=plotting.COLORS[0])
-        ax.set_xlim(self.low, self.high)
-        ax.set_xlabel(self.label)
-        ax.set_ylabel("inertial frequency of the mode [rad/s]")
+        frequencies = shown.frequencies(self.frequencies_inertial)
+        ax.plot(factor * self.values, frequencies, "o", color=plotting.COLORS[0])
+        ax.set_xlim(factor * self.low, factor * self.high)
+        ax.set_xlabel(label)
+        ax.set_ylabel(f"inertial frequency of the mode [{shown.frequency}]")
         ax.grid(alpha=0.3)
         if not len(self.values):
             ax.set_title(self._without_limit, fontsize="medium")
