@@ -61,15 +61,14 @@ def test_films_under_an_uneven_mesh_are_taken_about_rest(left, right):
     assert apart(in_scene, in_list, SPEED) < 1e-6
 
 
-def test_a_law_that_is_held_keeps_its_torque():
+def test_a_law_that_is_held_has_its_torque_there_alone():
+    """Beside the place a torque would tilt with the journal, which linear equations leave out."""
     bearing = KINDS["short"](interface="left")
     law, place = HeldLaw(bearing), (5e-5, -2e-5, 1e-3, 0.0, 0.0, SPEED)
     law.hold(True)
     assert law.law_with_torque(*place) == bearing.law_with_torque(*place)
     moved = (6e-5, *place[1:])
-    x, y, torque = law.law_with_torque(*moved)
-    assert (x, y) == bearing.law(*moved)
-    assert torque == bearing.law_with_torque(*place)[2]
+    assert law.law_with_torque(*moved) == (*bearing.law(*moved), 0.0)
     law.hold(False)
     assert law.law_with_torque(*moved) == bearing.law_with_torque(*moved)
 

@@ -2,8 +2,10 @@
 
 Linear equations have a prescribed spin, and leave out moments of a static force F₀ by small motions
 u: that it turns with what carries the bearing, and that friction on this changes, by about F₀ u.
-A part of them would be no better than none. So a law is held at a place: its torque stays what it
-is there.
+A part of them would be no better than none. So a law is held at a place: it has its torque there,
+and none beside it, where that would tilt with the journal. Without the rotor's own unbalance there
+is none at all, as in lists: by it and the drive, which act at different places, an eccentric rotor
+would whirl.
 
 Where a mesh is uneven a journal moves a little under the rotor's weight, twice in a revolution.
 Without the rotor's own unbalance films are then taken about rest under their mean force: the motion
@@ -29,7 +31,7 @@ from exudyn_rotor.bearings.squeeze_film import SqueezeFilmDamper
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 
 _REST = 1e-6  # of c Ω: the velocity of a journal at rest
-_STILL = 1e-4  # of the clearance: a motion whose square does not matter
+_STILL = 1e-7  # of the clearance: a motion that does not matter
 _ROUNDED = 1e-14  # m: of differences of positions of some metres
 
 
@@ -38,7 +40,7 @@ class MovingJournalError(ValueError):
 
 
 class HeldLaw:
-    """Law of a bearing whose torque, once held, stays that of the next place.
+    """Law of a bearing that, once held, has a torque at the next place alone.
 
     Attributes
     ----------
@@ -55,7 +57,7 @@ class HeldLaw:
         self.tangent: Tangent | None = None
         self.seen: list[tuple[np.ndarray, np.ndarray] | None] = []
         self._whole = self._law_of(bearing)
-        self._held = False
+        self._held = self._rests = False
         self._point: tuple[list[float], Sequence[float], list[list[float]] | None] | None = None
 
     @staticmethod
@@ -73,6 +75,10 @@ class HeldLaw:
         """Let the law be held at the next place, or not any more."""
         self._held, self._point = held, None
 
+    def rest(self, rests: bool) -> None:
+        """Let the law be without torque as in lists, or the bearing's own."""
+        self._rests = rests
+
     def law(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, float]:
@@ -88,8 +94,17 @@ class HeldLaw:
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
     ) -> tuple[float, ...]:
         """Return force and, where the bearing has one, torque."""
-        if self._held and self._point is None:
+        begins = self._held and self._point is None
+        if begins:
             self._begin(np.array([x, y, vx, vy]), angle, speed)
+        values = self._values_beside(x, y, vx, vy, angle, speed)
+        brakes = begins or self._point is None
+        return values if brakes and not self._rests else (*values[:2], 0.0)
+
+    def _values_beside(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[float, ...]:
+        """Return the values beside the place where the law is held, if it is."""
         if self._point is None:
             return self._free(x, y, vx, vy, angle, speed)
         (x0, y0, vx0, vy0), (fx, fy, *torque), gradient = self._point
@@ -155,13 +170,10 @@ class TangentDamper(TangentShortFilm):
 
     bearing: SqueezeFilmDamper
 
-    def __init__(self, bearing: SqueezeFilmDamper) -> None:
-        super().__init__(bearing)
-        self._rests = False
-
     def rest(self, rests: bool) -> None:
-        """Let the film have the force of small harmonic motions, or its own."""
-        self._rests, damper = rests, self.bearing
+        """As :meth:`HeldLaw.rest`, and with the force of small harmonic motions, or the film's."""
+        super().rest(rests)
+        damper = self.bearing
         self._whole = damper._law_of_small_motions if rests else self._law_of(damper)
 
     def _tangent_at(self, motion: np.ndarray, angle: float, speed: float) -> Tangent | None:

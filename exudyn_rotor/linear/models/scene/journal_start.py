@@ -39,7 +39,13 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
         Where a bearing has no equilibrium under its load.
     """
     harmonics = np.zeros((len(orders), scene.size), dtype=complex)
-    places = _places(scene.body, speed)
+    at = {n: orders.tolist().index(n) for n in (-1, 0, 1)}
+    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed)
+    # where the origin is the centre of mass, its displacement is from its place at rest
+    apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
+    for n, shift in {0: apart, **into_rotor_frame(-apart)}.items():
+        harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
+    places = journal_places(scene.body, speed)
     if not places:
         return harmonics
     U = np.vstack([across(scene, name) for name in places])
@@ -47,14 +53,10 @@ def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> 
     resistance[scene.modal] = np.diag(scene.body.motion.invariants.K)
     W = 1.0 / (resistance + _SOFT * max(resistance.max(), 1.0))
     motion = scene.N.T @ (W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T))
-    # where the origin is the centre of mass, its displacement is from its place at rest
-    apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
-    turned = [into_rotor_frame(np.array([*place, 0.0]) - apart) for place in places.values()]
+    turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
     for n in (-1, 1):
         target = np.concatenate([harmonic[n][:2] for harmonic in turned])
-        harmonics[orders.tolist().index(n)] = motion @ target
-    harmonics[orders.tolist().index(0)] = scene.N.T @ _tilts(scene, speed)
-    harmonics[orders.tolist().index(0)] += scene.N[: scene.count].T @ apart[: scene.count]
+        harmonics[at[n]] += motion @ target
     return harmonics
 
 
@@ -78,8 +80,8 @@ def across(scene: SceneCoordinates, name: str) -> np.ndarray:
     return motion[:2]
 
 
-def _places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
-    """Return the equilibria of the journals by interface [m]."""
+def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
+    """Return the equilibria of journals by interface, (2,) [m]; none of those in their centres."""
     loads = _loads(body)
     places, cage = {}, spin_at_start(body)[0]
     for bearing, load in loads:

@@ -15,7 +15,6 @@ from exudyn_rotor.bearings.held_law import (
     HeldBearing,
     MovingJournalError,
     TangentContacts,
-    TangentDamper,
     TangentFilm,
     TangentShortFilm,
 )
@@ -103,15 +102,14 @@ class Probe:
                 film.stiff = True
 
     @contextmanager
-    def resting_dampers(self, rest: bool) -> Iterator[None]:
-        """Let films of dampers have the force of small harmonic motions, if that is asked for."""
-        dampers = [law for law in self.laws if isinstance(law, TangentDamper)]
+    def as_in_lists(self, wanted: bool) -> Iterator[None]:
+        """Let bearings be without torque, dampers with the force of small harmonic motions."""
         try:
-            for law in dampers:
-                law.rest(rest)
+            for law in self.laws:
+                law.rest(wanted)
             yield
         finally:
-            for law in dampers:
+            for law in self.laws:
                 law.rest(False)
 
     def at_rest(self) -> Probe:

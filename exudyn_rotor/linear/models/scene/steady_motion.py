@@ -66,7 +66,7 @@ def equations_about(scene: Scene, probe: Probe) -> PeriodicSystem:
     """
     check_films(scene, probe)
     rest = scene.about == "equilibrium"
-    with probe.resting_dampers(rest):
+    with probe.as_in_lists(rest):
         return _equations_about(scene, probe, rest)
 
 

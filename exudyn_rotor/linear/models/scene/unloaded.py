@@ -15,7 +15,7 @@ import numpy as np
 from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.linear.models.scene.equilibrium import UNHELD, solved
-from exudyn_rotor.linear.models.scene.journal_start import journal_start
+from exudyn_rotor.linear.models.scene.journal_start import journal_places, journal_start
 from exudyn_rotor.linear.models.scene.probe import Probe, linearised
 from exudyn_rotor.linear.models.scene.searched_scene import Scene
 from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
@@ -94,13 +94,12 @@ def free_in_elements(scene: Scene, probe: Probe) -> str | None:
     loose = [bearing for bearing in bearings if bearing.clearance >= 0.0]
     if not loose:
         return None
-    start = journal_start(scene, probe.speed, _ORDERS)
-    if np.any(start[[0, 2]]):
+    if journal_places(scene.body, probe.speed):
         return None
-    loads, y = [], start[1].real
+    start, loads = journal_start(scene, probe.speed, _ORDERS), []
     for theta in _ANGLES:
         T, constant = scene.turn(theta)[0], probe.rotor_terms(theta)[3]
-        x = T @ y
+        x = T @ (np.exp(1j * theta * _ORDERS) @ start).real
         loads.append(T.T @ (constant + probe.force(theta, x, np.zeros_like(x))))
     M = T.T @ (probe.rotor_terms(theta)[0] + probe.mass()) @ T
     change = np.ptp(loads, axis=0) * scene.metre(np.diag(M))
