@@ -7,7 +7,8 @@ with constant coefficients is evaluated by Exudyn itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import exudyn
@@ -16,6 +17,13 @@ from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from exudyn_rotor.theory.kernel import Kernel, constant_part
 from exudyn_rotor.theory.motion import Motion
+
+_NO_FORCES = {
+    "stiffnessMatrix": np.zeros((0, 0)),
+    "dampingMatrix": np.zeros((0, 0)),
+    "forceVector": np.zeros(0),
+    "forceUserFunction": 0,
+}
 
 LockedForce = Callable[[float], np.ndarray]
 StateForce = Callable[[float, list, list], np.ndarray]
@@ -95,6 +103,19 @@ def user_function_object(
         **functions,
         visualization=VObjectGenericODE2(show=False),
     )
+
+
+@contextmanager
+def without_forces(mbs: exudyn.MainSystem, number: exudyn.ObjectIndex) -> Iterator[None]:
+    """Let an object of this module have its mass matrix alone, but no forces."""
+    given = {name: mbs.GetObjectParameter(number, name) for name in _NO_FORCES}
+    for name, nothing in _NO_FORCES.items():
+        mbs.SetObjectParameter(number, name, nothing)
+    try:
+        yield
+    finally:
+        for name, value in given.items():
+            mbs.SetObjectParameter(number, name, value)
 
 
 def _constant_items(motion: Motion, layout: Layout) -> dict[str, np.ndarray]:

@@ -36,7 +36,7 @@ def held_along_axis(scene: SceneCoordinates, probe: Probe) -> np.ndarray:
     if motion is None:
         return every
     start = journal_start(scene, probe.speed, _ORDERS)
-    loads = [_load(scene, probe, start, theta) for theta in _ANGLES]
+    loads = [_load(probe, start, theta) for theta in _ANGLES]
     along = np.array([force @ motion for force in loads])
     rounding = _ROUNDING * np.abs(loads).max()
     for reach in np.multiply(_REACHES, scene.length):
@@ -44,7 +44,7 @@ def held_along_axis(scene: SceneCoordinates, probe: Probe) -> np.ndarray:
         for move in (reach, -reach):
             moved = start.copy()
             moved[_ORDERS == 0] += move * motion
-            if abs(_load(scene, probe, moved, _ANGLES[0]) @ motion - along[0]) > least:
+            if abs(_load(probe, moved, _ANGLES[0]) @ motion - along[0]) > least:
                 return every
     load = along.mean()
     if abs(load) > UNHELD * scene.mass + rounding:
@@ -72,9 +72,9 @@ def _along_axis(scene: SceneCoordinates) -> np.ndarray | None:
     return motion if np.isclose(np.linalg.norm(scene.N[place]), 1.0, rtol=1e-9) else None
 
 
-def _load(scene: SceneCoordinates, probe: Probe, Y: np.ndarray, theta: float) -> np.ndarray:
+def _load(probe: Probe, Y: np.ndarray, theta: float) -> np.ndarray:
     """Return the forces (k,) at an angle, of a motion by its harmonics −1, 0, 1."""
-    T, T1 = scene.turn(theta)[:2]
+    T, T1 = probe.turn(theta)[:2]
     waves = np.exp(1j * theta * _ORDERS)
     y, y_t = ((waves * (1j * probe.speed * _ORDERS) ** n @ Y).real for n in range(2))
     constant = probe.rotor_terms(theta)[3]

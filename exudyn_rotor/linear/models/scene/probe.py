@@ -28,6 +28,7 @@ from exudyn_rotor.linear.models.scene.differences import (
 from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, UnconvergedError
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
+from exudyn_rotor.multibody.rotor.equations import without_forces
 from exudyn_rotor.multibody.supports.held_tilts import HeldTilts, held_tilts
 from exudyn_rotor.multibody.supports.linear_laws import linear_laws
 from exudyn_rotor.multibody.supports.magnetic_connectors import TangentMagnets, tangent_magnets
@@ -39,7 +40,7 @@ from exudyn_rotor.theory.motion import Motion
 _STEPS = (1e-4, 1e-5, 1e-6, 1e-7)
 _VELOCITY_STEPS = (1e-3, 1e-4, 1e-5, 1e-6)  # m/s
 _MOVED, _POSITION = 1e-4, exudyn.OutputVariableType.Position  # of a coordinate
-_KEPT = 32  # angles whose terms of the rotor are kept
+_KEPT = 48  # angles whose terms of the rotor, and whose turned axes, are kept
 
 
 class Probe:
@@ -61,17 +62,12 @@ class Probe:
         self.films = [law for law in self.laws if isinstance(law, TangentFilm)]
         self.carriers = _carriers_of_pads(scene)
         self._held, self._carried = False, None
-        body = scene.body
-        self.physics = np.asarray(self.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]))
-        self.spin = scene.spin_coordinate
+        self.spin, self.spin_sign = scene.spin_coordinate, scene.spin_sign
+        self.is_constrained = bool(solver.GetAEsize())
         self.rotor = np.arange(scene.modal.stop)
         self.step = self.velocity_step = None
-        self.constant = None
         self.rotor_terms = lru_cache(_KEPT)(self._rotor_terms)
-        motion = body.plan.node_motion
-        if motion.is_constant:
-            zero = np.zeros(motion.size)
-            self.constant = motion.forces(0.0, zero, zero), *motion.jacobian(0.0, zero, zero)
+        self.turn = lru_cache(_KEPT)(scene.turn)
 
     @property
     def rounding(self) -> float:
@@ -123,7 +119,7 @@ class Probe:
 
     def see(self, theta: float, y: np.ndarray, y_t: np.ndarray) -> None:
         """See where bearings are in a motion y (k,) of the rate y_t, at one angle."""
-        T, T1, _ = self.scene.turn(theta)
+        T, T1, _ = self.turn(theta)
         with self.held():
             self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
 
@@ -176,7 +172,7 @@ class Probe:
         rows = constraint_rows(self.mbs, self.solver, len(self.scene.rest))
         if not len(rows):
             return np.zeros((0, len(self.scene.free)))
-        C = rows[:, self.scene.free] @ self.scene.turn(theta)[0]
+        C = rows[:, self.scene.free] @ self.turn(theta)[0]
         return C[np.abs(C).max(axis=1) > 1e-14]
 
     def mass(self) -> np.ndarray:
@@ -192,7 +188,7 @@ class Probe:
         still, total = np.zeros(len(self.scene.free)), 0.0
         for theta in 2.0 * np.pi * np.arange(count) / count:
             self._set(theta, still, still)
-            T = self.scene.turn(theta)[0]
+            T = self.turn(theta)[0]
             total = total + T.T @ (self.rotor_terms(theta)[0] + self.mass()) @ T
         return total / count
 
@@ -233,7 +229,7 @@ class Probe:
     def force(self, theta: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the forces of all but the rotor's own equations, free coordinates."""
         q, q_t = self._set(theta, x, v)
-        try:
+        try:  # the rotor's own object has none while it is probed
             self.solver.ComputeODE2RHS(self.mbs)
         except ValueError as error:  # Exudyn's, from what a support's function raised
             if isinstance(error.__cause__, BelowTableError | MovingJournalError):
@@ -244,27 +240,14 @@ class Probe:
             total[self.carriers] = self._carried[2]
         elif self._held:
             self._carried = tuple(each[self.carriers] for each in (q, q_t, total))
-        total[self.physics] -= self._physics_force(q[self.physics], q_t[self.physics])
         return total[self.scene.free]
 
     def unbalanced(self, theta: float, y: np.ndarray) -> np.ndarray:
         """Return what the forces lack for an equilibrium at rest (k,), as the residual of y."""
         _, _, K, constant = self.rotor_terms(theta)
-        T = self.scene.turn(theta)[0]
+        T = self.turn(theta)[0]
         x = T @ y
         return T.T @ (K @ x - constant - self.force(theta, x, np.zeros_like(x)))
-
-    def _physics_force(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Return what the rotor's object in the scene contributes at this state."""
-        body, unknowns = self.scene.body, self.scene.body.layout.unknowns
-        force = np.zeros(body.layout.size)  # locked coordinates are not looked at
-        if self.constant is not None:
-            rest, by_q, by_v = self.constant
-            force[unknowns] = rest + by_q @ q[unknowns] + by_v @ q_t[unknowns]
-            return force
-        t = self.mbs.systemData.GetTime()
-        force[unknowns] = body.plan.node_motion.forces(t, q[unknowns], q_t[unknowns])
-        return force
 
     def _set(self, theta: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Put a deviation x of the free coordinates and their velocity v into the scene."""
@@ -273,14 +256,13 @@ class Probe:
         q[self.scene.free] += x
         q_t[self.scene.free] = v
         if self.spin is not None:
-            sign = self.scene.spin_sign
-            q[self.spin], q_t[self.spin] = sign * theta, sign * self.speed
+            q[self.spin], q_t[self.spin] = self.spin_sign * theta, self.spin_sign * self.speed
         if self._carried is not None:
             q[self.carriers], q_t[self.carriers], _ = self._carried
         data.SetODE2Coordinates(q)
         data.SetODE2Coordinates_t(q_t)
         data.SetTime(theta / self.speed if self.speed else 0.0)
-        if self.solver.GetAEsize():  # as every implicit solver does: some forces rely on it
+        if self.is_constrained:  # as every implicit solver does: some forces rely on it
             self.solver.ComputeAlgebraicEquations(self.mbs, False)
         return q, q_t
 
@@ -296,6 +278,7 @@ def probing(scene: SceneCoordinates, speed: float, cage: float | None = None) ->
         linear_laws(body, cage) as bearings,
         tangent_magnets(body) as magnets,
         held_tilts(body) as tilts,
+        without_forces(body.mbs, body.objects["physics"]),
         evaluating(body.mbs) as solver,
     ):
         yield Probe(scene, speed, solver, bearings, magnets, tilts)
@@ -333,7 +316,7 @@ def unbalanced(
 ) -> np.ndarray:
     """Return the residual of y at one angle (k,), as :func:`linearised` has it."""
     with probe.held():
-        return probe.scene.turn(theta)[0].T @ _state(probe, theta, y, y_t, y_tt).residual
+        return probe.turn(theta)[0].T @ _state(probe, theta, y, y_t, y_tt).residual
 
 
 class _State(NamedTuple):
@@ -349,7 +332,7 @@ class _State(NamedTuple):
 
 
 def _state(probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray) -> _State:
-    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.scene.turn(theta)))
+    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
     x, v = T @ y, T @ y_t + T1 @ y
     M, D, K, constant = probe.rotor_terms(theta)
     force = probe.force(theta, x, v)
@@ -361,7 +344,7 @@ def _state(probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.
 def _linearised(
     probe: Probe, theta: float, y: np.ndarray, y_t: np.ndarray, y_tt: np.ndarray
 ) -> LinearPoint:
-    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.scene.turn(theta)))
+    T, T1, T2 = (probe.speed**n * X for n, X in enumerate(probe.turn(theta)))
     x, v, M, rotor_D, rotor_K, force, residual = _state(probe, theta, y, y_t, y_tt)
     sizes = probe.scene.metre(np.diag(T.T @ M @ T))
 

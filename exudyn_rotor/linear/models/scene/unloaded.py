@@ -98,7 +98,7 @@ def free_in_elements(scene: Scene, probe: Probe) -> str | None:
         return None
     start, loads = journal_start(scene, probe.speed, _ORDERS), []
     for theta in _ANGLES:
-        T, constant = scene.turn(theta)[0], probe.rotor_terms(theta)[3]
+        T, constant = probe.turn(theta)[0], probe.rotor_terms(theta)[3]
         x = T @ (np.exp(1j * theta * _ORDERS) @ start).real
         loads.append(T.T @ (constant + probe.force(theta, x, np.zeros_like(x))))
     M = T.T @ (probe.rotor_terms(theta)[0] + probe.mass()) @ T
