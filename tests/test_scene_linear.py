@@ -21,6 +21,7 @@ from exudyn_rotor.linear.periodic.exponents import exponents
 from exudyn_rotor.linear.periodic.fundamental import monodromy
 from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
 from exudyn_rotor.linear.stability.stability import stability
+from exudyn_rotor.multibody.evaluation import evaluating
 from exudyn_rotor.reduction.mode_kind import ModeKind
 
 BEARING = np.array([2.0e6, 1.2e6, 3e6]), np.array([300.0, 200.0, 100.0])
@@ -313,6 +314,13 @@ def all_states(mbs):
     ]
 
 
+def scene_forces(mbs):
+    """Return the forces of all items at the current state."""
+    with evaluating(mbs) as solver:
+        solver.ComputeODE2RHS(mbs)
+        return np.array(solver.GetSystemResidual())
+
+
 def test_the_scene_is_left_as_it_was():
     mbs, body = on_springs(spin=40.0, gravity=[0.0, -9.81, 0.0])
     settings = exu.SimulationSettings()
@@ -320,9 +328,11 @@ def test_the_scene_is_left_as_it_was():
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     mbs.SolveDynamic(settings)
-    before = all_states(mbs)
+    before, forces = all_states(mbs), scene_forces(mbs)
+    assert np.abs(forces).max() > 1.0
     LinearScene.of(mbs, body).at(SPEED)
     assert all(np.array_equal(a, b) for a, b in zip(all_states(mbs), before, strict=True))
+    np.testing.assert_array_equal(scene_forces(mbs), forces)
 
 
 def test_refused_scenes():
