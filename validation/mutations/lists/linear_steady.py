@@ -41,8 +41,10 @@ LINEAR_STEADY = [
     ),
     *mutations(
         "linear/models/scene/differences.py",
-        "test_search_for_steady_motions.py",
-        ("steps of 2h are added", "(near - far) / 3.0, float", "(far - near) / 3.0, float"),
+        "test_differences.py",
+        ("steps of 2h are added", "near + (near - far) / 3.0", "near + (far - near) / 3.0"),
+        ("curved forces count as straight", "error > CURVATURE**2", "error > 1.0"),
+        ("motions of a place cancel", "shape[1]) * _GOLDEN", "shape[1]) * 0.0"),
     ),
     *mutations(
         "bearings/held_law.py",
