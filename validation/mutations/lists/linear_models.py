@@ -225,11 +225,20 @@ LINEAR_MODELS = [
     ),
     *mutations(
         "linear/models/rotor/spin.py",
-        "test_annular_seal.py::test_a_seal_that_repels_at_high_speed_does_not_hold_the_spin",
+        "test_annular_seal.py::test_what_repels_does_not_hold_the_spin",
         (
             "springs that repel taken for some that hold the spin",
             "max(0.5 * np.trace(each[index][:2, :2]), 0.0)",
             "0.5 * np.trace(each[index][:2, :2])",
+        ),
+    ),
+    *mutations(
+        "linear/models/rotor/spin.py",
+        "test_annular_seal.py::test_springs_hold_the_spin_by_their_distance",
+        (
+            "springs far from each other are not asked",
+            "0.5 * distances.max(initial=0.0) ** 2 <=",
+            "0.2 * distances.max(initial=0.0) ** 2 <=",
         ),
     ),
     *mutations(

@@ -33,6 +33,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.cached import kept
 from exudyn_rotor.reduction.basis import rigid_columns
 from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -136,14 +137,14 @@ class Spin:
         offset = axes_of(axis).T @ invariants.center
         # by rotation about the axis
         at_arm = [u[:3] - skew(offset) @ u[3:] for u in turned]
-        probed = [_stiffnesses(support) for support in supports]
-        known = list(zip(supports, probed, turned, at_arm, strict=True))
-        standing = [(K, u[:2]) for one, K, u, _ in known if one.frame != "rotor"]
-        turning = [(K, u) for one, K, _, u in known if one.frame == "rotor"]
+        known = list(zip(supports, turned, at_arm, strict=True))
+        standing = [(one, u[:2]) for one, u, _ in known if one.frame != "rotor"]
+        turning = [(one, u) for one, _, u in known if one.frame == "rotor"]
         coupled = _held_off_center(standing, invariants.mass) or any(
-            _couples(K, u, invariants.mass) for K, u in turning
+            _couples(_stiffnesses(one), u, invariants.mass) for one, u in turning
         )
-        held = coupled or any(np.any(np.array(each)[:, 5]) for each in probed)
+        tilts = [one for one in supports if np.any(one.tilt_stiffness != 0.0)]
+        held = coupled or any(np.any(np.array(_stiffnesses(one))[:, 5]) for one in tilts)
         bends = tuple(u[5] * np.array([-u[1], u[0], 0.0]) for u in turned)
         if held or twisted:
             motion, momentum = rotations.about_axis
@@ -227,15 +228,18 @@ def _couples(stiffnesses: Sequence[np.ndarray], about_axis: np.ndarray, mass: fl
     )
 
 
-def _held_off_center(
-    standing: Sequence[tuple[Sequence[np.ndarray], np.ndarray]], mass: float
-) -> bool:
+def _held_off_center(standing: Sequence[tuple[Support, np.ndarray]], mass: float) -> bool:
     """Return True if springs that stand still hold the spin by their distance from each other.
 
-    `standing` has their stiffness at some speeds, and their displacement by the spin, (2,).
+    `standing` has them with their displacement by the spin, (2,).
     """
-    stiffnesses = [K for K, _ in standing]
-    moved = np.array([u for _, u in standing])
+    moved = np.array([u for _, u in standing]).reshape(-1, 2)
+    distances = np.linalg.norm(moved[:, None] - moved, axis=2)
+    # whatever the shares of springs, their square distance from the centre is no more than half of
+    # that: films then need not be solved, which takes long
+    if 0.5 * distances.max(initial=0.0) ** 2 <= _OFF_CENTER / mass:
+        return False
+    stiffnesses = [_stiffnesses(one) for one, _ in standing]
     varies = any(each[0] is not each[-1] for each in stiffnesses)
     for index in range(len(_PROBED) if varies else 1):
         # what repels, as a seal at high speed, holds nothing
@@ -247,6 +251,7 @@ def _held_off_center(
     return False
 
 
+@kept
 def _stiffnesses(support: Support) -> list[np.ndarray]:
     """Return the stiffness (6, 6) at some speeds."""
     if not support.stiffness_varies:
