@@ -83,7 +83,7 @@ def test_area_weights_of_a_band_are_those_of_its_surface():
     [
         (("left", 0.2, 0.1), "exists already"),
         (("seat", 0.2, 0.0), "width"),
-        (("seat", 0.9, 0.1), r"no node of the outer surface .* reaches from 0 to 0.4"),
+        (("seat", 0.9, 0.1), r"position: no node of the outer .* from 0 to 0.4"),
         (("seat", np.nan, 0.1), "position"),
     ],
 )

@@ -54,10 +54,16 @@ def outer_section(
     if numbers.size == 0:
         places = along[np.unique(triangles)]
         nearest = places[np.argmin(np.abs(places - position))]
+        beside = high < places.min() or low > places.max()
+        wrong, remedy = (
+            ("position", "give a position on the rotor")
+            if beside
+            else ("width", "use a wider band or a finer mesh")
+        )
         raise ValueError(
-            f"width: no node of the outer surface lies between {low:.6g} and {high:.6g} m along "
+            f"{wrong}: no node of the outer surface lies between {low:.6g} and {high:.6g} m along "
             f"the axis, where the rotor reaches from {places.min():.6g} to {places.max():.6g} m "
-            f"and the next node is at {nearest:.6g} m; use a wider band or a finer mesh"
+            f"and the next node is at {nearest:.6g} m; {remedy}"
         )
     return numbers, weights
 
