@@ -21,7 +21,7 @@ from exudyn.itemInterface import (
     VObjectGenericODE2,
 )
 
-from exudyn_rotor.bearings.actuator import Actuator
+from exudyn_rotor.bearings.actuator import Actuator, SaturatingActuator
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.multibody.calls.clearances import noting_outside, watch_clearance
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems
@@ -71,11 +71,35 @@ class TangentMagnets:
 
     Differences would cross where a magnet is without current: the coordinates of a controller have
     so little inertia that no step of theirs is short.
+
+    Attributes
+    ----------
+    seen : list of tuple
+        Current [A] and place [m] wherever it has been held.
     """
 
     def __init__(self, actuator: Actuator) -> None:
         self._actuator, self._held = actuator, False
         self._tangent: tuple[float, ...] | None = None
+        self.seen: list[tuple[float, float]] = []
+        self._slopes: tuple[float, float] | None = None
+
+    @property
+    def settles(self) -> bool:
+        """Whether lists take it otherwise than where it has been seen, see :meth:`settle`."""
+        return isinstance(self._actuator, SaturatingActuator)
+
+    def settle(self, speed: float) -> None:
+        """Let the force go on as at the mean of the currents and places seen, as in lists.
+
+        Under an uneven mesh a journal moves a little; what that changes is beside the square of
+        the motion over the gap. At which speed plays no part.
+        """
+        self._slopes = self._actuator.slopes(*np.mean(self.seen, axis=0).tolist())
+
+    def release(self) -> None:
+        """Take back what :meth:`settle` did."""
+        self._slopes = None
 
     def hold(self, held: bool) -> None:
         """Hold the force by the tangent from the next state on, or let it go."""
@@ -84,8 +108,9 @@ class TangentMagnets:
     def law(self, current: float, place: float) -> float:
         """Return the force [N] at a current [A] and a place [m]."""
         if self._held and self._tangent is None:
-            force = self._actuator.law(current, place)
-            self._tangent = current, place, force, *self._actuator.slopes(current, place)
+            slopes = self._slopes or self._actuator.slopes(current, place)
+            self._tangent = current, place, self._actuator.law(current, place), *slopes
+            self.seen.append((current, place))
         if self._tangent is None:
             return self._actuator.law(current, place)
         i, x, force, by_current, by_place = self._tangent

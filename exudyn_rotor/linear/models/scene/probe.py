@@ -114,7 +114,7 @@ class Probe:
 
     def forget(self) -> None:
         """Forget where bearings have been seen."""
-        for law in self.laws:
+        for law in (*self.laws, *self.magnets):
             law.seen = []
 
     def see(self, theta: float, y: np.ndarray, y_t: np.ndarray) -> None:
@@ -124,12 +124,12 @@ class Probe:
             self.force(theta, T @ y, T @ y_t + self.speed * T1 @ y)
 
     @property
-    def settling(self) -> list[HeldBearing]:
+    def settling(self) -> list[HeldBearing | TangentMagnets]:
         """Bearings that lists take otherwise than where they have been seen."""
-        return [one for one in self.bearings if one.settles]
+        return [one for one in (*self.bearings, *self.magnets) if one.settles]
 
     @contextmanager
-    def settled(self, bearings: Sequence[HeldBearing]) -> Iterator[None]:
+    def settled(self, bearings: Sequence[HeldBearing | TangentMagnets]) -> Iterator[None]:
         """Take bearings as lists do under the mean of the forces seen.
 
         Raises
@@ -145,7 +145,7 @@ class Probe:
             for one in bearings:
                 one.release()
 
-    def _settle(self, bearing: HeldBearing) -> None:
+    def _settle(self, bearing: HeldBearing | TangentMagnets) -> None:
         try:
             bearing.settle(self.speed)
         except (ValueError, ArithmeticError) as error:
