@@ -301,6 +301,7 @@ def test_refused_calls_leave_the_scene_as_it_was():
     bare = add_rotor(mbs, rings(), name="bare", marker_body=False)
     point = mbs.AddMarker(MarkerNodePosition(nodeNumber=mbs.AddNode(NodePoint())))
     off = mbs.AddMarker(MarkerBodyRigid(bodyNumber=mbs.CreateGround()))
+    particle = mbs.CreateMassPoint(mass=1.0)
 
     def counts():
         data = mbs.systemData
@@ -318,6 +319,7 @@ def test_refused_calls_leave_the_scene_as_it_was():
         (TypeError, "base: needs MarkerIndex or ObjectIndex", (body, good, "ground")),
         (ValueError, r"marker \d+ is 0.15 m off the interface 'left'", (body, good, off)),
         (ValueError, "has no place and orientation", (body, good, point)),
+        (ValueError, "is a point without orientation", (body, good, particle)),
         (ValueError, "this system has no", (body, good, exu.ObjectIndex(99))),
         (ValueError, "base: has nothing for the interface 'left'", (body, good, {"right": off})),
         (ValueError, "base: 'disc' is no interface", (body, good, {"left": None, "disc": None})),

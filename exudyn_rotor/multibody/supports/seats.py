@@ -29,6 +29,8 @@ from exudyn_rotor.theory.rotating_axes import axes_of
 _KINDS = exudyn.OutputVariableType
 _REFERENCE = exudyn.ConfigurationType.Reference
 _ROUNDING = 1e-12  # of the coordinates of a place
+# bodies for which Exudyn has a rotation matrix, but no rigid marker
+_POINTS = ("MassPoint", "MassPoint2D", "Mass1D")
 _HIDDEN = {"show": False, "showMarkerNodes": False}
 Base = exudyn.MarkerIndex | exudyn.ObjectIndex | SceneFoundation
 
@@ -112,6 +114,8 @@ def _frame(turn: np.ndarray, shift: np.ndarray = (0.0, 0.0, 0.0)) -> np.ndarray:
 def _reference(mbs: exudyn.MainSystem, base: Base) -> tuple[np.ndarray, np.ndarray]:
     """Return the reference position and orientation of a marker or a rigid body."""
     is_marker = isinstance(base, exudyn.MarkerIndex)
+    if not is_marker and mbs.GetObject(base)["objectType"] in _POINTS:
+        raise ValueError(f"base: {base} is a point without orientation; give a rigid body")
     try:
         kinds = _KINDS.Position, _KINDS.RotationMatrix
         if is_marker:
