@@ -111,6 +111,26 @@ def test_a_free_rotor_stands_still_in_space_at_any_speed(turn):
 
 
 @pytest.mark.parametrize("turn", TURNS)
+def test_lines_of_a_free_rotor_go_on(turn):
+    """A free rotor displaced stands still, with ν = Ω two times, and tilted, with ν = Ω, too."""
+    made = ring_rotor(0.1, 0.2, 10.0)
+    order = np.random.default_rng(turn).permutation(made.node_count)
+    places = (3 * order[:, None] + np.arange(3)).ravel()
+    matrices = (matrix.toarray()[np.ix_(places, places)] for matrix in (made.mass, made.stiffness))
+    made = SolidRotor.from_matrices(*matrices, made.nodes[order], "z")
+    result = campbell(made, [0.0, 50.0, 100.0, 300.0]).tracked()
+    assert np.all(result.continued[:, result.frequencies_inertial[0] == 0.0])
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_an_overdamped_motion_stands_still_at_rest(turn):
+    """At Ω = 0 on dampers of twenty times the critical damping; all decay without oscillating."""
+    supports = both(STIFFNESS, 40.0 * MASS * NATURAL)
+    result = stability(rod(turn), [0.0], supports=supports)
+    assert set(result.whirl[result.families == "lateral"].tolist()) == {"static"}
+
+
+@pytest.mark.parametrize("turn", TURNS)
 def test_a_motion_against_its_unbalance_has_the_phase_180_degrees(turn):
     """Above the critical speed, without damping, it is real and negative in the rotor frame."""
     given = {"supports": both(STIFFNESS), "frame": "rotor"}

@@ -18,7 +18,7 @@ from exudyn_rotor.linear.modal.damping import damping_of, decays_alone, oscillat
 from exudyn_rotor.linear.modal.listing import listed, ranks
 from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
 from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import WhirlContent, named_still
+from exudyn_rotor.linear.modal.whirl import STATIC, WhirlContent, named_still
 from exudyn_rotor.linear.models.basis.basis_error import BasisError, judged
 from exudyn_rotor.linear.models.linear_model import (
     Target,
@@ -169,7 +169,9 @@ def campbell(
         basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
     found = [entry.modes for entry in solved]
-    tracks = track(found, values, model.mass_matrix.__matmul__, content.mean_waves(found))
+    static = np.array([entry.codes == STATIC for entry in solved])
+    seen_from_outside = content.mean_waves(found), static
+    tracks = track(found, values, model.mass_matrix.__matmul__, *seen_from_outside)
     solved, tracks = _lowest(solved, tracks, count, seen, model)
     inertial = np.array([entry.inertial for entry in solved])
     growth = np.array([entry.modes.values.real for entry in solved])

@@ -105,6 +105,7 @@ def track(
     speeds: np.ndarray,
     weigh: Callable[[np.ndarray], np.ndarray],
     waves: np.ndarray | None = None,
+    static: np.ndarray | None = None,
 ) -> Tracks:
     """Return which column continues each mode of the first speed.
 
@@ -126,6 +127,8 @@ def track(
     waves : ndarray, shape (s, k), optional
         Mean wave numbers n of the motions: a wave that is seen at one frequency changes it by
         ``−nΔΩ`` in the rotor frame. For equations that do not change in time.
+    static : ndarray of bool, shape (s, k), optional
+        Which motions stand still in space: any of them goes on as another.
     """
     count = modes[0].values.size
     columns = np.empty((len(modes), count), dtype=np.int64)
@@ -140,6 +143,8 @@ def track(
     )
     for step, (matched, same) in enumerate(steps, start=1):
         last = columns[step - 1]
+        if static is not None:
+            same = same | static[step - 1] & static[step][matched]
         columns[step], continued[step] = matched[last], same[last]
     return Tracks(columns, continued)
 

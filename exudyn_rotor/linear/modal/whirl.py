@@ -46,8 +46,8 @@ DIAMETER_SHARE, _PURE_SHARE = 0.7, 0.9
 # least fitted share for that, and share below which more nodal diameters are all there is
 _FITTED, _NOT_FITTED = 0.1, 0.05
 
-# inertial frequencies below this share of the speed are round-off
-_STATIC = 1e-7
+# inertial frequencies below these shares of the speed and of the resolution are round-off
+_STATIC, _ROUNDING = 1e-7, 1e-6
 # share of the mean wave number that turns one way in one motion of a pair
 _CIRCULAR = 0.8
 # 1 − cosine of vectors that are one, and share of the largest that others span beyond the rest
@@ -207,6 +207,7 @@ class WhirlContent:
                 modes[rows[0]].orders,
                 nu,
                 np.repeat([speeds[row] for row in rows], counts),
+                _ROUNDING * np.repeat([modes[row].resolution for row in rows], counts),
             )
             parts = (np.split(array, np.cumsum(counts)[:-1]) for array in classified)
             for row, *entries in zip(rows, *parts, strict=True):
@@ -214,7 +215,12 @@ class WhirlContent:
         return [result[row] for row in range(len(modes))]
 
     def classify(
-        self, vectors: np.ndarray, orders: np.ndarray, nu: np.ndarray, speed: float | np.ndarray
+        self,
+        vectors: np.ndarray,
+        orders: np.ndarray,
+        nu: np.ndarray,
+        speed: float | np.ndarray,
+        rounding: float | np.ndarray = 0.0,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return inertial frequency [rad/s], index into :data:`WHIRLS`, and nodal diameter.
 
@@ -225,8 +231,8 @@ class WhirlContent:
         orders : ndarray of int, shape (h,)
         nu : ndarray, shape (k,)
             Frequencies in the rotor frame, ≥ 0 [rad/s].
-        speed : float, or ndarray of shape (k,)
-            Ω [rad/s].
+        speed, rounding : float, or ndarray of shape (k,)
+            Ω, and what of a frequency is rounding [rad/s].
 
         Notes
         -----
@@ -248,7 +254,7 @@ class WhirlContent:
         n = self.orders[None, :, None]
         seen = nu + (orders[:, None, None] + n) * speed
         turns = np.sign(n * seen) * np.where(np.less(speed, 0.0), -1.0, 1.0)
-        turns = np.where(np.abs(seen) <= _STATIC * np.abs(speed), 0.0, turns)
+        turns = np.where(np.abs(seen) <= _STATIC * np.abs(speed) + rounding, 0.0, turns)
         flat = energy.reshape(-1, energy.shape[2])
         best = self._strongest(flat, np.add.outer(orders, self.orders).ravel(), speed)
         columns = np.arange(flat.shape[1])
