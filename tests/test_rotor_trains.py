@@ -23,6 +23,7 @@ from train_models import (
 )
 
 from exudyn_rotor import (
+    GearMesh,
     Link,
     RotorTrain,
     ShortJournalBearing,
@@ -33,7 +34,6 @@ from exudyn_rotor import (
     linear_model,
     stability,
 )
-from exudyn_rotor.bearings.bearing import NoEquilibriumError
 
 
 @pytest.mark.parametrize("ratio", [1.7, -1.3, 1.0])
@@ -260,20 +260,16 @@ def test_table_of_a_link_tells_whose_speed_it_needs():
     linear_model(back).at(100.0)
 
 
-def test_film_between_shafts_that_does_not_carry():
-    """The error is that of a bearing on the ground, which critical speeds take for a slow film."""
-    film = ShortJournalBearing(
-        interface="a", radius=0.02, length=0.02, clearance=5e-5, viscosity=1e-4, load=[0.0, -90.0]
-    )
-    rotors, ground = dict.fromkeys("AB", rigid(*FIRST)), [Support(name, 3e5) for name in "ab"]
-    train = RotorTrain(
-        rotors,
-        {"A": 1.0, "B": -1.0},
-        dict.fromkeys("AB", ground),
-        [Link("A:a", "B:a", film.linearised())],
-    )
-    with pytest.raises(NoEquilibriumError, match="speed of 'A' less that of 'B'"):
-        linear_model(train).at(0.0)
+def test_what_is_not_linear_or_of_a_bore_at_rest_is_no_link():
+    """Shafts of Ω and −Ω drag no oil, but a bore at rest has the film of 2 Ω."""
+    given = {"radius": 0.02, "length": 0.02, "clearance": 5e-5, "viscosity": 0.01}
+    film = ShortJournalBearing(interface="a", load=[0.0, -90.0], **given)
+    with pytest.raises(ValueError, match=r"ShortJournalBearing .* at the speed Ω1 \+ Ω2"):
+        Link("A:a", "B:a", film.linearised())
+    gears = {"radii": [0.05, 0.1], "stiffness": 1e8}
+    for more in ({"backlash": 1e-5}, {"teeth": [20, 40], "variation": [0.1]}):
+        with pytest.raises(ValueError, match="is not linear; give one without backlash="):
+            Link("A:a", "B:a", GearMesh(**gears, **more))
 
 
 def test_links_are_where_their_ends_are():

@@ -15,7 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.bearing import Linearised
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.support import COEFFICIENTS, Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.models.fourier_terms import turned_terms
 from exudyn_rotor.linear.periodic.periodic_system import Terms
@@ -41,7 +43,9 @@ class Link:
     Raises
     ------
     TypeError, ValueError
-        For names without a colon, two ends of one rotor, or a support at another interface.
+        For names without a colon, two ends of one rotor, a support at another interface, a gear
+        mesh with backlash or a stiffness that follows the teeth, and what ``linearised()`` of a
+        film gives.
 
     Examples
     --------
@@ -57,6 +61,18 @@ class Link:
     def __post_init__(self) -> None:
         (rotor, interface), (other, _) = self.ends
         checks.instance(self.connection, "connection", (Support, GearMesh))
+        law, bearing = self.connection, _bearing_of(self.connection)
+        if bearing is not None and not isinstance(bearing, RollingBearing):
+            raise ValueError(
+                f"connection: the coefficients of a {type(bearing).__name__} are those of a bore "
+                "at rest. Between rotors that turn with Ω1 and Ω2 a film has those of a bore at "
+                "rest at the speed Ω1 + Ω2; give them as a table over Ω1 − Ω2"
+            )
+        if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
+            raise ValueError(
+                "connection: a GearMesh with backlash, or with a stiffness that follows the teeth, "
+                "is not linear; give one without backlash= and variation=, of the mean stiffness"
+            )
         if isinstance(self.connection, Support) and self.connection.interface != interface:
             raise ValueError(
                 f"connection: is at {self.connection.interface!r}, and the first end of the link "
@@ -72,6 +88,13 @@ class Link:
     def ends(self) -> tuple[tuple[str, str], tuple[str, str]]:
         """Rotor and interface of both ends."""
         return _end(self.first, "first"), _end(self.second, "second")
+
+
+def _bearing_of(connection: Support | GearMesh) -> object | None:
+    """Return the bearing whose coefficients a support has; None for coefficients of its own."""
+    given = (getattr(connection, name, None) for name in COEFFICIENTS)
+    found = (each.bearing for each in given if isinstance(each, Linearised))
+    return next(found, None)
 
 
 def _end(name: str, label: str) -> tuple[str, str]:
