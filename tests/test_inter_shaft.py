@@ -1,5 +1,7 @@
 """Bearings between two rotors in scenes: the bore, or the outer ring, turns with one of them."""
 
+from dataclasses import replace
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -144,6 +146,7 @@ REFUSED = {
     "without tilt_damping": Support("a", 1e5, 0.0, 300.0, 2.0),
     "about the axis": Support("a", 1e5, 0.0, np.diag([300.0, 300.0, 50.0])),
     "constant": Support("a", 1e5, 0.0, ([0.0, 300.0], [2e2, 3e2])),
+    "whose bore is at rest": replace(SHORT, load=[0.0, -9.0]).linearised(),
     "its pads": TiltingPadBearing(interface="a", film=PADS, pad_inertia=1e-6),
     "magnets would turn": bearing("a", DELAYED, LinearActuator(80.0, 1e5)),
 }

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.support import COEFFICIENTS, Support
 
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
@@ -191,6 +191,12 @@ class Linearised:
 
     def _check(self, speed: float) -> None:
         self.bearing.equilibrium(speed)
+
+
+def bearing_of(support: object) -> Bearing | None:
+    """Return the bearing whose coefficients a support has; None for coefficients of its own."""
+    given = (getattr(support, name, None) for name in COEFFICIENTS)
+    return next((each.bearing for each in given if isinstance(each, Linearised)), None)
 
 
 def by_tangent(

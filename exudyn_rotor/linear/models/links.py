@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Linearised
+from exudyn_rotor.bearings.bearing import bearing_of
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.bearings.support import COEFFICIENTS, Support
+from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.drives.gear_mesh import GearMesh
 from exudyn_rotor.linear.models.fourier_terms import turned_terms
 from exudyn_rotor.linear.periodic.periodic_system import Terms
@@ -61,7 +61,7 @@ class Link:
     def __post_init__(self) -> None:
         (rotor, interface), (other, _) = self.ends
         checks.instance(self.connection, "connection", (Support, GearMesh))
-        law, bearing = self.connection, _bearing_of(self.connection)
+        law, bearing = self.connection, bearing_of(self.connection)
         if bearing is not None and not isinstance(bearing, RollingBearing):
             raise ValueError(
                 f"connection: the coefficients of a {type(bearing).__name__} are those of a bore "
@@ -88,13 +88,6 @@ class Link:
     def ends(self) -> tuple[tuple[str, str], tuple[str, str]]:
         """Rotor and interface of both ends."""
         return _end(self.first, "first"), _end(self.second, "second")
-
-
-def _bearing_of(connection: Support | GearMesh) -> object | None:
-    """Return the bearing whose coefficients a support has; None for coefficients of its own."""
-    given = (getattr(connection, name, None) for name in COEFFICIENTS)
-    found = (each.bearing for each in given if isinstance(each, Linearised))
-    return next(found, None)
 
 
 def _end(name: str, label: str) -> tuple[str, str]:

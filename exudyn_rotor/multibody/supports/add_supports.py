@@ -14,10 +14,11 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.bearing import Bearing, bearing_of
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.support import Support, acts, varies
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.multibody.full.full_body import FullRotorBody
@@ -243,6 +244,12 @@ def _check_on_rotor(body: RotorBody | FullRotorBody, support: Given, seat: Seat)
     if isinstance(support, TiltingPadBearing | MagneticBearing):
         raise ValueError(
             f"{where}, with which its pads or magnets would turn; give another bearing there"
+        )
+    bearing = bearing_of(support)
+    if bearing is not None and not isinstance(bearing, RollingBearing):
+        raise ValueError(
+            f"{where}, and has the coefficients of a {type(bearing).__name__} whose bore is at "
+            "rest; give the bearing itself"
         )
     if tilts and not _is_alike_in_all_tilts(support):
         raise ValueError(
