@@ -56,7 +56,8 @@ def test_coefficients_are_those_of_the_perturbed_bulk_flow(xi, length):
 
 def test_slow_leakage_of_a_long_and_narrow_gap():
     """Friction by the journal's turn alone: λ = 0.079 (7/16 RΩ)^{3/4} (2 ρc/η)^{−1/4}/V."""
-    one = seal(length=0.5, clearance=1e-6, viscosity=1e-3)
+    with pytest.warns(UserWarning, match="may be laminar"):
+        one = seal(length=0.5, clearance=1e-6, viscosity=1e-3)
     friction = 0.079 * (7.0 / 16.0 * one.radius * SPEED) ** 0.75 * (2e6 * 1e-6) ** -0.25
     velocity = 1.2e6 / (1000.0 * friction * 0.5 / 1e-6)  # Δp = ρ V² σ
     assert one.axial_velocity(SPEED) == pytest.approx(velocity, rel=1e-3)
@@ -124,3 +125,14 @@ def test_what_repels_does_not_hold_the_spin():
 def test_refused_input(changes, match):
     with pytest.raises(ValueError, match=match):
         seal(**changes)
+
+
+def test_a_leakage_that_may_be_laminar_is_told():
+    """Oil of 0.1 Pa s: by ``Δp = ½ρV²(1 + ξ + 2σ)`` with Blasius' λ, which holds without spin."""
+    with pytest.warns(UserWarning, match=r"Reynolds number is [\d.]+ here") as told:
+        one = seal(viscosity=0.1)
+    reynolds = 2.0 * one.axial_velocity(0.0) * one.clearance * 1000.0 / 0.1
+    assert f" {reynolds:.3g} " in str(told[0].message)
+    sigma = 0.079 * reynolds**-0.25 * one.length / one.clearance
+    velocity = np.sqrt(2.0 * one.pressure_drop / (1000.0 * (1.0 + one.inlet_loss + 2.0 * sigma)))
+    assert one.axial_velocity(0.0) == pytest.approx(velocity, rel=1e-12)

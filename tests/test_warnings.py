@@ -13,10 +13,12 @@ from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate
 from models import STEEL, block_beam, disc_fem, disc_rotor
 from point_rotors import ring_rotor
 from spool_models import spool_with_growth
+from test_annular_seal import SIZE, WATER
 from test_hermitian_zeros import thin_below_forty, zeros_of_eigenvalues
 
 import exudyn_rotor
 from exudyn_rotor import (
+    AnnularSeal,
     AssumptionWarning,
     ClearanceStop,
     ConnectionWarning,
@@ -265,6 +267,9 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
+    "bearings/annular_seal.py:__post_init__": (
+        lambda _: AnnularSeal(interface="a", **(SIZE | WATER | {"viscosity": 0.1})),
+        UserWarning, "may be laminar"),
     "linear/modal/hermitian_zeros.py:_free_and_negative": (
         lambda _: zeros_of_eigenvalues(thin_below_forty, 100.0), UserWarning, "are looked for"),
     "prestress/static_solution.py:_in_equilibrium": (
@@ -324,11 +329,9 @@ PLACES = {
         frame_held_by_modes, UserWarning, "use_mean_axis_modes",
     ),
     "multibody/add_rotor.py:_add_reduced": (
-        scene_of_a_lossy_rotor, UserWarning, "A scene runs without it",
-    ),
+        scene_of_a_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_add_solid": (
-        scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it",
-    ),
+        scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_warn_of_turned_axes": (
         axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about",
     ),

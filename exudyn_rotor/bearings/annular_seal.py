@@ -27,6 +27,7 @@ inlet swirl of half of the speed.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -38,7 +39,9 @@ from scipy.optimize import brentq
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.callers import user_level
 
+_TURBULENT = 2000.0  # Reynolds number Ra, below which a leakage without spin may be laminar
 _LEAST = 1e-3  # of the axial velocity without friction, above which it is looked for first
 
 
@@ -74,6 +77,11 @@ class AnnularSeal(Bearing):
     TypeError, ValueError
         For sizes and properties that are not above zero, and a clearance as large as the radius.
 
+    Warns
+    -----
+    UserWarning
+        Where the leakage is so slow, or so viscous, that (3) may not hold: Ra below 2000 at rest.
+
     Examples
     --------
     >>> from exudyn_rotor import AnnularSeal
@@ -108,6 +116,19 @@ class AnnularSeal(Bearing):
                 "clearance: needs the radial clearance, far below the radius of "
                 f"{self.radius:g} m, got {self.clearance:g} m"
             )
+        reynolds = self._relative * 2.0 * self.axial_velocity(0.0)
+        if reynolds < _TURBULENT:
+            warnings.warn(
+                f"AnnularSeal: the friction is that of a turbulent leakage, whose Reynolds number "
+                f"is {reynolds:.3g} here; below {_TURBULENT:g} the leakage may be laminar, with "
+                "other coefficients: take measured or computed ones, in a Support",
+                stacklevel=user_level(),
+            )
+
+    @property
+    def _relative(self) -> float:
+        """Reynolds number of a flow over the clearance, for each m/s of its velocity."""
+        return self.density * self.clearance / self.viscosity
 
     def axial_velocity(self, speed: float) -> float:
         """Return the mean velocity V of the leakage [m/s], by (1) and (3).
@@ -131,8 +152,7 @@ class AnnularSeal(Bearing):
 
     def _friction(self, velocity: float, speed: float) -> float:
         """Return λ by (3)."""
-        relative = self.density * self.clearance / self.viscosity
-        axial, around = 2.0 * relative * velocity, relative * self.radius * abs(speed)
+        axial, around = (self._relative * v for v in (2.0 * velocity, self.radius * abs(speed)))
         return 0.079 * axial**-0.25 * (1.0 + (7.0 * around / (8.0 * axial)) ** 2) ** 0.375
 
     def terms(self, speed: float) -> tuple[float, float, float]:
