@@ -179,6 +179,39 @@ def test_a_narrow_range_between_samples_is_found():
     assert set(found.nodal_diameters) == {1}
 
 
+def test_a_range_beside_a_limit_between_two_samples_is_found():
+    """A mass on springs k₁, k₂ that turn, damped in the rotor (c_i) and in the ground (c_e):
+
+    ``m ẍ + (c_i + c_e + 2mΩJ) ẋ + (diag(k₁, k₂) − mΩ² + c_eΩJ) x = 0``, J the quarter turn. It is
+    unstable where ``(k₁ − mΩ²)(k₂ − mΩ²) + (c_eΩ)² < 0``, and again from where two of its roots are
+    imaginary. Of samples at 50, 400 and 750 rad/s the first alone is stable.
+    """
+    k, inner, outer = np.array([100.0**2, 150.0**2]), 1.0, 2.0
+    mass = SolidRotor.from_matrices(
+        np.eye(3),
+        np.diag([*k, 1e5]),
+        [[0, 0, 0.1]],
+        "z",
+        inner * np.eye(3),
+        interfaces={"disc": [0]},
+    )
+    supports = [Support("disc", damping=outer)]
+
+    def roots(speed: float) -> np.ndarray:
+        one, other = ([1.0, inner + outer, spring - speed**2] for spring in k)
+        turning = [2.0 * speed, outer * speed]
+        return np.roots(np.polyadd(np.polymul(one, other), np.polymul(turning, turning)))
+
+    split = np.sqrt(np.roots([1.0, outer**2 - k.sum(), k.prod()])[::-1])
+    low, high = 300.0, 400.0
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if roots(middle).real.max() > 0.0 else (middle, high)
+    found = stability_threshold(mass, 50.0, 750.0, supports=supports, samples=2)
+    np.testing.assert_allclose(found.values, [*split, low], rtol=1e-6)
+    assert found.onset.tolist() == [True, False, True]
+
+
 def test_gaps_between_unstable_samples_are_found():
     """Two gaps of 1.6 and 1.0 rad/s; multipliers of the same disc by a Runge–Kutta solution."""
     found = stability_threshold(asymmetric_shaft(), 150.0, 180.0, supports=anisotropic(), samples=3)

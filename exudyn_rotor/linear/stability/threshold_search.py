@@ -22,6 +22,8 @@ _DAMPED = 0.05
 # times which a damped motion may rise between two samples as its tangents tell
 _STEEPER = 10.0
 _CROSSING_STEPS, _PEAK_STEPS = 5, 8
+# parts of a gap whose ends differ in their verdict
+_INSIDE = 8
 # motions whose limits are tried, and shares of the accuracy: how well they are known, and where
 # growths on both sides of them are made
 _LIMITS, _CLOSE, _BESIDE = 3, 0.05, 0.4
@@ -202,6 +204,7 @@ class Search:
         """Look between samples of one verdict where exponents and their rates say so."""
         for low, high in gaps:
             if self.unstable(low) != self.unstable(high):
+                self._look_inside(low, high)
                 continue
             if self.unstable(low):
                 self._search(low, high, lambda growth, _: growth.excess)
@@ -213,6 +216,22 @@ class Search:
             for branch in piece.peaks():
                 self._climb(piece, branch)
             self._part(low, high)
+
+    def _look_inside(self, low: float, high: float) -> None:
+        """Look between samples of different verdict, which may change more than once.
+
+        At values between, and where growth has its low among them. Of equations that do not turn;
+        others are scanned.
+        """
+        if self.at(low).base > 0.0 or self.at(high).base > 0.0 or len(self.known) >= self.most:
+            return
+        values = np.linspace(low, high, _INSIDE + 1).tolist()
+        growth = [self.at(value).excess for value in values]
+        for place in range(1, _INSIDE):
+            beside = growth[place - 1], growth[place + 1]
+            if 0.0 < growth[place] < min(beside):
+                ends = values[place - 1], values[place + 1]
+                self._search(*ends, lambda found, _: found.excess)
 
     def _part(self, low: float, high: float) -> None:
         """Look between unstable values of a gap, which may be of ranges far narrower than it."""

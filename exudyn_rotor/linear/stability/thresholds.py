@@ -52,7 +52,8 @@ def stability_threshold(
     Each to 1e-8 of the largest parameter, with the mode that grows there. Ranges between two
     samples are found where the real part of a mode, followed by its rate of change, has a peak, or
     where two lightly damped modes meet in frequency, as in a parametric resonance; gaps between two
-    unstable samples by a search of few steps. Of equations that turn, as of uneven rotors on uneven
+    unstable samples by a search of few steps, and what lies between samples of different verdict by
+    seven values. Of equations that turn, as of uneven rotors on uneven
     supports, the largest growth is computed at 40 values between two samples, too. A range that is
     narrower can be missed: take more `samples` where that matters. The growth counts from its bound
     on, see :attr:`Stability.bounds`, so a threshold that is crossed slowly is found late by that
