@@ -43,7 +43,7 @@ LINEAR_STEADY = [
         "linear/models/scene/differences.py",
         "test_differences.py",
         ("steps of 2h are added", "near + (near - far) / 3.0", "near + (far - near) / 3.0"),
-        ("curved forces count as straight", "error > CURVATURE**2", "error > 1.0"),
+        ("curved forces count as straight", "error > _STRAIGHT", "error > 1.0"),
         ("motions of a place cancel", "shape[1]) * _GOLDEN", "shape[1]) * 0.0"),
     ),
     *mutations(

@@ -9,6 +9,7 @@ import numpy as np
 CURVATURE = 3e-6  # relative second-order error of a step; extrapolated, its square is left
 _SHARES = (1.0, 0.1, 0.01)  # of a step, where a contact or a film begins or ends within it
 _GOLDEN = (5.0**0.5 - 1.0) / 2.0
+_STRAIGHT = 1e-12  # relative error of slopes, as rounding leaves it: 1e-16 m in a step of 1e-4 m
 _KINK = 1e-4  # relative second-order error of a step that tells so
 
 
@@ -29,7 +30,7 @@ def differences(function: Callable, moves: np.ndarray) -> tuple[np.ndarray, floa
     shares /= np.linalg.norm(shares)
     error = np.abs(far @ shares - along(moves @ shares, 1)).max()
     error /= max(np.abs(far).max(), 1e-300)
-    if error > CURVATURE**2:
+    if error > _STRAIGHT:
         near = np.array([along(move, 1) for move in moves.T]).T
         error = np.abs(near - far).max() / 3.0 / max(np.abs(near).max(), 1e-300)
         far = near + (near - far) / 3.0
