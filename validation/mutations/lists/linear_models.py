@@ -295,7 +295,26 @@ LINEAR_MODELS = [
         "linear/models/scene/journal_start.py",
         "test_journal_bearing.py::test_films_in_a_scene_are_linearised_as_in_a_list",
         ("journals begin in the centre", "elif np.any(load) and speed", "elif False and speed"),
-        ("journals begin beside their places", "0.0]) - apart)", "0.0]) + apart)"),
+        (
+            "journals begin beside their places",
+            "into_rotor_frame(-apart)",
+            "into_rotor_frame(apart)",
+        ),
+    ),
+    *mutations(
+        "bearings/held_law.py",
+        "test_uneven_inertia.py::test_loads_of_short_films_are_those_of_the_lever_rule",
+        ("friction whirls eccentric rotors", "brakes and not self._rests", "brakes"),
+    ),
+    *mutations(
+        "bearings/held_law.py",
+        "test_uneven_inertia.py::test_eccentric_rotors_with_a_free_translation_begin_in_the_middle",
+        ("friction tilts with the journal", "begins or self._point is None", "True"),
+    ),
+    *mutations(
+        "multibody/supports/magnetic_connectors.py",
+        "test_uneven_inertia.py::test_saturating_magnets_are_taken_at_their_mean_place_and_current",
+        ("magnets by their places", "self._slopes or self._actuator", "self._actuator"),
     ),
     *mutations(
         "linear/models/scene/steady_motion.py",
