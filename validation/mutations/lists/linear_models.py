@@ -339,11 +339,6 @@ LINEAR_MODELS = [
         "bearings/held_law.py",
         "test_bearings_in_scenes_and_lists.py",
         ("films under an uneven mesh go with it", "one.moved > _STILL", "one.moved > 1e9 * _STILL"),
-        (
-            "friction changes with the motion",
-            "fx, fy = self._whole(x, y, vx, vy, angle, speed)[:2]",
-            "fx, fy, *torque = self._whole(x, y, vx, vy, angle, speed)",
-        ),
         ("rest under the load the other way", "load = -np.sum", "load = np.sum"),
     ),
     *mutations(
