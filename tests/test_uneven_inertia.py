@@ -194,6 +194,21 @@ def test_public_analyses_of_rigid_eccentric_rotors_are_alike(kind, free):
         np.testing.assert_allclose(*(each.semi_axes(name)[0] for each in orbits), rtol=1e-6)
 
 
+@pytest.mark.parametrize("kind", ["table", "tilts"])
+def test_unbalance_responses_of_elastic_eccentric_rotors_are_alike(kind):
+    """Whirl that is not circular turned the free spin of a list against its drive, by its bending.
+
+    Orbits differed by 2e-5. The tolerance is that of the harmonics, with a margin of 100.
+    """
+    models = on_ends(eccentric(2, 4), KINDS[kind], free=True, gravity=np.zeros(3))
+    scene, listed = (
+        unbalance_response(each, [SPEED], accuracy=None, tolerance=1e-10) for each in models
+    )
+    for name in ENDS:
+        found, expected = (np.array(each.semi_axes(name)) for each in (scene, listed))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * expected.max())
+
+
 def test_the_drive_of_steady_motions_is_no_load(monkeypatch):
     """A torque on the mean rotation does not tilt: all routes have the same whirl."""
     rotor, *_ = uneven(0.2, 0.01)

@@ -132,11 +132,14 @@ class WholeSpace:
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float
     ) -> dict[int, np.ndarray]:
         """Return the harmonics of the steady motion under harmonics of a load."""
+        system, driven = self.equations.at(speed), self.driven
         T = self.motions_beside_spin
+        if self.others is not None:
+            T, driven = self.others, ()
         if T is None:
-            return forced_motion(self.at(speed), loads, rate, tolerance, self.driven)
+            return forced_motion(system, loads, rate, tolerance, driven)
         loads = {n: T.T @ load for n, load in loads.items()}
-        found = forced_motion(self.at(speed).projected(T), loads, rate, tolerance, self.driven)
+        found = forced_motion(system.projected(T), loads, rate, tolerance, driven)
         return {n: T @ X for n, X in found.items()}
 
     def holds(self, motions: Sequence[tuple[float, FloquetModes]]) -> bool:

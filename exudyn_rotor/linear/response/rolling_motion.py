@@ -106,7 +106,7 @@ class RollingProblem:
         """Return the equations by the harmonics that they have, with so much more unbalance."""
         loads = dict(self.static)
         loads[0] = loads.get(0, 0.0) + more * speed**2 * self.unbalance
-        space = self.model.space(1, speed).prepared([speed])
+        space = self.model.space(1, speed, held=True).prepared([speed])
         rest = Rest(space, speed, self.passes * speed, self.seats, loads)
         if not rest.presses():
             raise ValueError(

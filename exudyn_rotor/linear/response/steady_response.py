@@ -83,7 +83,8 @@ def unbalance_response(
 
     The load ``Ω² (h + Σ Uᵀu)`` is constant in the rotor frame; h is the rotor's own (83). So is the
     motion where no coefficient turns with the rotor; on anisotropic supports it is found in
-    harmonics of the speed, and how many are needed is found by itself.
+    harmonics of the speed, and how many are needed is found by itself. A drive keeps the mean rotation
+    about the axis at Ωt, where nothing else holds it.
 
     Parameters
     ----------
@@ -159,7 +160,7 @@ def unbalance_response(
     observed = places(model, at)
     load = unbalance_load(model, unbalances, own)
     basis = BasisError.of(model, accuracy)
-    space = model.space(_MODES, fastest, loads=[load], residual=residual)
+    space = model.space(_MODES, fastest, loads=[load], held=True, residual=residual)
     observation = Observation.of(observed, frame, tolerance, model)
     task = UnbalanceTask(space.prepared(values[values != 0.0]), load, observation)
     workers = None if space.is_shared else executor
@@ -176,7 +177,7 @@ def unbalance_response(
 
     def better(finer: LinearModel, observation: Observation) -> Callable[[float], Solved]:
         load = unbalance_load(finer, unbalances, own)
-        space = finer.space(_MODES, fastest, loads=[load])
+        space = finer.space(_MODES, fastest, loads=[load], held=True)
         return UnbalanceTask(space, load, observation)
 
     constant = space.at(values[np.argmax(np.abs(values))]).is_constant

@@ -224,11 +224,13 @@ class Subspace:
             loads = {0: sum(loads.values())}
         size = self._size(loads.values())
         # the spin where no support resists it: the drive does
-        driven = () if self.full.free_spin is None else (0,)
+        driven = () if self.full.free_spin is None or self.held else (0,)
+        first = int(self.held)
         for _ in range(_MOST_ROUNDS):
             basis = self.basis
-            projected = {n: basis.T @ load for n, load in loads.items()}
-            motion = forced_motion(self.projected.at(speed), projected, rate, tolerance, driven)
+            projected = {n: basis.T[first:] @ load for n, load in loads.items()}
+            motion = forced_motion(self.at(speed), projected, rate, tolerance, driven)
+            motion = {n: np.pad(x, (first, 0)) for n, x in motion.items()}
             error, corrections = self._left(speed, rate, loads, motion, size)
             if error <= self.residual:
                 return {n: basis @ x for n, x in motion.items()}
@@ -265,6 +267,8 @@ class Subspace:
         columns, H = [], self.full.invariants.H
         for n, force in left.items():
             force = force[:, 0] - loads.get(n, 0.0)
+            if self.held:  # but for the torque of the drive
+                force = self.full.spin.without_torque(force[:, None])[:, 0]
             sense = senses_of_turning(rate, n, speed)
             if H is not None:
                 force = force + 1j * sense * (H @ strained[n][:, 0])
