@@ -83,8 +83,8 @@ def unbalance_response(
 
     The load ``Ω² (h + Σ Uᵀu)`` is constant in the rotor frame; h is the rotor's own (83). So is the
     motion where no coefficient turns with the rotor; on anisotropic supports it is found in
-    harmonics of the speed, and how many are needed is found by itself. A drive keeps the mean rotation
-    about the axis at Ωt, where nothing else holds it.
+    harmonics of the speed, and how many are needed is found by itself. A drive keeps the mean
+    rotation about the axis at Ωt, where nothing else holds it.
 
     Parameters
     ----------
