@@ -212,3 +212,21 @@ def test_small_harmonic_motions_off_the_centre(phase):
     size = 0.5 * np.pi * 0.01 * 0.06 * 0.02**3 / 2e-4**3
     along, across = (1.0 + 2.0 * ratio**2) / (1.0 - ratio**2) ** 2.5, (1.0 - ratio**2) ** -1.5
     np.testing.assert_allclose(np.linalg.eigvalsh(D), size * np.array([across, along]), rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_adds_itself_as_add_supports_adds_it(kind):
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, disc_with_two_modes(), spin=SPEED)
+    for given in KINDS[kind]("left", np.zeros(2)):
+        (expected,) = add_supports(body, given, base=mbs.CreateGround())
+        for interface in (None, "left", "right"):
+            added = given.add_to(body, interface, mbs.CreateGround())
+            assert added.support.interface == (interface or "left")
+            assert type(added.support) is type(given)
+            assert len(added.objects) == len(expected.objects)
+            assert body.supports[-1] is added
+    before = mbs.systemData.NumberOfObjects()
+    with pytest.raises(ValueError, match="support at 'top': no such interface"):
+        given.add_to(body, "top")
+    assert mbs.systemData.NumberOfObjects() == before

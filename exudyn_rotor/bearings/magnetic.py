@@ -26,7 +26,7 @@ from exudyn_rotor.bearings.actuator import (
     SaturatingActuator,
     check_hold,
 )
-from exudyn_rotor.bearings.bearing import LoadedBearing
+from exudyn_rotor.bearings.bearing import ClearanceAlong, LoadedBearing
 from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.pid_controller import PIDController
 
@@ -116,12 +116,14 @@ class MagneticBearing(LoadedBearing):
         c, s = cos(self.angle), sin(self.angle)
         return np.array([[c, s], [-s, c]])
 
-    def clearance_along(self, direction: np.ndarray | None = None) -> float:
+    @property
+    def clearance_along(self) -> ClearanceAlong:
         """For scenes: how far the journal may go in any direction [m], the air gap.
 
-        Infinity for linear actuators, which have none.
+        Infinity for linear actuators, which have none. As :attr:`Bearing.clearance_along`.
         """
-        return self.actuator.gap if isinstance(self.actuator, SaturatingActuator) else inf
+        gap = self.actuator.gap if isinstance(self.actuator, SaturatingActuator) else inf
+        return lambda direction=None: gap
 
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).

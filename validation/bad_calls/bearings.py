@@ -52,7 +52,9 @@ class Bearings:
         """A bearing of two tilting pads."""
         pads = er.grooved_pads(1e-4, [0.0, np.pi], 0.5, preload=0.3)
         film = er.OilFilm(0.05, 0.05, 0.1, pads, nodes=24, axial_nodes=0)
-        return er.TiltingPadBearing(interface="left", film=film, load=[0.0, -500.0])
+        return er.TiltingPadBearing(
+            interface="left", film=film, load=[0.0, -500.0], pad_inertia=1e-5
+        )
 
     @cached_property
     def rolling(self) -> er.RollingBearing:

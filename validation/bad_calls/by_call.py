@@ -17,6 +17,8 @@ BY_CALL: dict[tuple[str, str], Kind] = {
     ("*.AddObjectFFRFreducedOrder", "name"): v.NAME.but("empty text"),
     ("*.AddObjectFFRFreducedOrderWithUserFunctions", "name"): v.NAME.but("empty text"),
     ("*.current_for", "force"): v.SIGNED,
+    ("*.add_to", "base"): v.OBJECT.but(name="ground"),
+    ("*.add_to", "interface"): v.KNOWN,
     ("*.current_for", "place"): v.SIGNED,
     ("*.force", "place"): v.SIGNED,
     ("*.orbit", "points"): v.COUNT_FROM_ONE,

@@ -30,6 +30,7 @@ OF_METHODS: dict[str, Callable[[World], dict[str, Any]]] = {
         "mbs": w.mbs,
         "eulerParametersRef": [1.0, 0.0, 0.0, 0.0],
     },
+    "*.add_to": lambda w: {"body": w.body, "interface": "left"},
     "*.coefficients": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},
     "*.current_for": lambda w: {"force": 100.0, "place": 1e-5},
     "*.eccentricity_ratio": lambda w: {"speed": 100.0, "load": [0.0, -500.0]},

@@ -8,7 +8,7 @@ The spring is relaxed where the interface stands at rest with its centre on the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import exudyn
 import numpy as np
@@ -176,6 +176,41 @@ def add_supports(
     )
     body.supports.extend(added)
     return added
+
+
+def add_to(
+    self: Given,
+    body: RotorBody | FullRotorBody,
+    interface: str | None = None,
+    base: Base | Mapping[str, Base] | None = None,
+) -> SceneSupport:
+    """Put this support or bearing into a scene, as :func:`exudyn_rotor.add_supports` does.
+
+    Parameters
+    ----------
+    body : RotorBody or FullRotorBody
+        From :func:`exudyn_rotor.add_rotor`, with its marker body.
+    interface : str, optional
+        Where it acts on the rotor; its own `interface` by default.
+    base : SceneFoundation, MarkerIndex, ObjectIndex, or mapping of interface to these, optional
+        What carries it; the ground by default.
+
+    Returns
+    -------
+    SceneSupport
+        With the numbers of its connectors.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`exudyn_rotor.add_supports`; nothing has been added then.
+    """
+    one = self if interface is None else replace(self, interface=interface)
+    return add_supports(body, one, base)[0]
+
+
+for kind in (Support, Bearing, MagneticBearing):
+    kind.add_to = add_to  # here, since the laws of supports know no scenes
 
 
 def _check_base(body: RotorBody | FullRotorBody, base: Base | Mapping[str, Base] | None) -> None:
