@@ -19,7 +19,7 @@ from matplotlib import pyplot, rc_context, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from exudyn_rotor import checks
+from exudyn_rotor import checks, plotting
 from exudyn_rotor.descriptions import DESCRIBED, SUPPORTS, described, described_supports
 from exudyn_rotor.export import csv_text
 from exudyn_rotor.foundations.foundation import Foundation
@@ -226,7 +226,7 @@ def _html(items: list[Any], heading: str, units: str) -> str:
         if isinstance(item, str):
             parts.append(f"<p>{escape(item)}</p>")
         elif isinstance(item, Axes | Figure):
-            made = item if isinstance(item, Figure) else item.figure
+            made = plotting.whole_figure(item)
             if made not in figures:  # a Bode diagram has two axes
                 figures.append(made)
                 parts.append(_picture(made, heading))

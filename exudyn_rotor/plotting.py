@@ -45,6 +45,11 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes
     return checks.instance(ax, "ax", Axes, "make some with matplotlib.pyplot.subplots()")
 
 
+def whole_figure(drawn: Artist) -> Figure:
+    """Return the figure of something drawn, also where that stands in a part of it (SubFigure)."""
+    return drawn.figure.canvas.figure
+
+
 def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     """Write the figure of axes, or of an array of them, or a figure.
 
@@ -52,7 +57,7 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     """
     one = drawn.flat[0] if isinstance(drawn, np.ndarray) and drawn.size else drawn
     checks.instance(one, "drawn", (Axes, Figure))
-    made = one if isinstance(one, Figure) else one.figure
+    made = whole_figure(one)
     target, content = checks.path(path), io.BytesIO()
     if not target.suffix:
         target = target.with_suffix(".png")
@@ -262,7 +267,8 @@ def keep_apart(labels: Sequence[Annotation]) -> None:
     """Move each label, offset in points from its place, up until it is clear of those before."""
     for index, label in enumerate(labels):
         if index == 0:
-            label.figure.draw_without_rendering()  # limits and layout are settled by drawing
+            # limits and layout are settled by drawing
+            whole_figure(label).draw_without_rendering()
         for _ in labels:
             box = label.get_window_extent()
             if not any(box.overlaps(other.get_window_extent()) for other in labels[:index]):

@@ -27,6 +27,7 @@ from exudyn_rotor import (
     Unbalance,
     add_rotor,
     linear_model,
+    plotting,
     report,
     unbalance_response,
 )
@@ -210,6 +211,21 @@ def test_own_pictures_take_the_place_of_the_usual_one(written):
     bode = STORED["UnbalanceResponse"].plot()
     assert Page(written([bode])).tags.count("img") == 1
     pyplot.close("all")
+
+
+def test_pictures_in_parts_of_a_figure_are_shown_once_and_whole(written, tmp_path):
+    made = pyplot.figure()
+    axes = [part.subplots() for part in made.subfigures(1, 2)]
+    labels = [
+        axes[0].annotate("AF 2.0", (0.5, 0.5), textcoords="offset points", xytext=(4, 3))
+        for _ in range(3)
+    ]
+    plotting.keep_apart(labels)
+    assert len({label.get_position() for label in labels}) == 3
+    plotting.save(np.array(axes), tmp_path / "parts.png")
+    assert (tmp_path / "parts.png").stat().st_size > 1000
+    assert Page(written({"Parts": axes})).tags.count("img") == 1
+    pyplot.close(made)
 
 
 def test_text_is_never_taken_for_html(written):
