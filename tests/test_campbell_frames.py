@@ -254,6 +254,22 @@ def test_a_wave_is_recognised(wave, component):
     assert energy.max() > 0.95 * np.sum(np.abs(field) ** 2)
 
 
+@pytest.mark.parametrize("count", [1, 5], ids=["by amplitudes", "by forms"])
+def test_mean_wave_of_a_shifted_ring(count):
+    """The circle (1, −i) is the wave 1, (1, i) the wave −1; both are orthogonal: means of |a|²."""
+    angle, zero = np.linspace(0.0, HERTZ, 40, endpoint=False), np.zeros(40)
+    points = np.column_stack([np.cos(angle), np.sin(angle), zero])
+    content = WhirlContent.from_points(
+        PointMotions(points, np.tile(np.eye(3), (40, 1)), None, True)
+    )
+    share = np.linspace(0.1, 1.0, count)
+    motions = np.array([1.0 + share, 1j * (share - 1.0), 0.0 * share])
+    expected = [(1.0 - share**2) / (1.0 + share**2)] * 2
+    found = content.mean_waves(np.array([motions, -2j * motions]))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    assert np.all(content.mean_waves(0.0 * motions[None]) == 0.0)
+
+
 # ------------------------------------------------------------------ periodic systems
 
 

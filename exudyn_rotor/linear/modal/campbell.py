@@ -168,9 +168,9 @@ def campbell(
         modes_at = _modes_at(space, values, tolerance, executor, progress)
         basis, content = basis_made(), content_made()
     solved = _classified(modes_at, values, content, computed, seen)
-    found = [entry.modes for entry in solved]
     static = np.array([entry.codes == STATIC for entry in solved])
-    seen_from_outside = content.mean_waves(found), static
+    seen_from_outside = content.mean_waves, static
+    found = [entry.modes for entry in solved]
     tracks = track(found, values, model.mass_matrix.__matmul__, *seen_from_outside)
     solved, tracks = _lowest(solved, tracks, count, seen, model)
     inertial = np.array([entry.inertial for entry in solved])

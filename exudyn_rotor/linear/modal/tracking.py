@@ -104,7 +104,7 @@ def track(
     modes: Sequence[FloquetModes],
     speeds: np.ndarray,
     weigh: Callable[[np.ndarray], np.ndarray],
-    waves: np.ndarray | None = None,
+    waves: Callable[[np.ndarray], np.ndarray] | None = None,
     static: np.ndarray | None = None,
 ) -> Tracks:
     """Return which column continues each mode of the first speed.
@@ -124,9 +124,10 @@ def track(
         [rad/s]
     weigh : callable
         Multiplies vectors (c, k) by the mass matrix.
-    waves : ndarray, shape (s, k), optional
-        Mean wave numbers n of the motions: a wave that is seen at one frequency changes it by
-        ``−nΔΩ`` in the rotor frame. For equations that do not change in time.
+    waves : callable, optional
+        Gives the mean wave numbers n (s, k) of motions (s, c, k): a wave that is seen at one
+        frequency changes it by ``−nΔΩ`` in the rotor frame. Asked for only where equations do not
+        change in time.
     static : ndarray of bool, shape (s, k), optional
         Which motions stand still in space: any of them goes on as another.
     """
@@ -135,7 +136,6 @@ def track(
     columns[0] = np.arange(count)
     continued = np.ones((len(modes), count), dtype=bool)
     constant = all(len(entry.orders) == 1 for entry in modes)
-    waves = np.zeros((len(modes), count)) if waves is None else waves
     steps = (
         _steps_of_constant(modes, speeds, weigh, waves)
         if constant
@@ -156,7 +156,7 @@ def _steps_of_constant(
     modes: Sequence[FloquetModes],
     speeds: np.ndarray,
     weigh: Callable[[np.ndarray], np.ndarray],
-    waves: np.ndarray,
+    waves: Callable[[np.ndarray], np.ndarray] | None,
 ) -> Steps:
     """Yield which column continues each, and whether as the same mode, each (k,), step by step.
 
@@ -175,7 +175,7 @@ def _steps_of_constant(
         frequencies = np.array([entry.values.imag for entry in modes[few]])
         forms = np.stack([frequencies[1:], -frequencies[1:]], axis=1)
         changes, after = np.diff(speeds[few]), modes[few][1:]
-        shifts = -waves[few][:-1] * changes[:, None]
+        shifts = None if waves is None else -waves(vectors[:-1]) * changes[:, None]
         matched, _, same = _matched(likeness, frequencies[:-1], forms, changes, after, shifts)
         yield from zip(matched, same, strict=True)
 

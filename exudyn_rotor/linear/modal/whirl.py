@@ -20,7 +20,7 @@ from scipy.optimize import linear_sum_assignment
 from exudyn_rotor.cached import kept
 from exudyn_rotor.linear.modal.one_sense import as_waves
 from exudyn_rotor.linear.models.protocol import LinearModel, PointMotions
-from exudyn_rotor.linear.models.waves import HIGHEST, compressed, stacked, wave_amplitudes
+from exudyn_rotor.linear.models.waves import HIGHEST, averaged, compressed, stacked, wave_amplitudes
 from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
 from exudyn_rotor.threads import one_thread
 
@@ -298,11 +298,9 @@ class WhirlContent:
         """Return the energy of what stands still, which counts as waves n = 0, shape (h, k)."""
         return _energy(self.standing, self._chosen(vectors))
 
-    @one_thread()
-    def mean_waves(self, modes: Sequence[FloquetModes]) -> np.ndarray:
-        """Return the mean wave numbers of the central harmonics, shape (s, k); 0 of no motion."""
-        energy = np.array([self.energies(entry.central[None])[0] for entry in modes])
-        return self.orders @ energy / np.maximum(energy.sum(axis=1), 1e-300)
+    def mean_waves(self, vectors: np.ndarray) -> np.ndarray:
+        """Return the mean wave numbers of motions (s, c, k) that are one harmonic, (s, k)."""
+        return averaged(self.orders, self.waves, self._chosen(vectors))
 
     def whole_energy(self, vectors: np.ndarray) -> np.ndarray:
         """Return the energy of the whole motion, all harmonics, shape (k,)."""
