@@ -11,7 +11,7 @@ LINEAR = [
     *mutations(
         "linear/modal/tracking.py",
         "test_equal_motions.py",
-        ("waves expected the wrong way", "shifts = -waves[few]", "shifts = waves[few]"),
+        ("waves expected the wrong way", "else -waves(", "else waves("),
     ),
     *mutations(
         "linear/modal/listing.py",
