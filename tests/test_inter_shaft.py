@@ -87,6 +87,18 @@ def test_a_film_in_a_casing_that_turns(kind):
     assert force_on_inner(mbs, added.objects[0]) == pytest.approx(expected, rel=1e-9)
 
 
+def test_axes_against_each_other():
+    """−90 rad/s about −z are 90 about z; a table about −z has −90 + 60 of both."""
+    turn, at = np.diag([1.0, -1.0, -1.0]), rings(*FIRST).interfaces["a"].reference
+    upside_down = {"spin": -90.0, "rotation": turn, "position": at - turn @ at}
+    expected = force_on_inner(*scene(SHORT, {"spin": 60.0}, {"spin": 90.0}))
+    found = force_on_inner(*scene(SHORT, {"spin": 60.0}, upside_down))
+    assert found == pytest.approx(expected, rel=1e-9)
+    table = Support("a", ([-40.0, 0.0, 400.0], [3e5, 1e5, 5e5]))
+    found = force_on_inner(*scene(table, {"spin": 60.0}, upside_down))
+    assert found == pytest.approx([-2.5e5 * OFF, 0.0], rel=1e-9, abs=1e-9)
+
+
 def test_elements_go_with_both_rings():
     """The cage has turned by κ θ_i + (1 − κ) θ_o (Harris, Ch. 8)."""
     inner, outer = 0.7, -1.1

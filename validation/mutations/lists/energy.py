@@ -143,12 +143,14 @@ ENERGY = [
         ("a bore on a rotor leaves the spin", "turn, speed - w", "turn, speed"),
         ("journal moves by minus the rotor's bore", "w * y + vx", "vx - w * y"),
         ("forces turn back with the bore", "c * fx - s * fy", "c * fx + s * fy"),
+        ("rotors of opposite axes turn alike", "(sense * value for", "(value for"),
     ),
     *mutations(
         "multibody/supports/support_connectors.py",
         "test_inter_shaft.py",
         ("voids begin on a bore at rest", "seen is None else seen(motion)[1]", "True else ()"),
         ("tables over the own speed alone", "speed - against(mbs)", "speed"),
+        ("tables between opposite axes", "sense * rotor.spin", "rotor.spin"),
     ),
     *mutations(
         "multibody/supports/turning_base.py",
