@@ -45,7 +45,7 @@ class Link:
     TypeError, ValueError
         For names without a colon, two ends of one rotor, a support at another interface, a gear
         mesh with backlash or a stiffness that follows the teeth, and what ``linearised()`` of a
-        film gives.
+        bearing gives, unless that is a `RollingBearing`.
 
     Examples
     --------
@@ -64,9 +64,9 @@ class Link:
         law, bearing = self.connection, bearing_of(self.connection)
         if bearing is not None and not isinstance(bearing, RollingBearing):
             raise ValueError(
-                f"connection: the coefficients of a {type(bearing).__name__} are those of a bore "
-                "at rest. Between rotors that turn with Ω1 and Ω2 a film has those of a bore at "
-                "rest at the speed Ω1 + Ω2; give them as a table over Ω1 − Ω2"
+                f"connection: the coefficients of a {type(bearing).__name__} hold on what does not "
+                "turn; give those between two rotors as a table over Ω1 − Ω2. A journal in a round "
+                "bore has there what it has in a bore at rest at the speed Ω1 + Ω2"
             )
         if isinstance(law, GearMesh) and (law.backlash is not None or law.variation.size):
             raise ValueError(
