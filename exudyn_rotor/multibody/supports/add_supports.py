@@ -209,8 +209,8 @@ def add_to(
     return add_supports(body, one, base)[0]
 
 
-for kind in (Support, Bearing, MagneticBearing):
-    kind.add_to = add_to  # here, since the laws of supports know no scenes
+# here, since the laws of supports know no scenes
+Support.add_to = Bearing.add_to = MagneticBearing.add_to = add_to
 
 
 def _check_base(body: RotorBody | FullRotorBody, base: Base | Mapping[str, Base] | None) -> None:
