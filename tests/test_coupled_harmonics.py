@@ -10,7 +10,7 @@ from exudyn_rotor.linear.periodic.coupled_harmonics import (
     links_of,
     norm_of_inverse,
 )
-from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
+from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion, forced_motions
 from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 
@@ -100,7 +100,7 @@ def both_ways(
         with monkeypatch.context() as changed:
             changed.setattr(coupled_harmonics, "_LARGE", least)
             if forbidden:
-                changed.delattr(harmonic_balance, "_solved_as_one")
+                changed.delattr(harmonic_balance, "_factorised")
             found.append(forced_motion(system, *given))
     return found
 
@@ -169,3 +169,25 @@ def test_a_singular_whole_is_refused(monkeypatch):
     with pytest.raises(ValueError, match="the equations are singular: a resonance"):
         forced_motion(system, {0: np.ones(SIZE + 1) + 0j}, frequency, 1e-9)
     assert harmonic_balance.worth_it(system, 3)
+
+
+def test_several_loads_are_answered_as_each_alone():
+    """Loads of other harmonics, with other numbers of further ones that they need."""
+    system = system_of((1, 2))
+    loads = [{n: np.eye(SIZE)[n] + 0j} for n in range(3)]
+    found = forced_motions(system, loads, 0.7, 1e-9)
+    for load, motion in zip(loads, found, strict=True):
+        alone = forced_motion(system, load, 0.7, 1e-9)
+        assert list(motion) == list(alone)
+        most = max(np.abs(x).max() for x in alone.values())
+        for n, x in alone.items():
+            np.testing.assert_allclose(motion[n], x, atol=1e-12 * most)
+
+
+def test_several_loads_leave_other_motions_free():
+    """Constant forces of 1 N: F/k where they act on a soft motion, which else stays put."""
+    stiffness = np.array([1.0, 1e-13])  # of masses of 1 kg that turn at 1 rad/s
+    system = PeriodicSystem(1.0, {0: np.eye(2)}, {0: np.zeros((2, 2))}, {0: np.diag(stiffness)})
+    loads = [{0: np.array([1.0, y], dtype=complex)} for y in (0.0, 1.0)]
+    found = forced_motions(system, loads, 0.0, 1e-9)
+    np.testing.assert_allclose([x[0] for x in found], [[1.0, 0.0], 1.0 / stiffness], rtol=1e-10)

@@ -121,6 +121,11 @@ class Space(Protocol):
     ) -> dict[int, np.ndarray]:
         """Return the harmonics (k,) of the steady motion under harmonics of a load."""
 
+    def steady_motions(
+        self, speed: float, loads: Sequence[Mapping[int, np.ndarray]], rate: float, tolerance: float
+    ) -> list[dict[int, np.ndarray]]:
+        """Return the steady motion under each of several loads."""
+
     def holds(self, motions: Sequence[tuple[float, FloquetModes]]) -> bool:
         """Return whether motions at speeds meet the model's equations; if not, a subspace grows."""
 

@@ -15,7 +15,7 @@ from exudyn_rotor.linear.periodic.floquet_modes import (
     constant_modes,
     floquet_modes,
 )
-from exudyn_rotor.linear.periodic.harmonic_balance import forced_motion
+from exudyn_rotor.linear.periodic.harmonic_balance import forced_motions
 from exudyn_rotor.linear.periodic.periodic_system import ConstantSystems, PeriodicSystem
 from exudyn_rotor.threads import in_turns
 
@@ -132,15 +132,21 @@ class WholeSpace:
         self, speed: float, loads: Mapping[int, np.ndarray], rate: float, tolerance: float
     ) -> dict[int, np.ndarray]:
         """Return the harmonics of the steady motion under harmonics of a load."""
+        return self.steady_motions(speed, [loads], rate, tolerance)[0]
+
+    def steady_motions(
+        self, speed: float, loads: Sequence[Mapping[int, np.ndarray]], rate: float, tolerance: float
+    ) -> list[dict[int, np.ndarray]]:
+        """Return the steady motion under each of several loads, with one factor for all."""
         system, driven = self.equations.at(speed), self.driven
         T = self.motions_beside_spin
         if self.others is not None:
             T, driven = self.others, ()
         if T is None:
-            return forced_motion(system, loads, rate, tolerance, driven)
-        loads = {n: T.T @ load for n, load in loads.items()}
-        found = forced_motion(system.projected(T), loads, rate, tolerance, driven)
-        return {n: T @ X for n, X in found.items()}
+            return forced_motions(system, loads, rate, tolerance, driven)
+        loads = [{n: T.T @ load for n, load in each.items()} for each in loads]
+        found = forced_motions(system.projected(T), loads, rate, tolerance, driven)
+        return [{n: T @ X for n, X in each.items()} for each in found]
 
     def holds(self, motions: Sequence[tuple[float, FloquetModes]]) -> bool:
         """Return True: nothing is left out."""

@@ -8,8 +8,9 @@ the frequency ``ν = ω + mΩ`` of each harmonic.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
 import numpy as np
 from scipy.linalg.lapack import zgecon, zgetrf, zgetrs
@@ -25,6 +26,7 @@ from exudyn_rotor.linear.periodic.harmonics import hill_matrices
 from exudyn_rotor.linear.periodic.periodic_system import EPSILON, PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
+Part = tuple[int, tuple[int, ...]]  # a harmonic, and which soft motions a load leaves free in it
 
 HIGHEST_HARMONIC = 40
 # of matrices scaled to diagonals of order one: rounding leaves 1e-15 of a motion that is free. One
@@ -67,13 +69,39 @@ def forced_motion(
         If the harmonics do not converge, or the equations are singular: a load on a motion that
         nothing holds, or a resonance without any damping.
     """
+    return forced_motions(system, [loads], rate, tolerance, driven)[0]
+
+
+def forced_motions(
+    system: PeriodicSystem,
+    loads: Sequence[Harmonics],
+    rate: float,
+    tolerance: float,
+    driven: Sequence[int] = (),
+) -> list[dict[int, np.ndarray]]:
+    """Return the steady motion under each of several loads, as :func:`forced_motion` does.
+
+    What does not depend on a load, matrices and their factors, is computed once.
+    """
     if system.speed == 0.0:  # θ stands still: all harmonics are one
         system = PeriodicSystem(0.0, *({0: terms} for terms in system.matrices(0.0)), system.H)
-        loads = {0: sum(loads.values())}
-    balance = _Balance(system, loads, rate, list(driven))
+        loads = [{0: sum(each.values())} for each in loads]
+    equations = _Equations(system, rate, list(driven))
+    motions: list[dict[int, np.ndarray]] = [{} for _ in loads]
+    rounds = [_approximations(_Balance(equations, each), tolerance) for each in loads]
+    for found in zip_longest(*rounds):
+        motions = [old if new is None else new for old, new in zip(motions, found, strict=True)]
+        equations.groups.clear()  # large, and next has further harmonics
+    return motions
+
+
+def _approximations(balance: _Balance, tolerance: float) -> Iterator[dict[int, np.ndarray]]:
+    """Yield the harmonics of one motion, each time with more of them, until these are enough."""
+    system = balance.equations.system
     step, change = system.step, np.inf
-    reach = max(abs(n) for n in loads) + step
+    reach = max(abs(n) for n in balance.loads) + step
     motion = balance.solved(reach)
+    yield motion
     while step:
         reach += step
         if reach > HIGHEST_HARMONIC:
@@ -83,10 +111,10 @@ def forced_motion(
             )
         earlier, motion = motion, balance.solved(reach)
         before, change = change, _change(system.M[0], earlier, motion)
+        yield motion
         at_rounding = change <= balance.rounding and change >= 0.5 * before
         if change <= tolerance or at_rounding:
             break
-    return motion
 
 
 def senses_of_turning(rate: float, orders: np.ndarray, speed: float) -> np.ndarray:
@@ -108,22 +136,16 @@ def _change(mass: np.ndarray, earlier: Harmonics, motion: Harmonics) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Balance:
-    """The equations for the harmonics of one load."""
+class _Equations:
+    """The equations for harmonics at one rate, whatever the load, in scaled unknowns."""
 
     system: PeriodicSystem
-    loads: Harmonics
     rate: float
     driven: list[int]
-    conditions: list[float] = field(default_factory=list)  # reciprocal, of all solutions so far
-    # of each harmonic its matrix, load and held coordinates, and the inverse of the matrix
-    known: dict[int, tuple[np.ndarray, ...]] = field(default_factory=dict)
-    inverses: dict[int, np.ndarray] = field(default_factory=dict)
-
-    @property
-    def rounding(self) -> float:
-        """Relative error of a solution by rounding, at most."""
-        return EPSILON / min(self.conditions)
+    # of each harmonic its matrix, held coordinates, and whether its frequency is zero
+    known: dict[int, tuple[np.ndarray, np.ndarray, bool]] = field(default_factory=dict)
+    inverses: dict[Part, np.ndarray] = field(default_factory=dict)
+    groups: dict[tuple[Part, ...], _Group] = field(default_factory=dict)
 
     @cached_property
     def fastest(self) -> float:
@@ -156,81 +178,144 @@ class _Balance:
         unresisted = np.r_[np.ones(alone.sum(), dtype=bool), relative[columns] <= _ROUNDING]
         return np.hstack(motions), unresisted
 
-    def solved(self, reach: int) -> dict[int, np.ndarray]:
-        """Solve for the harmonics −reach … reach that the loads excite."""
-        motion: dict[int, np.ndarray] = {}
-        waiting = set(self.loads)
-        while waiting:
-            group = [min(waiting)]
-            if self.system.step:
-                every = range(-reach, reach + 1)
-                group = [n for n in every if (n - group[0]) % self.system.step == 0]
-            waiting -= set(group)
-            motion |= dict(zip(group, self._solve(np.array(group)), strict=True))
-        return motion
-
-    def _solve(self, orders: np.ndarray) -> np.ndarray:
-        """Return the harmonics (h, k) of one group of coupled ones."""
-        matrices, loads, held = self._alone(orders)
-        found = None
-        if worth_it(self.system, len(orders)):
-            found = self._by_ports(orders, matrices, held).solved(loads)
-        if found is None or not found[1] > _SURELY * _SINGULAR:
-            found = _solved_as_one(self._whole(orders, matrices, held), loads)
-        self.conditions.append(found[1])
-        return self.scale * found[0]
-
-    def _alone(self, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what each harmonic's matrix (h, k, k) and load (h, k) are, scaled.
-
-        And which coordinates are held in it, (h, k). It does not matter what others there are.
-        """
+    def prepare(self, orders: np.ndarray) -> None:
+        """Compute what each harmonic is by itself: it does not matter what others there are."""
         new = np.array([n for n in orders.tolist() if n not in self.known], dtype=int)
         senses = senses_of_turning(self.rate, new, self.system.speed)
         rates = 1j * (self.rate + new * self.system.speed)
         for n, sense, matrix in zip(
             new.tolist(), senses, self.system.dynamic(0, rates), strict=True
         ):
-            load = self.scale * self.loads.get(n, np.zeros(self.system.size, dtype=complex))
             if self.system.H is not None:
                 matrix = matrix + 1j * sense * self.system.H
             matrix = self.scale[:, None] * matrix * self.scale
             held = np.zeros(self.system.size, dtype=bool)
             if sense == 0.0:
                 held[self.driven] = True
-                matrix[held] = matrix[:, held] = load[held] = 0.0
-                free = self._free(load)
-                # a spring on what is free changes nothing else
-                matrix += free @ free.T
-                load -= free @ (free.T @ load)
-            self.known[n] = matrix, load, held
-        matrices, loads, held = zip(*(self.known[n] for n in orders.tolist()), strict=True)
-        return np.stack(matrices), np.stack(loads), np.stack(held)
+                matrix[held] = matrix[:, held] = 0.0
+            self.known[n] = matrix, held, sense == 0.0
 
-    def _whole(self, orders: np.ndarray, matrices: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """Return the equations of all harmonics as one matrix, scaled."""
-        count, size = held.shape
-        M, D, K = hill_matrices(self.system, orders)
-        scale = np.where(held, 0.0, self.scale).ravel()
+    def group(self, parts: tuple[Part, ...]) -> _Group:
+        """Return the equations of harmonics that are coupled."""
+        if parts not in self.groups:
+            orders, inverses = np.array([n for n, _ in parts]), None
+            matrices = np.stack([self._matrix(*part) for part in parts])
+            held = np.stack([self.known[n][1] for n, _ in parts])
+            if worth_it(self.system, len(parts)):
+                inverses = self._inverses(parts, matrices)
+            self.groups[parts] = _Group(
+                self.system, self.rate, self.scale, orders, matrices, held, inverses
+            )
+        return self.groups[parts]
+
+    def _matrix(self, n: int, free: tuple[int, ...]) -> np.ndarray:
+        """Return the matrix of a harmonic; a spring on what is free changes nothing else."""
+        matrix = self.known[n][0]
+        if not free:
+            return matrix
+        columns = self.soft[0][:, list(free)]
+        return matrix + columns @ columns.T
+
+    def _inverses(self, parts: tuple[Part, ...], matrices: np.ndarray) -> np.ndarray:
+        """Return the inverses (h, k, k) of matrices; those of earlier groups are known."""
+        new = [i for i, part in enumerate(parts) if part not in self.inverses]
+        self.inverses.update(zip([parts[i] for i in new], inverted(matrices[new]), strict=True))
+        return np.stack([self.inverses[part] for part in parts])
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """The equations of harmonics (h,) that are coupled, scaled.
+
+    Matrices (h, k, k) and held coordinates (h, k) are those of each by itself; their inverses are
+    given where it is worth it to use them.
+    """
+
+    system: PeriodicSystem
+    rate: float
+    scale: np.ndarray
+    orders: np.ndarray
+    matrices: np.ndarray
+    held: np.ndarray
+    inverses: np.ndarray | None
+
+    def solved(self, loads: np.ndarray) -> tuple[np.ndarray, float]:
+        """Return the harmonics (h, k) under loads, and the reciprocal condition number."""
+        found = None if self.inverses is None else self._by_ports.solved(loads)
+        if found is None or not found[1] > _SURELY * _SINGULAR:
+            factor, pivots, condition = self._as_one
+            found = zgetrs(factor, pivots, loads.ravel())[0].reshape(loads.shape), condition
+        return found
+
+    @cached_property
+    def _as_one(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """The factor of the equations of all harmonics as one matrix, and its condition."""
+        count, size = self.held.shape
+        M, D, K = hill_matrices(self.system, self.orders)
+        scale = np.where(self.held, 0.0, self.scale).ravel()
         A = scale[:, None] * (K + 1j * self.rate * D - self.rate**2 * M) * scale
-        A.reshape(count, size, count, size)[range(count), :, range(count)] = matrices
-        return A
+        A.reshape(count, size, count, size)[range(count), :, range(count)] = self.matrices
+        return _factorised(A)
 
-    def _by_ports(
-        self, orders: np.ndarray, matrices: np.ndarray, held: np.ndarray
-    ) -> CoupledHarmonics:
-        """Return the same equations by what couples harmonics."""
-        inverses = self.inverses
-        new = [i for i, n in enumerate(orders.tolist()) if n not in inverses]
-        inverses |= zip(orders[new].tolist(), inverted(matrices[new]), strict=True)
-        ports = np.where(held, 0.0, self.scale)[..., None] * self.system.ports
-        links = links_of(self.system.between_ports, orders, self.rate)
-        return CoupledHarmonics(
-            matrices, np.stack([inverses[n] for n in orders.tolist()]), ports, links
-        )
+    @cached_property
+    def _by_ports(self) -> CoupledHarmonics:
+        """The same equations by what couples harmonics."""
+        ports = np.where(self.held, 0.0, self.scale)[..., None] * self.system.ports
+        links = links_of(self.system.between_ports, self.orders, self.rate)
+        return CoupledHarmonics(self.matrices, self.inverses, ports, links)
 
-    def _free(self, load: np.ndarray) -> np.ndarray:
-        """Return the motions (k, r) of :attr:`soft` that stay where they are under a load (k,).
+
+@dataclass(frozen=True, eq=False)
+class _Balance:
+    """The harmonics of the motion under one load."""
+
+    equations: _Equations
+    loads: Harmonics
+    conditions: list[float] = field(default_factory=list)  # reciprocal, of all solutions so far
+    # of each harmonic its load, and with which free motions
+    known: dict[int, tuple[np.ndarray, Part]] = field(default_factory=dict)
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of a solution by rounding, at most."""
+        return EPSILON / min(self.conditions)
+
+    def solved(self, reach: int) -> dict[int, np.ndarray]:
+        """Solve for the harmonics −reach … reach that the loads excite."""
+        motion: dict[int, np.ndarray] = {}
+        waiting, step = set(self.loads), self.equations.system.step
+        while waiting:
+            group = [min(waiting)]
+            if step:
+                group = [n for n in range(-reach, reach + 1) if (n - group[0]) % step == 0]
+            waiting -= set(group)
+            motion |= dict(zip(group, self._solve(np.array(group)), strict=True))
+        return motion
+
+    def _solve(self, orders: np.ndarray) -> np.ndarray:
+        """Return the harmonics (h, k) of one group of coupled ones."""
+        self.equations.prepare(orders)
+        loads, parts = zip(*(self._load(n) for n in orders.tolist()), strict=True)
+        found, condition = self.equations.group(parts).solved(np.stack(loads))
+        self.conditions.append(condition)
+        return self.equations.scale * found
+
+    def _load(self, n: int) -> tuple[np.ndarray, Part]:
+        """Return the load (k,) of a harmonic, scaled, and what stays where it is under it."""
+        if n not in self.known:
+            scale, free = self.equations.scale, ()
+            load = scale * self.loads.get(n, np.zeros(len(scale), dtype=complex))
+            _, held, constant = self.equations.known[n]
+            if constant:
+                load[held] = 0.0
+                free = self._free(load)
+                columns = self.equations.soft[0][:, list(free)]
+                load -= columns @ (columns.T @ load)
+            self.known[n] = load, (n, free)
+        return self.known[n]
+
+    def _free(self, load: np.ndarray) -> tuple[int, ...]:
+        """Return which motions of :attr:`_Equations.soft` stay where they are under a load (k,).
 
         The load is scaled, and has nothing that acts on a drive.
 
@@ -239,7 +324,7 @@ class _Balance:
         ValueError
             If the load acts on a motion that nothing but rounding resists.
         """
-        columns, unresisted = self.soft
+        columns, unresisted = self.equations.soft
         loaded = np.abs(columns.T @ load) > _LOAD_ON_FREE * np.linalg.norm(load)
         if np.any(loaded & unresisted):
             raise ValueError(
@@ -247,11 +332,11 @@ class _Balance:
                 "Either a support is missing there, or this is a resonance without any damping; a "
                 "bearing that is rigid needs no more than a thousand times the rotor's stiffness"
             )
-        return columns[:, ~loaded]
+        return tuple(np.flatnonzero(~loaded).tolist())
 
 
-def _solved_as_one(matrix: np.ndarray, loads: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return the harmonics (h, k) under loads, and the reciprocal condition number.
+def _factorised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return the factor of a matrix, its pivots, and the reciprocal condition number.
 
     Raises
     ------
@@ -266,4 +351,4 @@ def _solved_as_one(matrix: np.ndarray, loads: np.ndarray) -> tuple[np.ndarray, f
             "differ by more than 1e14; add damping, leave this value out, or take a bearing that "
             "is rigid as one a thousand times stiffer than the rotor"
         )
-    return zgetrs(factor, pivots, loads.ravel())[0].reshape(loads.shape), float(condition)
+    return factor, pivots, float(condition)

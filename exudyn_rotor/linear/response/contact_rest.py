@@ -48,6 +48,11 @@ class Rest:
         return {}
 
     @cached_property
+    def _unit_loads(self) -> list[dict[int, np.ndarray]]:
+        """Loads of a force of 1 N on each inner ring along each axis."""
+        return [self.pulled({0: unit}) for unit in np.eye(2 * len(self.seats))]
+
+    @cached_property
     def _loaded(self) -> dict[int, np.ndarray]:
         """The motion under the loads alone, rotor frame."""
         return self._solved(self.loads, 0.0)
@@ -67,10 +72,9 @@ class Rest:
         if (k, n) < (0, 0):
             return {-p: H.conj() for p, H in self.receptance(-k, -n).items()}
         if (k, n) not in self._known:
-            columns = []
-            for unit in np.eye(2 * len(self.seats)):
-                answer = self._solved(self.pulled({0: unit}), k * self.passing + n * self.speed)
-                columns.append(self._seen(answer))
+            rate = k * self.passing + n * self.speed
+            answers = self.space.steady_motions(self.speed, self._unit_loads, rate, _HARMONICS)
+            columns = [self._seen(answer) for answer in answers]
             orders = sorted({p for column in columns for p in column})
             zero = np.zeros(2 * len(self.seats))
             found = {p: np.array([each.get(p, zero) for each in columns]).T for p in orders}

@@ -45,10 +45,19 @@ LINEAR_FORCED = [
         ),
         (
             "what couples harmonics acts on a drive",
-            "np.where(held, 0.0, self.scale)[..., None]",
-            "np.where(held, self.scale, self.scale)[..., None]",
+            "np.where(self.held, 0.0, self.scale)[..., None]",
+            "np.where(self.held, self.scale, self.scale)[..., None]",
         ),
-        ("the inverse of another harmonic", "zip(orders[new]", "zip(orders[new][::-1]"),
+        (
+            "the inverse of another harmonic",
+            "zip([parts[i] for i in new]",
+            "zip([parts[i] for i in new[::-1]]",
+        ),
+        (
+            "one factor whatever a load leaves free",
+            "if parts not in self.groups",
+            "if not self.groups",
+        ),
     ),
     *mutations(
         "linear/periodic/coupled_harmonics.py",

@@ -243,6 +243,12 @@ class Subspace:
             "one, or reduce the rotor"
         )
 
+    def steady_motions(
+        self, speed: float, loads: Sequence[Mapping[int, np.ndarray]], rate: float, tolerance: float
+    ) -> list[dict[int, np.ndarray]]:
+        """Return the steady motion under each of several loads, with its own corrections each."""
+        return [self.steady_motion(speed, each, rate, tolerance) for each in loads]
+
     def _size(self, forces: Iterable[np.ndarray]) -> float:
         """Return the norm of forces, the root of ``Σ fᴴ(K + αM)⁻¹f``."""
         stack = _parts(forces)
