@@ -52,3 +52,10 @@ def test_contributing_names_files_that_exist():
     assert len(files) > 20
     for name in files:
         assert (ROOT / name).exists() or (ROOT / "exudyn_rotor" / name).exists(), name
+
+
+def test_importing_the_package_leaves_slow_modules_alone():
+    """SciPy's signals and statistics, needed by few functions, would take a fifth of the time."""
+    slow = re.compile(r"^(from|import) scipy\.(signal|stats)\b", re.MULTILINE)
+    files = sorted((ROOT / "exudyn_rotor").rglob("*.py"))
+    assert [file.name for file in files if slow.search(file.read_text(encoding="utf-8"))] == []
