@@ -151,3 +151,22 @@ def test_zeros_that_are_nearly_one_are_two(monkeypatch):
 
         speeds = [speed for speed, _ in zeros_of_eigenvalues(matrix, 100.0)]
         np.testing.assert_allclose(speeds, places, rtol=0.0, atol=3e-11)
+
+
+def test_zeros_that_are_missed_are_looked_for_between_others(monkeypatch):
+    """Eigenvalues ``(p/Ω)⁶ − 1`` with zeros p, far from linear; each as a whole takes 116 matrices.
+
+    Without Brent's method.
+    """
+    monkeypatch.setattr(zeros_between, "_bisected", None)
+    rng = np.random.default_rng(0)
+    turn, _ = np.linalg.qr(rng.normal(size=(6, 6)) + 1j * rng.normal(size=(6, 6)))
+    places, calls = np.linspace(10.5, 19.5, 6), []
+
+    def matrix(speed: float) -> np.ndarray:
+        calls.append(speed)
+        return (turn * ((places / speed) ** 6 - 1.0)) @ turn.conj().T
+
+    zeros = zeros_between.zeros_between(matrix, (10.0, 20.0), (0, 6), 100.0)
+    np.testing.assert_allclose([speed for speed, _ in zeros], places, rtol=0.0, atol=1e-10)
+    assert len(calls) < 90

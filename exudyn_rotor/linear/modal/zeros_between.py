@@ -5,8 +5,9 @@ function through both matrices, ``H(Ω) ≈ H₀ + (Ω − Ω₀) S``, tells vec
 middle Ω₀ as the largest of ``H₀⁻¹S``, by subspace iteration. From these each zero is found by
 inverse iteration ``H(Ω)⁻¹S x`` and Rayleigh's quotient, ``xᴴH(Ω)x = 0``, whose error is of second
 order in that of x. Source: Voss, "Nonlinear Eigenvalue Problems", in Hogben (ed.), Handbook of
-Linear Algebra (2013), Chap. 60. Signs between the zeros tell that none is another's; where that
-fails, each is found as the zero of the sorted eigenvalue, by Brent's method.
+Linear Algebra (2013), Chap. 60. Signs between the zeros tell that none is another's, or where some
+are missing: there, between closer ends, they are looked for again. Where that fails, each is found
+as the zero of the sorted eigenvalue, by Brent's method.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from scipy.optimize import brentq
 
 Matrix = Callable[[float], np.ndarray]
 Pair = tuple[float, np.ndarray]
+Part = tuple[tuple[float, float], tuple[int, int], list[Pair]]
 
 _BLOCK = 64  # of LAPACK's work, in columns
 _MORE, _TURNS = 4, 3  # vectors beside those asked for, and steps, of subspace iteration
@@ -68,12 +70,16 @@ def zeros_between(
         zero = _iterated(at, ends, slope, guess, found, limit)
         found += [] if zero is None else [zero]
         if len(found) == count:
-            found.sort(key=lambda zero: zero[0])
-            if _are_all(at, [speed for speed, _ in found], negative, limit):
-                return found
             break
-    branches = range(min(negative), max(negative))
-    return [_bisected(at, ends, branch, limit) for branch in branches]
+    parts = _parts(at, ends, negative, found, limit)
+    if parts is None:
+        branches = range(min(negative), max(negative))
+        return [_bisected(at, ends, branch, limit) for branch in branches]
+    zeros: list[Pair] = []
+    for within, counts, known in parts:
+        whole = len(known) == abs(counts[1] - counts[0])
+        zeros += known if whole else zeros_between(at, within, counts, limit)
+    return zeros
 
 
 def _guessed(
@@ -144,14 +150,34 @@ def _iterated(
     return None
 
 
-def _are_all(at: Matrix, speeds: Sequence[float], negative: tuple[int, int], limit: float) -> bool:
-    """Return whether a sign changes from each of ascending zeros to the next."""
+def _parts(
+    at: Matrix,
+    ends: tuple[float, float],
+    negative: tuple[int, int],
+    found: Sequence[Pair],
+    limit: float,
+) -> list[Part] | None:
+    """Return what the middles between zeros that are found cut the speeds into.
+
+    Ends of each part, how many eigenvalues are negative there, and the zeros found within, which
+    may be too few. None where some of them are no zeros that are looked for, or a part is no
+    smaller.
+    """
+    groups: list[list[Pair]] = []
+    for zero in sorted(found, key=lambda zero: zero[0]):
+        if groups and zero[0] - groups[-1][-1][0] <= _APART * limit:
+            groups[-1].append(zero)
+        else:
+            groups.append([zero])
+    cuts = [0.5 * (low[-1][0] + high[0][0]) for low, high in pairwise(groups)]
+    counts = [negative[0], *(count_negative(at(cut)) for cut in cuts), negative[1]]
+    speeds = [ends[0], *cuts, ends[1]]
     sense = np.sign(negative[1] - negative[0])
-    return all(
-        count_negative(at(0.5 * (below + above))) == negative[0] + sense * passed
-        for passed, (below, above) in enumerate(pairwise(speeds), start=1)
-        if above - below > _APART * limit
-    )
+    changes = sense * np.diff(counts)
+    missing = changes[: len(groups)] - [len(zeros) for zeros in groups]
+    if not groups or min(missing) < 0 or (len(groups) == 1 and missing[0]):
+        return None
+    return list(zip(pairwise(speeds), pairwise(counts), groups, strict=True))
 
 
 def _bisected(at: Matrix, ends: tuple[float, float], branch: int, limit: float) -> Pair:
