@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as la
 
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.models.protocol import Space
@@ -74,10 +75,11 @@ class Rest:
         if (k, n) not in self._known:
             rate = k * self.passing + n * self.speed
             answers = self.space.steady_motions(self.speed, self._unit_loads, rate, _HARMONICS)
-            columns = [self._seen(answer) for answer in answers]
-            orders = sorted({p for column in columns for p in column})
-            zero = np.zeros(2 * len(self.seats))
-            found = {p: np.array([each.get(p, zero) for each in columns]).T for p in orders}
+            zero = np.zeros_like(next(iter(answers[0].values())))
+            orders = sorted({p for answer in answers for p in answer})
+            stacks = {p: np.array([each.get(p, zero) for each in answers]) for p in orders}
+            seen = self._seen(stacks)
+            found = {p: seen[p].T for p in sorted(seen)}
             size = max(np.abs(H).max() for H in found.values())
             self._known[k, n] = {p: H for p, H in found.items() if np.abs(H).max() > _SMALL * size}
         return self._known[k, n]
@@ -114,18 +116,26 @@ class Rest:
     def _solved(self, loads: Mapping[int, np.ndarray], rate: float) -> dict[int, np.ndarray]:
         return self.space.steady_motion(self.speed, loads, rate, _HARMONICS)
 
-    def _seen(self, answer: Motion) -> dict[int, np.ndarray]:
-        """Return the motions (d,) of the inner rings against the outer ones, inertial axes."""
+    @cached_property
+    def _rings(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Motions of all rings (6p, k), which of them stand (p,), and signs by seat (s, p)."""
         rings = [ring for seat in self.seats for ring, _ in seat]
-        rows = np.array([ring.motion for ring in rings])
-        motion = {n: rows @ x for n, x in answer.items()}
+        signs = la.block_diag(*([[sign for _, sign in seat]] for seat in self.seats))
+        return (
+            np.vstack([ring.motion for ring in rings]),
+            np.array([ring.stands for ring in rings]),
+            signs,
+        )
+
+    def _seen(self, answer: Motion) -> dict[int, np.ndarray]:
+        """Return the motions (…, d) of the inner rings against the outer ones, inertial axes.
+
+        Of motions (…, k) in the rotor frame.
+        """
+        rows, stands, signs = self._rings
+        motion = {n: (x @ rows.T).reshape(*x.shape[:-1], -1, 6) for n, x in answer.items()}
         if self.speed != 0.0:
-            motion = in_frame(motion, np.array([ring.stands for ring in rings]), "inertial")
-        seat_of = [index for index, seat in enumerate(self.seats) for _ in seat]
-        signs = np.array([sign for seat in self.seats for _, sign in seat])
-        found = {}
-        for n, each in motion.items():
-            moved = np.zeros((len(self.seats), 2), dtype=complex)
-            np.add.at(moved, seat_of, signs[:, None] * each[:, :2])
-            found[n] = moved.ravel()
-        return found
+            motion = in_frame(motion, stands, "inertial")
+        return {
+            n: (signs @ each[..., :2]).reshape(*each.shape[:-2], -1) for n, each in motion.items()
+        }

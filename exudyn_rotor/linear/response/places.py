@@ -105,7 +105,7 @@ def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
 
 
 def in_frame(motion: Motion, stands: np.ndarray, frame: str) -> Motion:
-    """Return motions (p, 6) of the rotor seen in its frame, and of what `stands`, in the frame."""
+    """Return motions (…, p, 6) of a rotor seen in its frame, and of what `stands`, in the frame."""
     turn, turns = into_inertial_frame, ~stands
     if frame == "rotor":
         turn, turns = out_of_inertial_frame, stands

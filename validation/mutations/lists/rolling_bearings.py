@@ -45,6 +45,7 @@ ROLLING_BEARINGS = [
         ("constant load of a seat doubled", "(2.0 if k else 1.0) * g", "2.0 * g"),
         ("every load presses", "return bool(moved[:, :2].max() >", "return bool(moved.max() >"),
         ("contacts pull the foundation along", "sign * pair, np.zeros(4)", "pair, np.zeros(4)"),
+        ("outer rings move with inner ones", "[sign for _, sign in seat]", "[1.0 for _ in seat]"),
     ),
     *mutations(
         "linear/response/contact_stability.py",
