@@ -53,7 +53,7 @@ class Stability(Result):
     tolerance : float
     basis_shifts : ndarray, shape (s,), or None
         Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
-        :attr:`Campbell.basis_shifts`; NaN by Floquet's method.
+        :attr:`Campbell.basis_shifts`; NaN by Floquet's method, but where the basis is complete.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
 

@@ -76,16 +76,18 @@ class BasisError:
     def shifts_of(
         self, speeds: np.ndarray, modes: Sequence[FloquetModes | None]
     ) -> np.ndarray | None:
-        """Return ``λ_full − λ`` of one mode at each speed, shape (s,); NaN where it is None."""
+        """Return ``λ_full − λ`` of one mode at each speed, shape (s,).
+
+        NaN where it is None, 0 where the basis leaves nothing out.
+        """
         if not self.is_known:
             return None
+        if self.left_out is None:
+            return np.zeros(len(speeds), dtype=complex)
         shifts = np.full(len(speeds), np.nan, dtype=complex)
         known = [index for index, mode in enumerate(modes) if mode is not None]
-        if self.left_out is None:
-            shifts[known] = 0.0
-        else:
-            given = [speeds[index] for index in known], [modes[index] for index in known]
-            shifts[known] = [found[0] for found in self.left_out.shifts(*given)]
+        given = [speeds[index] for index in known], [modes[index] for index in known]
+        shifts[known] = [found[0] for found in self.left_out.shifts(*given)]
         return shifts
 
     @one_thread()
