@@ -5,9 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from asymmetric import asymmetric_shaft
-from scipy.optimize import linear_sum_assignment
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, linear_sum_assignment
 
 from exudyn_rotor import SolidRotor, Support, linear_model, stability_threshold, unstable_ranges
+from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
 from exudyn_rotor.linear.stability import thresholds
 from exudyn_rotor.linear.stability.growth import Growth, GrowthAt
 from exudyn_rotor.linear.stability.growth_over import GrowthOver
@@ -124,6 +126,93 @@ def test_unstable_values_of_two_ranges_are_not_of_one():
     search._part(0.0, 1.0)
     limits = [value for value, _ in search.changes(1e-9)]
     assert limits == pytest.approx([0.3 - 1e-6, 0.3 + 1e-6, 0.8 - 1e-6, 0.8 + 1e-6], abs=2e-9)
+
+
+def uneven_mass(turning: float) -> SolidRotor:
+    """Return a mass of 1 kg with a spring in y that turns with it."""
+    stiffness = np.diag([0.0, turning, 1e4])
+    return SolidRotor.from_matrices(
+        np.eye(3), stiffness, [[0, 0, 0.1]], "z", interfaces={"disc": [0]}
+    )
+
+
+def growth_over_half_a_turn(speed: float, turning: float, ground: np.ndarray, c: float) -> float:
+    """Return the largest ``ln |μ|`` of ``ẍ + c ẋ + (K + R diag(0, k) Rᵀ) x = 0``, integrated."""
+
+    def rate(t: float, z: np.ndarray) -> np.ndarray:
+        x, v = np.split(z.reshape(4, 4), 2)
+        across = np.array([-np.sin(speed * t), np.cos(speed * t)])
+        pull = ground @ x + c * v + turning * np.outer(across, across @ x)
+        return np.concatenate([v, -pull]).ravel()
+
+    span = (0.0, np.pi / speed)
+    solved = solve_ivp(rate, span, np.eye(4).ravel(), "DOP853", rtol=1e-11, atol=1e-11)
+    return float(np.log(np.abs(np.linalg.eigvals(solved.y[:, -1].reshape(4, 4)))).max())
+
+
+@pytest.mark.parametrize("samples", [2, 24])
+def test_a_range_of_turning_coefficients_may_begin_at_rest(samples):
+    """Near rest the damped motions change by thousands of powers of ten within a turn.
+
+    Limits of a mass on a spring that turns, by the integrated equations in inertial axes.
+    """
+    given = 2e3, np.diag([1e4, 1.3e4]), 4.0
+    held = Support("disc", given[1], given[2])
+    found = stability_threshold(uneven_mass(given[0]), 0.0, 250.0, supports=held, samples=samples)
+    first = brentq(growth_over_half_a_turn, 102.0, 104.0, args=given, xtol=1e-8)
+    assert found.values[0] == pytest.approx(first, abs=3e-6)
+    assert found.onset[:4].tolist() == [True, False] * 2
+    for value, onset in zip(found.values, found.onset, strict=True):
+        sides = [growth_over_half_a_turn(value + side, *given) > 0.0 for side in (-0.01, 0.01)]
+        assert sides == [not onset, onset]
+
+
+class Turning(GrowthOver):
+    """Growth of equations that turn, told from 0.3 rad/s on, and at rest."""
+
+    def __init__(self, at_rest: float, above: Callable[[float], float]) -> None:
+        self.at_rest, self.above = at_rest, above
+
+    def is_at_rest(self, value: float) -> bool:
+        return value == 0.0
+
+    def growth(self, value: float) -> Growth:
+        if 0.0 < value < 0.3:
+            raise UnconvergedError("too slow")
+        real = self.above(value) if value else self.at_rest
+        return Growth(np.array([real + 3.0j]), np.array([1e-12]), 2.0 * value, ())
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_limit_below_the_slowest_speed_is_told_there_with_a_warning(sign):
+    """As of cross-coupled forces that a spring keeps from flutter at rest, but not where it turns.
+
+    Halves of 16 rad/s go down to 0.5, the last one above 0.3. A limit above is found as ever.
+    """
+    search = Search(Turning(-sign, lambda value: sign * (1.0 + value)), 16.0)
+    search.at(0.0), search.at(16.0)
+    search.refine()
+    with pytest.warns(UserWarning, match="at rest and .*stable from 0.[345]"):
+        [(value, onset)] = search.changes(1e-8)
+    assert 0.3 <= value <= 0.5
+    assert onset == (sign > 0.0)
+    search = Search(Turning(-sign, lambda value: sign * (value - 5.0)), 16.0)
+    search.at(0.0), search.at(16.0)
+    search.refine()
+    [(value, onset)] = search.changes(1e-8)
+    assert (value, onset) == (pytest.approx(5.0, abs=1e-8), sign > 0.0)
+
+
+def test_limits_of_a_full_rotor_by_floquet():
+    """Nothing is left out of its coordinates; the error of the limits is zero, not unknown."""
+    given = 2e3, np.diag([1e4, 1.3e4]), 4.0
+    held = Support("disc", given[1], given[2])
+    found = stability_threshold(
+        uneven_mass(given[0]), 90.0, 104.0, supports=held, samples=4, method="floquet"
+    )
+    first = brentq(growth_over_half_a_turn, 102.0, 104.0, args=given, xtol=1e-8)
+    assert found.values == pytest.approx([first], abs=3e-6)
+    assert found.basis_shifts.tolist() == [0.0]
 
 
 class Crossing(GrowthOver):

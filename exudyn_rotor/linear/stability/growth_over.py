@@ -62,6 +62,10 @@ class GrowthOver:
         """Values at which growth over the parameter has kinks, as far as they are known."""
         return np.zeros(0)
 
+    def is_at_rest(self, value: float) -> bool:
+        """Return False: the spin speed is that of all values."""
+        return False
+
     def system(self, value: float) -> PeriodicSystem | None:
         """Return None: growths alone are known."""
         return None
@@ -71,7 +75,10 @@ class GrowthOver:
         return None
 
     def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
-        """Return None: growths alone tell where a motion no longer grows."""
+        """Return where a motion that grows at the second of two values does no longer.
+
+        NaN where that is not found; None here, as growths alone tell it.
+        """
         return None
 
     def basis(self, value: float) -> tuple[BasisError, float]:
@@ -113,6 +120,9 @@ class OverSpeed(GrowthOver):
     def growth(self, value: float, named: bool = False) -> Growth:
         return (self.named if named else self.task)(value)
 
+    def is_at_rest(self, value: float) -> bool:
+        return value == 0.0
+
     def system(self, value: float) -> PeriodicSystem | None:
         return self.task.system(value)
 
@@ -131,6 +141,9 @@ class Finer(GrowthOver):
     """Growth with the shapes that the basis of a reduced rotor lacks first."""
 
     made: GrowthOver
+
+    def is_at_rest(self, value: float) -> bool:
+        return self.made.is_at_rest(value)
 
     def growth(self, value: float) -> Growth:
         """Return the growth at a value of the parameter."""

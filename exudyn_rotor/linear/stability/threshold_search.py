@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, pairwise
-from typing import Protocol
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.stability.between_samples import to_look_at
 from exudyn_rotor.linear.stability.growth import Growth
+from exudyn_rotor.linear.stability.growth_over import GrowthOver
 from exudyn_rotor.linear.stability.growth_scan import GrowthScan
 
 ASIDE = 1e-6  # of the range: where the mode of a threshold is looked at
@@ -36,27 +38,10 @@ _MET = 0.1
 _MEETS = 0.2
 # values between two samples at which equations are made, the ends too
 _EQUATIONS = 3
+# of a gap that begins at rest: below, the turn of equations is too slow for their exponents
+_SLOWEST = 0.125
 # of the range: by which rates of change are told; changes below a share of |λ| are not
 STEP, _NOISE = 1e-5, 1e-5
-
-
-class Made(Protocol):
-    """Growth over a parameter."""
-
-    def growth(self, value: float) -> Growth:
-        """Return the growth at a value of the parameter."""
-
-    def system(self, value: float) -> PeriodicSystem | None:
-        """Return the equations at a value; None of a large rotor, which has no dense ones."""
-
-    def rates(self, growth: Growth, value: float, step: float) -> np.ndarray | None:
-        """Return the change of the exponents at a value; None where a second growth tells it."""
-
-    def limit(self, growth: Growth, ends: tuple[float, float], accuracy: float) -> float | None:
-        """Return where a motion that grows at the second value does no longer.
-
-        NaN where that is not found, None where growths alone tell it.
-        """
 
 
 @dataclass(eq=False)
@@ -67,7 +52,7 @@ class Search:
     tell which is which.
     """
 
-    made: Made
+    made: GrowthOver
     span: float
     known: dict[float, Growth] = field(default_factory=dict)
     rates: dict[float, np.ndarray] = field(default_factory=dict)
@@ -88,8 +73,26 @@ class Search:
         for low, high in pairwise(sorted(self.known)):
             if self.unstable(low) != self.unstable(high):
                 ends = (low, high) if self.unstable(high) else (high, low)
-                found.append((self._change(*ends, accuracy), self.unstable(high)))
+                try:
+                    found.append((self._change(*ends, accuracy), self.unstable(high)))
+                except UnconvergedError:
+                    if not self._leaves_rest(low, high):
+                        raise
+                    found.append((self._lowest_above_rest(low, high), self.unstable(high)))
         return found
+
+    def _lowest_above_rest(self, rest: float, high: float) -> float:
+        """Return the lowest speed at which a search downwards knew the verdict, with a warning."""
+        verdict, known = self.unstable(high), sorted(self.known)
+        lowest = min(at for at in known if at > rest and self.unstable(at) == verdict)
+        words = ("stable", "unstable")
+        warnings.warn(
+            f"the rotor is {words[not verdict]} at rest and {words[verdict]} from {lowest:.4g} "
+            "rad/s on; the limit is told there, as exponents at lower speeds do not converge",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+        return lowest
 
     def _change(self, stable: float, unstable: float, accuracy: float) -> float:
         """Return where the verdict changes between two values.
@@ -190,7 +193,9 @@ class Search:
 
     def _scan(self, low: float, high: float) -> None:
         """Look where growths at many values, if equations turn, say that another verdict is."""
-        if not (self.at(low).base > 0.0 and self.at(high).base > 0.0):
+        if self._leaves_rest(low, high):
+            low += _SLOWEST * (high - low)
+        elif not (self.at(low).base > 0.0 and self.at(high).base > 0.0):
             return
         values = np.linspace(low, high, _EQUATIONS).tolist()
         self.systems = {at: self.systems.get(at) or self.made.system(at) for at in values}
@@ -203,6 +208,8 @@ class Search:
     def _by_tangents(self, gaps: Sequence[tuple[float, float]]) -> None:
         """Look between samples of one verdict where exponents and their rates say so."""
         for low, high in gaps:
+            if self._leaves_rest(low, high):
+                continue
             if self.unstable(low) != self.unstable(high):
                 self._look_inside(low, high)
                 continue
@@ -216,6 +223,10 @@ class Search:
             for branch in piece.peaks():
                 self._climb(piece, branch)
             self._part(low, high)
+
+    def _leaves_rest(self, low: float, high: float) -> bool:
+        """Return whether equations turn above rest, where no rates tell of exponents above."""
+        return self.made.is_at_rest(low) and self.at(high).base > 0.0
 
     def _look_inside(self, low: float, high: float) -> None:
         """Look between samples of different verdict, which may change more than once.
