@@ -17,6 +17,7 @@ from exudyn_rotor import (
     anticipated_cross_coupling,
     bearing_masses,
     campbell,
+    critical_speed_map,
     plotting,
     separation_margins,
     stability,
@@ -366,6 +367,14 @@ def test_wrong_input_is_refused():
         standard_unbalances("conical", ["a"], [1.0, 2.0], 100.0)
     with pytest.raises(ValueError, match="masses: needs two positive masses"):
         standard_unbalances("conical", ["a", "b"], 3.0, 100.0)
+    with pytest.raises(ValueError, match="at: the mode 'conical' takes two places, got 'a' twice"):
+        standard_unbalances("conical", ["a", "a"], [1.0, 2.0], 100.0)
+    with pytest.raises(ValueError, match="at: 'disc' is given twice"):
+        stability_level_one(rotor, 9.0, [1.0, 2.0], ["disc", "disc"], supports=bearing)
+    with pytest.raises(ValueError, match="interfaces: 'disc' is given twice"):
+        critical_speed_map(rotor, ["disc", "disc"], [1e4])
+    with pytest.raises(ValueError, match="places: 'a' is given twice"):
+        separation_margins(sized([1.0, 2.0], [1.0, 2.0]), (1.0, 2.0), places=["a", "a"])
     with pytest.raises(TypeError, match="response: needs UnbalanceResponse"):
         separation_margins(3.0, (1.0, 2.0))
     with pytest.raises(TypeError, match=r"operating_range: .* got None"):

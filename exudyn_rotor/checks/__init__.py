@@ -25,13 +25,14 @@ from exudyn_rotor.checks.objects import (
     path,
     read_only_mapping,
 )
-from exudyn_rotor.checks.words import choice, label, labels, mapping
+from exudyn_rotor.checks.words import choice, different, label, labels, mapping
 
 __all__ = [
     "array",
     "ascending",
     "choice",
     "count",
+    "different",
     "executor",
     "flag",
     "function",

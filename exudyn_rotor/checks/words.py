@@ -45,6 +45,14 @@ def labels(
     return result
 
 
+def different(names: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Return names, of which none may be given twice."""
+    for value in names:
+        if names.count(value) > 1:
+            raise ValueError(f"{name}: {value!r} is given twice")
+    return names
+
+
 def mapping(
     value: Mapping[str, Kind], name: str, what: str = "", known: Iterable[str] | None = None
 ) -> Mapping[str, Kind]:

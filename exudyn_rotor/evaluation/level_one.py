@@ -284,8 +284,8 @@ def stability_level_one(
     Raises
     ------
     TypeError, ValueError
-        If an argument is of another kind or out of range, an interface is unknown, or it makes
-        no mode less stable.
+        If an argument is of another kind or out of range, an interface is unknown or given twice,
+        or it makes no mode less stable.
 
     Warns
     -----
@@ -307,7 +307,7 @@ def stability_level_one(
     """
     checks.instance(target, "target", ReducedRotor, "SolidRotor.reduce makes one")
     speed = checks.number(speed, "speed", "rad/s", above=0.0)
-    names = checks.labels([at] if isinstance(at, str) else at, "at", target.interfaces)
+    names = checks.different(checks.labels(at, "at", target.interfaces), "at")
     amounts = np.atleast_1d(checks.array(cross_coupling, "cross_coupling", "N/m"))
     if amounts.shape != (len(names),) or not names or np.any(amounts <= 0.0):
         raise ValueError(

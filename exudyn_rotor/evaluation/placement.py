@@ -95,10 +95,13 @@ def standard_unbalances(
     if count == 1:
         weights = weights.sum(keepdims=True)
     amounts = multiple * _RESIDUAL * weights / min(speed, _FASTEST)
-    return tuple(
+    placed = tuple(
         Unbalance(place, float(amount), angle + np.pi * number)
         for number, (place, amount) in enumerate(zip(places, amounts, strict=True))
     )
+    if len({one.at for one in placed}) < count:
+        raise ValueError(f"at: the mode {mode!r} takes two places, got {places[0]!r} twice")
+    return placed
 
 
 def bearing_masses(rotor: ReducedRotor | SolidRotor, bearings: Sequence[str]) -> np.ndarray:

@@ -203,7 +203,8 @@ def critical_speed_map(
     Raises
     ------
     ValueError
-        For stiffnesses that are not positive and finite, or an unknown interface.
+        For stiffnesses that are not positive and finite, or an interface that is unknown or given
+        twice.
 
     Examples
     --------
@@ -224,7 +225,9 @@ def critical_speed_map(
         raise ValueError(
             "stiffnesses: needs positive finite numbers [N/m], got " + checks.shown(stiffnesses)
         )
-    names = checks.labels(interfaces, "interfaces", target.interfaces)
+    names = checks.different(
+        checks.labels(interfaces, "interfaces", target.interfaces), "interfaces"
+    )
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
     supports = tuple(map(_made_once, given_supports(supports)))
