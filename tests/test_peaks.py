@@ -1,6 +1,7 @@
 """Peaks of responses that are sharper than the steps of the speed, or not there."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from exudyn_rotor import (
     Unbalance,
     UnbalanceResponse,
     harmonic_response,
+    separation_margins,
     unbalance_response,
 )
 from validation.extremes.rotors import shaft_frequencies, shaft_rotor
@@ -85,6 +87,58 @@ def test_a_peak_beside_rest_where_unbalance_moves_nothing():
         speed, size = response.peak()
     assert 95.0 <= speed <= 130.0
     assert response.semi_axes()[0][1] <= size <= 2.0 * response.semi_axes()[0][1]
+
+
+def two_masses() -> tuple[SolidRotor, list[Support]]:
+    """Return two masses of 2 kg on a rod, axis z, each on its own springs, ω = 100 rad/s."""
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, [[0, 0, -0.1], [0, 0, 0.1]], "z")
+    rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    return rotor, [Support(name, 2e4, 10.0) for name in ("left", "right")]
+
+
+def test_a_peak_between_rest_and_the_second_speed_is_refined():
+    """Damping ratio D = 0.025: the largest is ``e / (2D√(1 − D²))``; AF is 1/2D to order D²."""
+    rotor, supports = two_masses()
+    response = unbalance_response(
+        rotor, [0.0, 100.0, 200.0], Unbalance("left", 1e-4), supports=supports, refine=True
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        speed, size = response.peak("left")
+        margins = separation_margins(response, [130.0, 150.0], places="left")
+    assert size == pytest.approx(5e-5 / (0.05 * np.sqrt(1.0 - 0.025**2)), rel=0.01)
+    assert speed == pytest.approx(100.0 / np.sqrt(1.0 - 2.0 * 0.025**2), rel=1e-3)
+    assert margins.amplification == pytest.approx([20.0], rel=0.02)
+
+
+def test_margins_of_three_speeds_from_rest_on_are_told_to_be_coarse():
+    rotor, supports = two_masses()
+    response = unbalance_response(
+        rotor, [0.0, 100.0, 200.0], Unbalance("left", 1e-4), supports=supports
+    )
+    with pytest.warns(UserWarning, match="too far apart"):
+        margins = separation_margins(response, [130.0, 150.0], places="left")
+    # the size is taken for a line from rest
+    lowest = 100.0 * np.sqrt(0.5) * margins.sizes[0] / response.semi_axes("left")[0][1]
+    assert margins.half_power[0, 0] == pytest.approx(min(lowest, 100.0))
+
+
+def test_rounding_at_a_place_that_does_not_move_is_no_peak():
+    """The unbalance is at the other mass, which moves alone."""
+    rotor, supports = two_masses()
+    response = unbalance_response(
+        rotor, np.linspace(0.0, 200.0, 21), Unbalance("left", 1e-4), supports=supports
+    )
+    motion = response.motion.copy()
+    noise = np.random.default_rng(1).normal(size=motion[1:, 1, :, :2].shape)
+    motion[1:, 1, :, :2] = 1e-20 * noise
+    response = replace(response, motion=motion)
+    assert not np.any(response.semi_axes("right"))
+    with pytest.raises(ValueError, match="right: the motion has no peak"):
+        response.peak("right")
+    with pytest.warns(UserWarning, match="left: .* too far apart"):
+        assert separation_margins(response, [130.0, 150.0]).places == ("left",)
 
 
 def test_a_resonance_without_damping_is_left_out_where_points_are_added():

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
-from exudyn_rotor.linear.response.refinement import HALF_POWER, resolved_peak
+from exudyn_rotor.linear.response.refinement import HALF_POWER, STILL, resolved_peak
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
@@ -196,7 +196,7 @@ def separation_margins(
     Raises
     ------
     TypeError, ValueError
-        If an argument is of another kind, or a place is unknown.
+        If an argument is of another kind, or a place is unknown or given twice.
 
     Warns
     -----
@@ -229,8 +229,7 @@ def separation_margins(
         raise TypeError("operating_range: needs the lowest and the highest speed, got None")
     names = response.places
     if places is not None:
-        given = (places,) if isinstance(places, str) else places
-        names = checks.labels(given, "places", response.places)
+        names = checks.different(checks.labels(places, "places", response.places), "places")
     speeds, entries = response.speeds, []
     _warn_of_speeds_left_out(speeds, limits)
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
@@ -305,13 +304,16 @@ def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
     """Return where a curve falls below 0.707 of a peak; NaN where it rises or ends before.
 
     The second point is the peak, from which speeds go away to one side. 1/size² is taken for a
-    parabola, as it is near a resonance.
+    parabola, as it is near a resonance; beside rest the size for a line.
     """
     for end in range(2, len(curve)):
         if curve[end] > curve[end - 1]:
             return np.nan
         if curve[end] < HALF_POWER * size:
-            at, levels = speeds[end - 2 : end + 1], (size / curve[end - 2 : end + 1]) ** 2
+            at, seen = speeds[end - 2 : end + 1], curve[end - 2 : end + 1]
+            if seen.min() < STILL * size:  # at rest, without a load
+                return float(np.interp(HALF_POWER * size, seen[:0:-1], at[:0:-1]))
+            levels = (size / seen) ** 2
             roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
             between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]
             line = at[1] + (at[2] - at[1]) * (2.0 - levels[1]) / (levels[2] - levels[1])

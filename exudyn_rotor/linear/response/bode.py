@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
+from numpy.typing import ArrayLike
 
 from exudyn_rotor.plotting import COLORS, LINES
 
@@ -74,6 +75,12 @@ def _phase(values: np.ndarray) -> np.ndarray:
 def least(motion: np.ndarray) -> np.ndarray:
     """Return up to which amplitude the displacements of a motion (s, …, 6) are rounding, (s,)."""
     return _NO_MOTION * np.abs(motion[..., :3]).max(axis=(1, 2, 3), initial=0.0)
+
+
+def sizes(values: ArrayLike, least: np.ndarray) -> np.ndarray:
+    """Return sizes of complex amplitudes; 0 of those up to the `least` that is told."""
+    found = np.abs(values)
+    return np.where(found <= least, 0.0, found)
 
 
 def degrees(values: np.ndarray, least: np.ndarray) -> np.ndarray:

@@ -32,7 +32,7 @@ _NARROWEST = 1e-7
 _MOST_ROUNDS = 30
 _MOST_ADDED = 4000
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
-_STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
+STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest without a load
 
 
 def refined(
@@ -99,7 +99,12 @@ def _turns(motions: list[Motion]) -> np.ndarray:
     matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max()
     matters &= np.minimum(size[1:], size[:-1]) > 0.0
     turned = np.abs(np.angle(phasors[1:] * phasors[:-1].conj()))
-    return np.where(matters, turned, 0.0).max(axis=1, initial=0.0)
+    # at rest without a load there is no phase, and beside it may be a resonance
+    sizes = size.max(axis=1, initial=0.0)
+    beside_rest = (np.minimum(sizes[1:], sizes[:-1]) == 0.0) & (
+        np.maximum(sizes[1:], sizes[:-1]) > _SMALL * sizes.max(initial=0.0)
+    )
+    return np.where(beside_rest, np.pi, np.where(matters, turned, 0.0).max(axis=1, initial=0.0))
 
 
 def resolved_peak(
@@ -130,7 +135,7 @@ def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:
     Near a resonance 1/size² is a parabola, for one mode exactly. Three points, the middle one the
     largest.
     """
-    shift, seen = at - at[1], np.maximum(size, _STILL * size[1])
+    shift, seen = at - at[1], np.maximum(size, STILL * size[1])
     square, slope, middle = np.polyfit(shift, (size[1] / seen) ** 2, 2)
     if square <= 0.0:
         return float(at[1]), float(size[1])

@@ -124,7 +124,7 @@ class Response(RunStart, ABC):
 
         The minor one is negative where the rotor whirls backward.
         """
-        forward, backward = np.abs(self.whirl(place, order))
+        forward, backward = bode.sizes(self.whirl(place, order), bode.least(self.motion))
         return forward + backward, forward - backward
 
     def peak(self, place: str | None = None, order: int | None = None) -> tuple[float, float]:
