@@ -15,6 +15,7 @@ from point_rotors import ring_rotor
 from spool_models import spool_with_growth
 from test_annular_seal import SIZE, WATER
 from test_hermitian_zeros import thin_below_forty, zeros_of_eigenvalues
+from test_threshold_search import Turning
 
 import exudyn_rotor
 from exudyn_rotor import (
@@ -47,6 +48,7 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.linear.response import rolling_motion
+from exudyn_rotor.linear.stability.threshold_search import Search
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
 
@@ -242,6 +244,12 @@ def limit_that_a_finer_rotor_has_elsewhere(_):
     stability_threshold(rotor.reduce(0), first - 1e-3, first + 1e-3, **given)
 
 
+def limit_below_the_slowest_speed(_):
+    search = Search(Turning(-1.0, lambda value: 1.0 + value), 16.0)
+    search.at(0.0), search.at(16.0)
+    search.changes(1e-8)
+
+
 def spool_on_damped_bearings(_):
     rotor, speed, supports = spool_with_growth()
     stability(rotor, [speed], supports=supports, accuracy=None)
@@ -277,34 +285,29 @@ PLACES = {
     "prestress/static_solution.py:_warn_of_yield": (
         stress_beyond_yield, UserWarning, "above yield_stress"),
     "linear/models/rotor/eccentricity.py:warn_of_eccentricity": (
-        eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis",
-    ),
+        eccentric_rotor_in_a_linear_analysis, UserWarning, "off the spin axis"),
     "multibody/rotor/sensors.py:_warn_of_static_stress": (
-        native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone",
-    ),
+        native_stress_of_a_prestressed_rotor, UserWarning, "stress of the modes alone"),
     "reduction/mode_pairs.py:lowest_with_pairs": (
         lambda _: disc_rotor().reduce(1), UserWarning, "one of a pair in two planes"),
     "strength/field.py:warn_without_static": (
-        stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress",
-    ),
+        stress_at_speed_without_prestress, UserWarning, "without the static centrifugal stress"),
     "theory/stiffening.py:warn_of_left_out": (
-        blade_of_matrices, UserWarning, "beyond 'tilt' is left out",
-    ),
+        blade_of_matrices, UserWarning, "beyond 'tilt' is left out"),
     "prestress/carrying.py:_with_own_prestress": (
-        rotor_of_a_changed_mesh, UserWarning, "mesh was changed",
-    ),
+        rotor_of_a_changed_mesh, UserWarning, "mesh was changed"),
     "advice/energy_balance.py:_warn_of_coarse_record": (
-        energy_of_a_coarse_record, UserWarning, "recorded instants are too far apart for works",
-    ),
+        energy_of_a_coarse_record, UserWarning, "recorded instants are too far apart for works"),
     "advice/proposal.py:propose": (
-        proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad",
-    ),
+        proposal_beyond_the_formulation, AssumptionWarning, "tilt of 0.3 rad"),
     "linear/models/linear_model.py:warn_of_structural_damping": (
         campbell_of_a_lossy_rotor, UserWarning, "campbell finds modes without it"),
     "evaluation/level_one.py:_warn_of_others": (
         second_forward_mode_that_is_unstable_first, UserWarning, "another mode"),
     "linear/stability/thresholds.py:_warn_of_basis": (
         limit_that_a_finer_rotor_has_elsewhere, UserWarning, "is not known"),
+    "linear/stability/threshold_search.py:_lowest_above_rest": (
+        limit_below_the_slowest_speed, UserWarning, "at rest and .* the limit is told there"),
     "linear/stability/uneven_mesh.py:warn_of_uneven_mesh": (
         spool_on_damped_bearings, UserWarning, "only because the mesh"),
     "linear/models/basis/basis_error.py:warn": (
@@ -314,33 +317,25 @@ PLACES = {
     "solid/ngsolve_model.py:_prepare_mesh": (
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "linear/response/refinement.py:resolved_peak": (
-        peak_between_few_speeds, UserWarning, "too far apart to give its size and width",
-    ),
+        peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
     "linear/response/rolling_response.py:_warn_of_left_out": (
-        motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics",
-    ),
+        motion_with_few_harmonics, UserWarning, "of the motion to higher harmonics"),
     "linear/response/rolling_response.py:_warn_of_instability": (
-        unstable_motion_on_rolling_bearings, UserWarning, "the steady motion is unstable",
-    ),
+        unstable_motion_on_rolling_bearings, UserWarning, "the steady motion is unstable"),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
-        response_below_the_operating_range, UserWarning, "count, and the response is known from",
-    ),
+        response_below_the_operating_range, UserWarning, "count, and the response is known from"),
     "reduction/mean_axis.py:warn_of_held_frame": (
-        frame_held_by_modes, UserWarning, "use_mean_axis_modes",
-    ),
+        frame_held_by_modes, UserWarning, "use_mean_axis_modes"),
     "multibody/add_rotor.py:_add_reduced": (
         scene_of_a_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_add_solid": (
         scene_of_a_full_lossy_rotor, UserWarning, "A scene runs without it"),
     "multibody/add_rotor.py:_warn_of_turned_axes": (
-        axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about",
-    ),
+        axis_that_no_node_turns_about, UserWarning, "no node of Exudyn turns about"),
     "multibody/rotor/scene_body.py:check_connections": (
-        asked_for_connections, ConnectionWarning, "does not tilt",
-    ),
+        asked_for_connections, ConnectionWarning, "does not tilt"),
     "multibody/calls/assembly.py:_warn": (
-        torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt",
-    ),
+        torque_on_a_tilt_of_the_node, ConnectionWarning, "does not tilt"),
     "advice/run_check.py:check_run": (
         run_beyond_its_assumptions, AssumptionWarning, "tilt .* exceeds"),
     "linear/response/steady_state.py:steady_state": (
