@@ -124,6 +124,13 @@ def test_margins_of_three_speeds_from_rest_on_are_told_to_be_coarse():
     assert margins.half_power[0, 0] == pytest.approx(min(lowest, 100.0))
 
 
+def test_a_constant_load_on_a_free_rotor_is_refused_as_such():
+    """The masses have no stiffness across the rod, and no shift came from the speed."""
+    rotor, _ = two_masses()
+    with pytest.raises(ValueError, match="a constant load acts on a motion that nothing holds"):
+        harmonic_response(rotor, [0.0], HarmonicForce("left", (1.0, 0.0)))
+
+
 def test_rounding_at_a_place_that_does_not_move_is_no_peak():
     """The unbalance is at the other mass, which moves alone."""
     rotor, supports = two_masses()

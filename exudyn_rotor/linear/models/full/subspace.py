@@ -384,7 +384,8 @@ def _shift(stiffness: sp.csr_array, mass: sp.csr_array, speed: float) -> float:
     """Return α [1/s²] of the order of the lowest flexible modes; it only steers convergence."""
     mesh = np.median(stiffness.diagonal()) / np.median(mass.diagonal())
     elements_across = max(mass.shape[0] / 3.0, 1.0) ** (1.0 / 3.0)
-    return max(speed**2, mesh / (10.0 * elements_across) ** 2)
+    # no stiffness along most directions, as of masses on a rod: any shift tells free motions apart
+    return max(speed**2, mesh / (10.0 * elements_across) ** 2) or 1.0
 
 
 def _norms(columns: np.ndarray, mass: sp.csr_array) -> np.ndarray:
