@@ -202,7 +202,7 @@ LINEAR = [
             "place = float(np.clip(-0.5",
             "place = float(np.clip(0.5",
         ),
-        ("a neighbour without motion", "np.maximum(size, _STILL", "np.maximum(size, 0.0 * _STILL"),
+        ("a neighbour without motion", "np.maximum(size, STILL", "np.maximum(size, 0.0 * STILL"),
         ("size at a peak falls", "size[1] / np.sqrt(max(least", "size[1] * np.sqrt(max(least"),
         (
             "phase of neighbours not compared",
