@@ -36,7 +36,7 @@ def test_third_powers_are_extrapolated(curvature):
 
 @pytest.mark.parametrize("gap", [0.5, 1.5])
 def test_a_contact_within_two_steps_is_seen(gap):
-    """The place x is moved to and fro by two columns; they do not cancel when all move at once."""
+    """Two columns move the place both ways, which cancels where all move at once."""
 
     def force(x):
         return np.maximum(x[:1] - x[1:] - gap * STEP, 0.0)
