@@ -19,7 +19,11 @@ SpeedTable = tuple[ArrayLike, ArrayLike]
 Coefficient = float | ArrayLike | SpeedTable | Callable[[float], ArrayLike]
 
 
-class BelowTableError(ValueError):
+class NoCoefficientsError(ValueError):
+    """A support has no coefficients at a speed."""
+
+
+class BelowTableError(NoCoefficientsError):
     """A speed is below the first one of a table."""
 
 

@@ -1,0 +1,153 @@
+"""Linear equations whose coefficients may repeat every revolution.
+
+    M ẍ + D(θ) ẋ + K(θ) x = f(t),    θ = Ω t
+
+D and K are given by their Fourier terms in θ; the equations are constant where only the term 0
+exists, or where the rotor does not spin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import gcd
+
+import numpy as np
+
+from exudyn_rotor.theory.rotating_axes import turning_harmonics
+
+Terms = Mapping[int, np.ndarray]
+_ROUNDING = 1e-13  # share of a matrix that is round-off
+
+
+class UnconvergedError(ValueError):
+    """A truncation or an iteration does not reach its tolerance."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSystem:
+    """Linear equations at one spin speed.
+
+    Attributes
+    ----------
+    speed : float
+        Spin speed Ω [rad/s].
+    M : ndarray, shape (k, k)
+    D, K : mapping of int to ndarray, shape (k, k)
+        Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
+    H : sequence of (int, ndarray), optional
+        Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i Σ sign(ν − nΩ) H_n``,
+        with the frequency ν − nΩ that the rotor sees. Only forced motions know the frequency ν;
+        all other analyses leave structural damping out.
+    """
+
+    speed: float
+    M: np.ndarray
+    D: Terms
+    K: Terms
+    H: Sequence[tuple[int, np.ndarray]] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return len(self.M)
+
+    @property
+    def step(self) -> int:
+        """Common step p of the harmonics of the coefficients; 0 where they are constant."""
+        return 0 if self.speed == 0.0 else gcd(*self.D, *self.K)
+
+    @property
+    def is_constant(self) -> bool:
+        """True where the coefficients do not change in time."""
+        return self.step == 0
+
+    def matrices(self, theta: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return M, D, K at a spin angle [rad]."""
+        return self.M, at_angle(self.D, theta), at_angle(self.K, theta)
+
+    def projected(self, basis: np.ndarray) -> PeriodicSystem:
+        """Return the equations of motions in a real basis (k, r)."""
+        D, K = ({n: basis.T @ X @ basis for n, X in terms.items()} for terms in (self.D, self.K))
+        H = [(n, basis.T @ X @ basis) for n, X in self.H]
+        return PeriodicSystem(self.speed, basis.T @ self.M @ basis, D, K, H)
+
+
+def at_angle(terms: Terms, theta: float) -> np.ndarray:
+    """Return a matrix at a spin angle [rad]."""
+    if len(terms) == 1:
+        return terms[0].real
+    return sum(X * np.exp(1j * n * theta) for n, X in terms.items()).real
+
+
+def add(terms: dict[int, np.ndarray], more: Terms, factor: float = 1.0) -> None:
+    """Add Fourier terms to others; the term 0 is real."""
+    for n, X in more.items():
+        terms[n] = terms.get(n, 0.0) + factor * (X.real if n == 0 else X)
+
+
+def turned(motion: Terms, turns: int) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``R(turns·θ) U(θ)`` for a motion U of whole triples of rows."""
+    result: dict[int, np.ndarray] = {}
+    if turns == 0:
+        add(result, motion)
+        return result
+    for m, U in motion.items():
+        for n, R in turning_harmonics(len(U)).items():
+            add(result, {m + turns * n: R @ U})
+    return without_rounding(result)
+
+
+def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
+    """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
+    largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
+    kept = {
+        n: X
+        for n, X in terms.items()
+        if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
+    }
+    if 0 not in kept:
+        kept[0] = np.zeros_like(next(iter(terms.values())).real)
+    return kept
+
+
+def stacked(motions: Sequence[Terms]) -> dict[int, np.ndarray]:
+    """Return motions (p, k) one below the other."""
+    orders = sorted({n for motion in motions for n in motion})
+    return {
+        n: np.vstack([motion.get(n, np.zeros(motion[0].shape)) for motion in motions])
+        for n in orders
+    }
+
+
+def difference(one: Terms, other: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of one motion less another."""
+    result: dict[int, np.ndarray] = {}
+    add(result, one)
+    add(result, other, -1.0)
+    return result
+
+
+def congruent(U: Terms, X: np.ndarray, V: Terms | None = None) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``Uᵀ(θ) X V(θ)``, V = U by default.
+
+    With V = U the symmetric and the skew part of X stay exactly that: the rounding of a stiff
+    support would else be a circulatory force.
+    """
+    result: dict[int, np.ndarray] = {}
+    if V is not None:
+        for a, left in U.items():
+            for b, right in V.items():
+                add(result, {a + b: left.T @ X @ right})
+        return result
+    for sign in (1.0, -1.0):
+        part = 0.5 * (X + sign * X.T)
+        if np.any(part):
+            for n, Y in congruent(U, part, U).items():
+                add(result, {n: 0.5 * (Y + sign * Y.T)})
+    return result
+
+
+def rate_of(U: Terms) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of ``dU/dθ``."""
+    return {n: 1j * n * X for n, X in U.items() if n}

@@ -1,0 +1,144 @@
+"""The equations of bodies and elements together, in one kind of axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, without_rounding
+from exudyn_rotor.linear.model.body import Body, RotorBody
+from exudyn_rotor.linear.model.element import Element, End, OwnBody
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Bodies and the elements between them.
+
+    Attributes
+    ----------
+    bodies : sequence of Body
+        Their coordinates stand one after the other.
+    elements : sequence of Element
+    turns : int
+        Whether the axes of the rotors turn with Ω, or stand still.
+    """
+
+    bodies: tuple[Body, ...]
+    elements: tuple[Element, ...]
+    turns: int
+
+    @cached_property
+    def slices(self) -> list[slice]:
+        """Where the coordinates of each body stand."""
+        ends = np.cumsum([body.size for body in self.bodies]).tolist()
+        return [slice(end - b.size, end) for b, end in zip(self.bodies, ends, strict=True)]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return sum(body.size for body in self.bodies)
+
+    @cached_property
+    def M(self) -> np.ndarray:
+        """Mass matrix, shape (k, k)."""
+        return la.block_diag(*(body.M for body in self.bodies))
+
+    def wide(self, terms: Terms, place: slice) -> dict[int, np.ndarray]:
+        """Return rows of one body as rows of all coordinates."""
+        wide = {}
+        for n, X in terms.items():
+            wide[n] = np.zeros((*X.shape[:-1], self.size), dtype=X.dtype)
+            wide[n][..., place] = X
+        return wide
+
+    def _acted_on(self, end: End) -> dict[int, np.ndarray]:
+        """Return the motion that an element acts on, seen from outside."""
+        name, interface = end
+        place, body = next(
+            (i, body) for i, body in enumerate(self.bodies) if body.name == name
+        )
+        if isinstance(body, OwnBody):
+            rows = body.rows()
+        elif isinstance(body, RotorBody):
+            rows = body.supported(interface)
+        else:
+            rows = body.seen(interface)
+        return self.wide(rows, self.slices[place])
+
+    @cached_property
+    def motions(self) -> list[Terms]:
+        """Motion of each element, by multiples of θ."""
+        return [without_rounding(one.motion(self._acted_on)) for one in self.elements]
+
+    @cached_property
+    def _steady(self) -> tuple[dict[int, list], dict[int, list]]:
+        """Coefficients of powers of Ω, by multiples of θ, of all that does not vary otherwise."""
+        powers_D = [{} for _ in range(5)]
+        powers_K = [{} for _ in range(5)]
+        for body, place in zip(self.bodies, self.slices, strict=True):
+            for powers, given in ((powers_D, body.D), (powers_K, body.K)):
+                for power, X in enumerate(given):
+                    wide = np.zeros((self.size, self.size))
+                    wide[place, place] = X
+                    add(powers[power], {0: wide})
+        for element, U in zip(self.elements, self.motions, strict=True):
+            if not element.varies:
+                D, K = element.terms(0.0, U, self.turns)
+                _, faster = element.terms(1.0, U, self.turns)
+                add(powers_D[0], D)
+                add(powers_K[0], K)
+                add(powers_K[1], faster)
+                add(powers_K[1], K, -1.0)
+        return powers_D, powers_K
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s]."""
+        D, K = {}, {}
+        for terms, powers in zip((D, K), self._steady, strict=True):
+            for power, given in enumerate(powers):
+                if power == 0 or (given and speed):
+                    add(terms, given, speed**power)
+        for element, U in zip(self.elements, self.motions, strict=True):
+            if element.varies:
+                damping, stiffness = element.terms(speed, U, self.turns)
+                add(D, damping)
+                add(K, stiffness)
+        if len(D) > 1 or len(K) > 1:
+            D, K = without_rounding(D), without_rounding(K)
+        H = []
+        for body, place in zip(self.bodies, self.slices, strict=True):
+            for n, X in body.H:
+                H.append((n, np.zeros((self.size, self.size), dtype=X.dtype)))
+                H[-1][1][place, place] = X
+        return PeriodicSystem(float(speed), self.M, D, K, H)
+
+    def seen(self, body: Body, interface: str) -> dict[int, np.ndarray]:
+        """Return the motion (6, k) of an interface, seen from outside, for loads and results."""
+        return self.wide(body.seen(interface), self.slices[self.bodies.index(body)])
+
+    def summed(self, name: str) -> dict[int, np.ndarray]:
+        """Return the sum over the bodies of one of their loads, as Fourier terms."""
+        total: dict[int, np.ndarray] = {}
+        for body, place in zip(self.bodies, self.slices, strict=True):
+            given = getattr(body, name, None)
+            if given:
+                add(total, self.wide(given, place))
+        return total
+
+    def labels(self) -> tuple[str, ...]:
+        """Return the names of all coordinates."""
+        several = sum(isinstance(body, RotorBody) for body in self.bodies) > 1
+        return tuple(
+            f"{body.name}: {label}" if several and isinstance(body, RotorBody) else label
+            for body in self.bodies
+            for label in body.labels
+        )
+
+
+def rotors_of(bodies: Sequence[Body]) -> list[RotorBody]:
+    """Return the rotors among bodies."""
+    return [body for body in bodies if isinstance(body, RotorBody)]

@@ -1,0 +1,333 @@
+"""Bodies of a linear model: rotors in the axes chosen for the model, and what stands beside them.
+
+A body has coordinates y with ``M ÿ + D ẏ + K y = f``, in axes that turn with aΩ: a = 0 for axes
+that stand still, a = 1 for axes that turn with the speed Ω of the analysis. A rotor of the speed
+ratio r, whose own coordinates are ``x = exp(−Nwθ) y`` with w = r − a (:mod:`.turning`), has
+
+    M ÿ + (D + 2rΩ G − 2wΩ MN) ẏ
+        + (K + r²Ω² (K2 − C) + w²Ω² MN² − wΩ DN − 2rwΩ² GN + r⁴Ω⁴ K4) y = f,
+
+each matrix by its mean over a turn. That is Eq. (105) or (109) with centrifugal stiffening where
+w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ + K y = f`` for a = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.cached import cached_property, kept
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration
+from exudyn_rotor.linear.model.spin import Spin, spin_of
+from exudyn_rotor.linear.model.turning import Turning, turning_of
+from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.invariants import Invariants
+from exudyn_rotor.theory.rotating_axes import axes_of
+from exudyn_rotor.theory.spin_terms import SpinTerms
+from exudyn_rotor.theory.stiffening import chosen_level
+from exudyn_rotor.theory.stiffening import stiffening as second_order
+
+EVEN = 0.01  # unevenness up to which a rotor counts as round
+
+
+@dataclass(frozen=True, eq=False)
+class RotorAlone:
+    """A reduced rotor at a level of stiffening, in its own frame, whatever it stands on.
+
+    Attributes
+    ----------
+    rotor : ReducedRotor
+    invariants : Invariants
+        In the basis Q, about the foot of the centre of mass on the axis.
+    terms : SpinTerms
+        What the spin adds to the equations.
+    level : str
+        Level of centrifugal stiffening.
+    Q : ndarray, shape (n, k)
+        Columns of the reduced rotor by these coordinates.
+    turning : Turning
+    uneven : float
+        Largest share of stiffness and centrifugal matrix that differs around the circumference,
+        in slow motions.
+    left_out : mapping of str to float
+        Of each interface the share of its lateral flexibility by motions that are half of a pair.
+    spin : Spin or None
+        The spin as a coordinate.
+    """
+
+    rotor: ReducedRotor
+    invariants: Invariants
+    terms: SpinTerms
+    level: str
+    Q: np.ndarray
+    turning: Turning
+    uneven: float
+    left_out: dict[str, float]
+    spin: Spin | None
+
+    def unevenness(self, places: tuple[str, ...]) -> float:
+        """Return the unevenness of the rotor and of the places that something acts on."""
+        shares = [self.turning.place_share(self.motion(name)) for name in places]
+        lost = [self.left_out.get(name, 0.0) for name in places]
+        return max([self.uneven, *shares, *lost])
+
+    def motion(self, name: str) -> np.ndarray:
+        """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
+        return interface_motion(self.rotor, name) @ self.Q
+
+
+@kept
+def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone:
+    """Return a rotor at a level of stiffening; without halves of pairs unless it is `whole`."""
+    origin = rotor.axis.project(rotor.center_of_mass)
+    invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
+    level = chosen_level(stiffening, invariants.K2 is not None)
+    turning, Q = turning_of(rotor), np.eye(rotor.size)
+    left_out = {}
+    if turning.halves.shape[1]:
+        for name in rotor.interfaces:
+            U = interface_motion(rotor, name)[:2] @ (turning.T * np.sqrt(turning.weights))
+            halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
+            whole_size = np.linalg.norm(U) ** 2
+            left_out[name] = float(np.linalg.norm(U[:, halves]) ** 2 / (whole_size or 1.0))
+        if not whole:
+            Q = _beside(turning.halves)
+            turning = turning.within(Q)
+            invariants = invariants.in_basis(Q)
+    terms = SpinTerms.of(invariants, second_order(invariants, level))
+    spin = spin_of(rotor, invariants, Q)
+    K4 = None if terms.K4 is None else _unresisted(terms.K4, rotor, spin, Q)
+    terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
+    shares = [turning.matrix_share(X) for X in (invariants.K, terms.C_hat)]
+    return RotorAlone(
+        rotor, invariants, terms, level, Q, turning, max(shares), left_out, spin
+    )
+
+
+def _unresisted(X: np.ndarray, rotor: ReducedRotor, spin: Spin | None, Q: np.ndarray) -> np.ndarray:
+    """Return a centrifugal stiffness that resists neither the spin nor a shift along the axis.
+
+    Of the shift it is rounding, which would be a slow divergence.
+    """
+    if spin is not None:
+        X = spin.apart(X)
+    if ModeKind.AXIAL in rotor.rigid_kinds:
+        axial = Q[rotor.rigid_kinds.index(ModeKind.AXIAL)]
+        others = np.eye(len(X)) - np.outer(axial, axial)
+        X = others @ X @ others
+    return X
+
+
+def _beside(halves: np.ndarray) -> np.ndarray:
+    """Return an orthonormal basis of all other motions, coordinates kept where they can be."""
+    touched = np.flatnonzero(np.abs(halves).max(axis=1) > 1e-12)
+    others = la.null_space(halves[touched].T)
+    untouched = np.setdiff1d(np.arange(len(halves)), touched)
+    Q = np.zeros((len(halves), len(untouched) + others.shape[1]))
+    Q[untouched, np.arange(len(untouched))] = 1.0
+    Q[touched, len(untouched) :] = others
+    order = np.argsort(np.abs(Q).argmax(axis=0), kind="stable")
+    return Q[:, order]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A part of a linear model with coordinates of its own.
+
+    Attributes
+    ----------
+    name : str
+        Before the names of interfaces, 'rotor:left'; empty for the only rotor.
+    turns : int
+        a of the axes of its coordinates.
+    M : ndarray, shape (k, k)
+    D, K : sequence of ndarray, shape (k, k)
+        Coefficients of powers of Ω, ``K(Ω) = Σ Ωⁿ K[n]``.
+    labels : tuple of str
+        Names of the coordinates.
+    H : sequence of (int, ndarray)
+        Structural damping, see :class:`PeriodicSystem`.
+    base_loads : mapping of int to ndarray, shape (3, k), or None
+        Fourier terms of the loads of unit accelerations of the ground along (n1, n2, e), which
+        stand still; None where they are not known.
+    """
+
+    name: str
+    turns: int
+    M: np.ndarray
+    D: tuple[np.ndarray, ...]
+    K: tuple[np.ndarray, ...]
+    labels: tuple[str, ...]
+    H: tuple[tuple[int, np.ndarray], ...] = ()
+    base_loads: Terms | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return len(self.M)
+
+
+@dataclass(frozen=True, eq=False)
+class RotorBody(Body):
+    """A rotor as a part of a linear model.
+
+    Attributes
+    ----------
+    alone : RotorAlone
+        In its own frame.
+    ratio : float
+        r, its speed over Ω.
+    spin : Spin or None
+    is_apart : bool
+        Whether the spin is apart from other motions (:mod:`.spin`).
+    """
+
+    alone: RotorAlone = field(kw_only=True)
+    ratio: float = field(kw_only=True)
+    spin: Spin | None = field(kw_only=True)
+    is_apart: bool = field(kw_only=True)
+
+    @property
+    def drift(self) -> float:
+        """w, by which its coordinates turn in its own frame, over Ω."""
+        return self.ratio - self.turns
+
+    @property
+    def mean(self) -> bool:
+        """Whether its matrices are means over a turn."""
+        return self.drift != 0.0
+
+    def motion(self, name: str) -> np.ndarray:
+        """Return the motion of an interface in the rotor's frame, (6, k)."""
+        U = self.alone.motion(name)
+        return self.spin.about_axis(U) if self.is_apart else U
+
+    def seen(self, name: str) -> dict[int, np.ndarray]:
+        """Return the motion of an interface in axes that stand still, Fourier terms (6, k)."""
+        return self.from_outside(self.motion(name))
+
+    def from_outside(self, U: np.ndarray) -> dict[int, np.ndarray]:
+        """Return a motion (3 or 6, k) in the rotor's frame as it is seen from outside.
+
+        Of a rotor with another speed than Ω the parts that repeat with its own angle are left out.
+        """
+        if not self.mean:
+            return turned({0: U}, self.turns)
+        terms = self.alone.turning.motion(U)
+        if self.drift != 1.0:
+            terms = {0: terms[0]}
+        return turned(terms, self.turns)
+
+    def supported(self, name: str) -> dict[int, np.ndarray]:
+        """Return the motion of an interface that a support acts on, seen from outside, (6, k)."""
+        U = self.motion(name)
+        return turned({0: self.alone.turning.motion(U)[0] if self.mean else U}, self.turns)
+
+    @cached_property
+    def unbalance(self) -> dict[int, np.ndarray]:
+        """Load of the own eccentricity per Ω² as harmonics of Ω, each (k,); h of Eq. (83)."""
+        return self.rotor_fixed(self.alone.invariants.h)
+
+    def rotor_fixed(self, load: np.ndarray) -> dict[int, np.ndarray]:
+        """Return a generalised force (k,) that is constant in the rotor's frame as harmonics."""
+        if not self.mean:
+            return {0: load}
+        return {-n: part for n, part in self.alone.turning.parts(load).items() if np.any(part)}
+
+
+def rotor_body(
+    name: str, alone: RotorAlone, ratio: float, turns: int, *, is_apart: bool = True
+) -> RotorBody:
+    """Return a rotor in axes that turn with `turns` times Ω."""
+    inv, terms, w = alone.invariants, alone.terms, ratio - turns
+    spin = alone.spin
+    if spin is not None and w != 0.0:
+        spin = spin.averaged(alone.turning.still)
+    is_apart = spin is not None and (is_apart or w != 0.0)
+    M, D, K, G, C = inv.M, inv.D, inv.K, terms.G, terms.C_hat
+    if is_apart:
+        G = spin.unturned(G)
+    if w == 0.0:
+        powers_D = D, 2.0 * ratio * G
+        powers_K = K, 0.0 * K, -(ratio**2) * C
+        K4, H = terms.K4, () if inv.H is None else ((0, inv.H),)
+    else:
+        turning, N = alone.turning, alone.turning.generator
+        M, D, K, G, C = (turning.mean(X) for X in (M, D, K, G, C))
+        C = C if spin is None else spin.apart(C)
+        powers_D = D, 2.0 * ratio * G - 2.0 * w * M @ N
+        powers_K = K, -w * D @ N, w**2 * M @ N @ N - 2.0 * ratio * w * G @ N - ratio**2 * C
+        K4 = None if terms.K4 is None else turning.mean(terms.K4)
+        H = _structural(turning, inv.H, w)
+    if K4 is not None:
+        powers_K = *powers_K, 0.0 * K, ratio**4 * K4
+    labels = np.array(alone.rotor.labels)[np.abs(alone.Q).argmax(axis=0)]
+    made = RotorBody(
+        name, turns, M, powers_D, powers_K, tuple(labels.tolist()), H,
+        alone=alone, ratio=ratio, spin=spin, is_apart=is_apart,
+    )  # fmt: skip
+    loads = -axes_of(alone.rotor.axis).T @ inv.S
+    if is_apart:
+        loads = spin.about_axis(loads)
+    return replace(made, base_loads=made.from_outside(loads))
+
+
+def _structural(turning: Turning, H: np.ndarray | None, w: float) -> tuple:
+    """Return structural damping by waves: the wave n has the frequency ν − nwΩ in the rotor."""
+    if H is None:
+        return ()
+    within = turning.T.conj().T @ H @ turning.T
+    found = []
+    for wave in (-1, 0, 1):
+        mask = turning.waves == wave
+        part = turning.T * mask @ within @ (turning.T * mask).conj().T
+        if np.any(part):
+            found.append((wave * round(w), part))
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class StandingBody(Body):
+    """A foundation or casing, in inertial axes.
+
+    Attributes
+    ----------
+    points : mapping of str to ndarray, shape (6, k)
+        Displacement and rotation of its points along (n1, n2, e).
+    """
+
+    points: dict[str, np.ndarray] = field(kw_only=True)
+
+    def seen(self, name: str) -> dict[int, np.ndarray]:
+        """Return the motion of a point, (6, k)."""
+        return {0: self.points[name]}
+
+
+def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody:
+    """Return a foundation in the axes of a rotor's mesh as a body, in modal coordinates."""
+    given = foundation.modal().turned(axes_of(rotor.axis).T)
+    loads = None if given.participation is None else {0: -given.participation}
+    labels = tuple(f"foundation, {number}" for number in range(1, given.size + 1))
+    matrices = given.mass, (given.damping,), (given.stiffness,)
+    return StandingBody("foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points))
+
+
+def largest_radius(bodies: tuple[Body, ...]) -> float:
+    """Return the largest radius of gyration of the rotors [m]."""
+    radii = [radius_of_gyration(b.alone.invariants) for b in bodies if isinstance(b, RotorBody)]
+    return max(radii)
+
+
+def rigid_columns_of(alone: RotorAlone) -> tuple[list[str], np.ndarray]:
+    """Return the names of the rigid motions of a rotor and its coordinates (k, r) in each."""
+    names = list(alone.rotor.rigid)
+    columns = alone.Q.T[:, : len(names)]
+    if alone.spin is not None and ModeKind.SPIN in alone.rotor.rigid_kinds:
+        columns = columns.copy()
+        columns[:, alone.rotor.rigid_kinds.index(ModeKind.SPIN)] = alone.spin.momentum
+    return names, columns

@@ -1,0 +1,200 @@
+"""The linear model of a rotor on supports, of several rotors, or of a scene."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import exudyn
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.model.body import EVEN
+from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.prestress.carrying import with_chosen_prestress
+from exudyn_rotor.reduction.driven import without_spin
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.solid.damping import LOSS_LEFT_OUT
+from exudyn_rotor.solid.places import leeway
+from exudyn_rotor.solid_rotor import SolidRotor
+from exudyn_rotor.theory.stiffening import CHOICES, warn_of_left_out
+
+Target = LinearModel | ReducedRotor | SolidRotor | RotorTrain | exudyn.MainSystem
+# a SolidRotor up to this many degrees of freedom is taken with all of its modes, a larger one with
+# as many flexible modes as the second number says
+_ALL_MODES, _MODES = 90, 20
+
+
+def linear_model(
+    target: Target,
+    *,
+    supports: Sequence[Given] | Given = (),
+    foundation: Foundation | None = None,
+    body: RotorBody | Sequence[RotorBody] | None = None,
+    stiffening: str = "auto",
+    about: str = "steady",
+    axes: str = "auto",
+) -> LinearModel:
+    """Return the linear equations of a rotor on supports, or of a scene with a rotor in it.
+
+    Every linear analysis takes the model instead of the rotor and its supports, and makes it by
+    this function where it is given those.
+
+    Parameters
+    ----------
+    target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or LinearModel
+        A linear model is returned as it is. A SolidRotor is reduced first: to all of its modes up
+        to 90 degrees of freedom, to 20 flexible modes else.
+    supports : sequence of Support or bearings, optional
+        Of a rotor; a scene has its own connectors.
+    foundation : Foundation, optional
+        What carries all supports of a rotor, by points of their names; the ground by default.
+    body : RotorBody or sequence of RotorBody, optional
+        The rotor in a scene, from :func:`exudyn_rotor.add_rotor`; several make a
+        :class:`RotorTrain` of all rotors of the scene, with ratios of the speeds at which they
+        start.
+    stiffening : {'auto', 'none', 'tilt', 'full'}
+        Centrifugal stiffening of a rotor; a scene has that of its body. 'full' needs a rotor with
+        prestress (:meth:`SolidRotor.prestress`); 'auto' is 'full' with one, which it computes for
+        a SolidRotor with elements, and 'tilt' without.
+    about : {'steady', 'equilibrium', 'given'}
+        Motion about which a scene is linearised: the periodic motion under its loads and the
+        rotor's own unbalance at each speed; the same without this unbalance, films at rest under
+        their mean force, as in a list of supports; or its current state with the rotor undeformed
+        and journals where the weight by the lever rule, or their bearings' own load, holds them.
+    axes : {'auto', 'inertial', 'rotor'}
+        Axes of the equations: by default axes that stand still for a round rotor, and the axes of
+        the rotor for an uneven one; :attr:`LinearModel.axes` says which were taken.
+
+    Returns
+    -------
+    LinearModel
+
+    Raises
+    ------
+    TypeError
+        If the target, the body or a support is of another kind.
+    ValueError
+        For an unknown interface or level of stiffening, or supports given with a scene or a model.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, campbell, linear_model, stability
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4 * np.eye(3), 10.0 * np.eye(3)) for name in ("left", "right")]
+    >>> model = linear_model(rotor, supports=supports)
+    >>> campbell(model, [0.0, 50.0]).frequencies_inertial[1, :5].round(2)
+    array([99.97, 99.97, 99.97, 99.97, 99.97])
+    >>> stability(model, [0.0, 50.0]).stable.tolist()
+    [True, True]
+    """
+    given = given_supports(supports)
+    checks.choice(stiffening, "stiffening", CHOICES)
+    checks.choice(axes, "axes", AXES)
+    if foundation is not None:
+        checks.instance(foundation, "foundation", Foundation)
+    if given or foundation is not None:
+        _check_takes_supports(target)
+    if isinstance(target, exudyn.MainSystem):
+        return _of_scene(target, body, about, axes)
+    if body is not None:
+        raise TypeError(
+            "body: is only for an exudyn.MainSystem, not for the rotor itself; got "
+            f"{checks.shown(body)}"
+        )
+    if isinstance(target, LinearModel):
+        return target
+    if isinstance(target, RotorTrain):
+        return _of_train(target, stiffening, axes)
+    if not isinstance(target, ReducedRotor | SolidRotor):
+        raise TypeError(
+            "target: needs a ReducedRotor, a SolidRotor, a linear model, a RotorTrain, or an "
+            f"exudyn.MainSystem with body=…, got {checks.shown(target)}"
+        )
+    check_interfaces(given, target.interfaces)
+    rotor, is_full = target, False
+    if isinstance(target, SolidRotor):
+        rotor, is_full = _reduced(target, stiffening)
+    if foundation is not None:
+        _check_foundation(foundation, rotor, [one.interface for one in given])
+    return LinearModel(
+        {"": rotor}, {"": 1.0}, {"": given}, (), foundation, stiffening, axes, is_full=is_full
+    )
+
+
+def _check_takes_supports(target: Target) -> None:
+    """Refuse supports and foundations beside a target that has its own."""
+    for kind, what in (
+        (exudyn.MainSystem, "a scene has its own connectors and add_foundation"),
+        (RotorTrain, "a RotorTrain has its own"),
+        (LinearModel, "a linear model has its own"),
+    ):
+        if isinstance(target, kind):
+            raise ValueError(f"supports, foundation: are for a rotor; {what}; leave them out")
+
+
+def _check_foundation(
+    foundation: Foundation, rotor: ReducedRotor, interfaces: Sequence[str]
+) -> None:
+    for name in interfaces:
+        interface = rotor.interfaces[name]
+        place = rotor.axis.project(interface.reference)
+        foundation.motion(name, place, leeway(interface.radius, rotor.axis.direction))
+    for name in foundation.points:
+        if ON_FOUNDATION.format(name) in rotor.interfaces:
+            raise ValueError(
+                f"foundation: {ON_FOUNDATION.format(name)!r} is an interface of the rotor; rename it"
+            )
+
+
+def _reduced(rotor: SolidRotor, stiffening: str) -> tuple[ReducedRotor, bool]:
+    """Return a solid rotor in modes, and whether these are all that it has."""
+    if stiffening == "auto":
+        rotor = with_chosen_prestress(rotor, None)
+    free = 3 * rotor.node_count
+    if free > _ALL_MODES:
+        return rotor.reduce(_MODES), False
+    identity = np.eye(free)
+    return rotor.reduce(identity), True
+
+
+def _of_train(train: RotorTrain, stiffening: str, axes: str) -> LinearModel:
+    rotors = {
+        name: without_spin(rotor) if name in train.driven else rotor
+        for name, rotor in train.rotors.items()
+    }
+    return LinearModel(
+        rotors, train.ratios, train.supports, train.links, None, stiffening, axes,
+        max(train.largest_unevenness, EVEN), train.driven,
+    )  # fmt: skip
+
+
+def _of_scene(
+    mbs: exudyn.MainSystem,
+    body: RotorBody | Sequence[RotorBody] | None,
+    about: str,
+    axes: str,
+) -> LinearModel:
+    raise NotImplementedError
+
+
+def warn_of_structural_damping(model: LinearModel, what: str) -> None:
+    """Warn that an analysis, named by `what`, leaves structural damping out."""
+    if model.has_structural_damping:
+        warnings.warn(LOSS_LEFT_OUT.format(what), UserWarning, stacklevel=user_level())
+
+
+def warn_of_left_out_stiffening(model: LinearModel, speed: float) -> None:
+    """Warn where the level 'tilt', taken by default, errs much at a speed [rad/s]."""
+    if model.stiffening_asked == "auto":
+        for rotor in model.rotors.values():
+            warn_of_left_out(rotor.invariants, speed, user_level() + 1)

@@ -1,0 +1,531 @@
+"""Linear equations of rotors, what they stand on, and what is between them: one model for all.
+
+A model is solved in axes in which its equations are constant, if there are any:
+
+- Axes that stand still, where all rotors are round: supports, foundations, gears and other rotors
+  enter as they are. The unevenness of the mesh is averaged over the circumference
+  (:mod:`.turning`), up to 1 % of it; :attr:`LinearModel.unevenness` tells how much.
+- The axes of the rotor, where it is uneven: constant on supports that turn with it or are alike in
+  all directions, else periodic.
+
+At rest nothing turns, and nothing is averaged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, turned
+from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
+from exudyn_rotor.linear.model.body import (
+    EVEN,
+    RotorAlone,
+    RotorBody,
+    StandingBody,
+    foundation_body,
+    largest_radius,
+    rigid_columns_of,
+    rotor_alone,
+    rotor_body,
+)
+from exudyn_rotor.linear.model.element import Element, elements_of
+from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.stiffening import LEVELS
+
+AXES = ("auto", "inertial", "rotor")
+ON_FOUNDATION = "{} (foundation)"
+_HELD = 1e-10  # share of the largest stiffness per unit mass that counts as none
+_ALONE = 1.0 - 1e-6  # share of a free motion's energy in one rigid motion, but for rounding
+_ARM = 1e-4  # arm off the axis, squared and in radii of gyration, at which springs hold the spin
+
+
+class Matrices(NamedTuple):
+    """Matrices of a model at one speed, and the names of its coordinates and axes."""
+
+    M: np.ndarray
+    D: np.ndarray
+    K: np.ndarray
+    coordinates: tuple[str, ...]
+    axes: str
+
+
+class StateSpace(NamedTuple):
+    """``ż = A z + B u, y = C z + D u``: forces u and displacements y at the places."""
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """Linear equations of rotors on supports, ready for any spin speed; see :func:`linear_model`.
+
+    Attributes
+    ----------
+    rotors : mapping of str to ReducedRotor
+        By name; the only rotor has the name ''.
+    ratios : mapping of str to float
+        Speed of each over the speed Ω of the analysis.
+    supports : mapping of str to sequence
+        Supports and bearings of each rotor.
+    links : sequence of Link
+        Between rotors.
+    foundation : Foundation or None
+        What carries the supports.
+    stiffening : str
+        Level of centrifugal stiffening asked for.
+    wanted_axes : {'auto', 'inertial', 'rotor'}
+    largest_unevenness : float
+        Up to which a rotor counts as round.
+    driven : sequence of str
+        Rotors whose spin follows the speed.
+    is_undamped : bool
+        Whether damping and the skew part of stiffness are left out, as for critical speeds.
+    is_richer : bool
+        Whether the rotors have the shapes, too, that their bases lack first.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from exudyn_rotor import SolidRotor, Support, linear_model
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
+    >>> model = linear_model(rotor, supports=supports)
+    >>> model
+    LinearModel of 6 coordinates in inertial axes
+    rotor: 6 coordinates, interfaces left, right
+    supports: left, right
+    free motions: translation along axis
+    stiffening: tilt, unevenness 0
+    """
+
+    rotors: Mapping[str, ReducedRotor]
+    ratios: Mapping[str, float]
+    supports: Mapping[str, Sequence]
+    links: Sequence[Link] = ()
+    foundation: Foundation | None = None
+    stiffening_asked: str = "auto"
+    wanted_axes: str = "auto"
+    largest_unevenness: float = EVEN
+    driven: Sequence[str] = ()
+    is_undamped: bool = False
+    is_richer: bool = False
+    is_full: bool = field(default=False, kw_only=True)
+
+    # ------------------------------------------------------------------ how it is put together
+
+    @cached_property
+    def _used(self) -> Mapping[str, ReducedRotor]:
+        """The rotors with the basis that is solved in."""
+        if not self.is_richer:
+            return self.rotors
+        return {name: rotor.with_attachments for name, rotor in self.rotors.items()}
+
+    @cached_property
+    def _elements(self) -> tuple[list[Element], list]:
+        """Elements and own coordinates, as for axes that stand still."""
+        return self._elements_for(0)
+
+    def _elements_for(self, turns: int) -> tuple[list[Element], list]:
+        carried = self.foundation is not None
+        bases = {name: ("foundation", name) for name in self.foundation.points} if carried else {}
+        return elements_of(
+            self.supports, self.ratios, self.links, bases, turns, self.is_undamped
+        )
+
+    def _places(self, name: str) -> tuple[str, ...]:
+        """Return the interfaces of a rotor that elements act on."""
+        ends = (end for element in self._elements[0] for end in element.ends)
+        return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
+
+    def _alone(self, name: str, whole: bool) -> RotorAlone:
+        return rotor_alone(self._used[name], self.stiffening_asked, whole)
+
+    @cached_property
+    def _own_unevenness(self) -> dict[str, float]:
+        """Unevenness of each rotor and of the places that something acts on."""
+        return {
+            name: self._alone(name, False).unevenness(self._places(name)) for name in self._used
+        }
+
+    @cached_property
+    def turns(self) -> int:
+        """Whether the axes of the rotors turn with Ω (1) or stand still (0)."""
+        if self.wanted_axes != "auto":
+            return int(self.wanted_axes == "rotor")
+        round_ones = all(u <= self.largest_unevenness for u in self._own_unevenness.values())
+        turning = [element for element in self._elements[0] if element.turns]
+        return int(not (round_ones and all(each.is_isotropic(1.0) for each in turning)))
+
+    @property
+    def axes(self) -> str:
+        """Axes in which the equations are: 'inertial' or 'rotor'."""
+        return AXES[1 + self.turns]
+
+    def _assembled(self, turns: int, at_rest: bool = False) -> Assembly:
+        elements, own = self._elements_for(turns)
+        bodies = []
+        for name in self._used:
+            ratio = self.ratios[name]
+            whole = self.turns == 1 and ratio == 1.0
+            alone = self._alone(name, whole)
+            if at_rest:
+                bodies.append(rotor_body(name, alone, 0.0, 0, is_apart=False))
+                continue
+            if ratio != turns and not whole:
+                self._check_round(name)
+            bodies.append(
+                rotor_body(name, alone, ratio, turns, is_apart=not self._holds_spin(name, alone))
+            )
+        if self.foundation is not None:
+            bodies.append(foundation_body(self.foundation, next(iter(self._used.values()))))
+        return Assembly((*bodies, *own), tuple(elements), 0 if at_rest else turns)
+
+    def _check_round(self, name: str) -> None:
+        uneven = self._own_unevenness[name]
+        if uneven > self.largest_unevenness and len(self._used) > 1:
+            raise ValueError(
+                f"rotors[{name!r}]: its unevenness is {uneven:.2g}, and it turns with "
+                f"{self.ratios[name]:g} times the speed of the analysis; give a finer mesh, a "
+                "number of modes that leaves no pair of bending modes in halves, a larger "
+                f"largest_unevenness=…, or train.relative_to({name!r})"
+            )
+
+    def _holds_spin(self, name: str, alone: RotorAlone) -> bool:
+        """Return whether springs that turn with a rotor hold its spin."""
+        if alone.spin is None:
+            return False
+        for element in self._elements[0]:
+            if element.turns and element.ends[0][0] == name:
+                turned_by = alone.motion(element.ends[0][1]) @ alone.spin.turn
+                K, _ = element.matrices(0.0)
+                arm = np.abs(turned_by[:2]).max() ** 2 * alone.invariants.mass > _ARM
+                if np.any(K[5]) or (arm and turned_by @ K @ turned_by != 0.0):
+                    return True
+        return False
+
+    @cached_property
+    def _running(self) -> Assembly:
+        return self._assembled(self.turns)
+
+    @cached_property
+    def _at_rest(self) -> Assembly:
+        return self._assembled(self.turns, at_rest=True)
+
+    def assembly(self, speed: float) -> Assembly:
+        """Return bodies and elements as they are at a speed [rad/s]."""
+        return self._running if speed else self._at_rest
+
+    # ------------------------------------------------------------------ equations
+
+    def at(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a spin speed [rad/s].
+
+        Raises
+        ------
+        NoCoefficientsError
+            For a speed beyond a table, or at which a film carries nothing.
+        """
+        return self.assembly(speed).system(speed)
+
+    def matrices(self, speed: float) -> Matrices:
+        """Return mass, damping and stiffness at a spin speed [rad/s].
+
+        Parameters
+        ----------
+        speed : float
+
+        Returns
+        -------
+        Matrices
+            M, D, K (k, k), the names of the coordinates and of the axes.
+
+        Raises
+        ------
+        ValueError
+            Where the equations are periodic, as of an uneven rotor on uneven supports.
+        """
+        system = self.at(checks.number(speed, "speed", "rad/s"))
+        if not system.is_constant:
+            raise ValueError(
+                "matrices: the equations of an uneven rotor on uneven supports repeat every "
+                "revolution; model.at(speed) has their Fourier terms"
+            )
+        return Matrices(*system.matrices(), self.coordinates, self.axes)
+
+    def state_space(self, speed: float) -> StateSpace:
+        """Return the state space between forces and displacements at all interfaces.
+
+        Inputs and outputs stand still, along n1 and n2 of each of :attr:`interfaces` in their
+        order. States are the coordinates and their rates.
+
+        Parameters
+        ----------
+        speed : float
+            Spin speed [rad/s].
+
+        Raises
+        ------
+        ValueError
+            As :meth:`matrices`, and in axes of the rotor, where what stands still turns.
+        """
+        M, D, K, _, axes = self.matrices(speed)
+        if axes == "rotor" and speed:
+            raise ValueError(
+                "state_space: forces that stand still turn in the axes of an uneven rotor; see "
+                "model.matrices(speed)"
+            )
+        rows = [self.seen(name, speed)[0][:2] for name in self.interfaces]
+        U = np.vstack([np.zeros((0, self.size)), *rows])
+        inverse = la.inv(M)
+        none, one = np.zeros_like(M), np.eye(len(M))
+        return StateSpace(
+            np.block([[none, one], [-inverse @ K, -inverse @ D]]),
+            np.vstack([np.zeros((len(M), len(U))), inverse @ U.T]),
+            np.hstack([U, np.zeros(U.shape)]),
+            np.zeros((len(U), len(U))),
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return self._running.size
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates."""
+        return self._running.labels()
+
+    def undamped(self) -> LinearModel:
+        """Return the model whose critical speeds are those without damping."""
+        return replace(self, is_undamped=True)
+
+    @cached_property
+    def richer(self) -> LinearModel | None:
+        """The model with the shapes that the bases of its rotors lack; None if not known."""
+        if self.is_richer or any(r.with_attachments is None for r in self.rotors.values()):
+            return None
+        return replace(self, is_richer=True)
+
+    # ------------------------------------------------------------------ what it consists of
+
+    @property
+    def bodies(self) -> tuple:
+        """Bodies at a speed."""
+        return self._running.bodies
+
+    @cached_property
+    def unevenness(self) -> float:
+        """Largest share of a rotor that differs around its axis and is averaged over a turn."""
+        averaged = [b.name for b in rotors_of(self.bodies) if b.mean]
+        return max((self._own_unevenness[name] for name in averaged), default=0.0)
+
+    @property
+    def stiffening(self) -> str:
+        """Level of centrifugal stiffening, the lowest of all rotors."""
+        return min((b.alone.level for b in rotors_of(self.bodies)), key=LEVELS.index)
+
+    @property
+    def stiffness_varies(self) -> bool:
+        """Whether a stiffness depends on the speed other than by Ω²."""
+        fourth = any(b.alone.terms.K4 is not None for b in rotors_of(self.bodies))
+        return fourth or any(element.stiffness_varies for element in self._elements[0])
+
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Ω at the points of the tables of supports [rad/s], at which there are kinks."""
+        return np.unique(np.concatenate([[], *(e.table_speeds for e in self._elements[0])]))
+
+    @property
+    def has_structural_damping(self) -> bool:
+        """Whether steady motions have structural damping, which other analyses leave out."""
+        return any(body.H for body in self.bodies)
+
+    @cached_property
+    def radius(self) -> float:
+        """By which a rotation counts as a displacement [m]."""
+        return largest_radius(self.bodies)
+
+    @cached_property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of what can be loaded and looked at, of foundations, too."""
+        several = len(self._used) > 1
+        names = [
+            f"{owner}:{name}" if several or owner else name
+            for owner, rotor in self._used.items()
+            for name in rotor.interfaces
+        ]
+        return (*names, *self.standing_interfaces)
+
+    @property
+    def standing_interfaces(self) -> tuple[str, ...]:
+        """Names of the points of a foundation."""
+        points = () if self.foundation is None else self.foundation.points
+        return tuple(map(ON_FOUNDATION.format, points))
+
+    def owner(self, name: str) -> tuple[RotorBody | StandingBody, str]:
+        """Return the body of an interface of this name, and its own name there."""
+        if name in self.standing_interfaces:
+            point = list(self.foundation.points)[self.standing_interfaces.index(name)]
+            return next(b for b in self.bodies if isinstance(b, StandingBody)), point
+        owner, colon, interface = name.partition(":")
+        if not (colon and owner in self._used):
+            owner, interface = next(iter(self._used)), name
+        return next(b for b in rotors_of(self.bodies) if b.name == owner), interface
+
+    def seen(self, name: str, speed: float = 1.0) -> dict[int, np.ndarray]:
+        """Return the motion of an interface in axes that stand still.
+
+        Fourier terms (6, k): displacement and rotation along (n1, n2, e).
+        """
+        assembly, (body, interface) = self.assembly(speed), self.owner(name)
+        place = [b.name for b in assembly.bodies].index(body.name)
+        return assembly.seen(assembly.bodies[place], interface)
+
+    def seen_at_node(self, number: int, speed: float = 1.0) -> dict[int, np.ndarray]:
+        """Return the motion of a mesh node of the only rotor, as :meth:`seen` does; no rotation."""
+        assembly = self.assembly(speed)
+        body = rotors_of(assembly.bodies)[0]
+        rotor = body.alone.rotor
+        rows = rotor.shapes.matrix[3 * number : 3 * number + 3] @ body.alone.Q
+        rows = np.column_stack([rotor.axis.plane, rotor.axis.direction]).T @ rows
+        if body.is_apart:
+            rows = body.spin.about_axis(rows)
+        rows = np.vstack([rows, 0.0 * rows])
+        return assembly.wide(body.from_outside(rows), assembly.slices[0])
+
+    def unbalance_at(self, seen: Terms, unbalance: np.ndarray) -> dict[int, np.ndarray]:
+        """Return the load (k,) per Ω² of an unbalance (3,) in the rotor's frame, as harmonics.
+
+        `seen` is the motion of its place.
+        """
+        load: dict[int, np.ndarray] = {}
+        for n, force in turned({0: np.r_[unbalance, 0.0, 0.0, 0.0][:, None]}, 1).items():
+            for m, U in seen.items():
+                load[n + m] = load.get(n + m, 0.0) + (U.T @ force)[:, 0]
+        return load
+
+    def unbalance(self, speed: float = 1.0) -> dict[int, np.ndarray]:
+        """Return the load (k,) per Ω² of the own eccentricity of the rotors of ratio 1.
+
+        By its harmonics of Ω.
+        """
+        assembly = self.assembly(speed)
+        total: dict[int, np.ndarray] = {}
+        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
+            if isinstance(body, RotorBody) and self.ratios[body.name] == 1.0:
+                for n, load in assembly.wide(body.unbalance, place).items():
+                    total[n] = total.get(n, 0.0) + load
+        return total
+
+    def base_loads(self, speed: float = 1.0) -> dict[int, np.ndarray] | None:
+        """Return the loads (3, k) of unit accelerations of the ground, as Fourier terms."""
+        bodies = self.bodies
+        if any(isinstance(b, StandingBody) and b.base_loads is None for b in bodies):
+            return None
+        return self.assembly(speed).summed("base_loads")
+
+    # ------------------------------------------------------------------ free motions
+
+    @cached_property
+    def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
+        """Bodies at rest without own coordinates, and the stiffness of what holds them."""
+        held = self if self.is_undamped else self.undamped()
+        assembly = held._assembled(held.turns, at_rest=True)
+        K = np.zeros((assembly.size, assembly.size))
+        for element, U in zip(assembly.elements, assembly.motions, strict=True):
+            U = sum(U.values()).real
+            K += U.T @ element.at_rest() @ U
+        return assembly, K
+
+    @cached_property
+    def free_motions(self) -> tuple[str, ...]:
+        """Rigid motions that nothing holds at rest; 'combination of …' where several take part."""
+        assembly, K = self._held_at_rest
+        names, columns = [], []
+        for body, place in zip(assembly.bodies, assembly.slices, strict=True):
+            if isinstance(body, RotorBody):
+                own, rigid = rigid_columns_of(body.alone)
+                prefix = f"{body.name}: " if len(self._used) > 1 else ""
+                names += [prefix + name for name in own]
+                columns.append(np.zeros((assembly.size, len(own))))
+                columns[-1][place] = rigid
+        return _named_free(names, np.hstack(columns), K)
+
+    @cached_property
+    def free_spins(self) -> np.ndarray:
+        """Momenta of the spins that nothing holds, orthonormal, shape (k, f)."""
+        assembly, K = self._held_at_rest
+        turns, momenta = [], []
+        for body, place in zip(self.bodies, assembly.slices, strict=False):
+            if not isinstance(body, RotorBody) or body.spin is None:
+                continue
+            if len(self._used) > 1 or body.is_apart:
+                for columns, given in ((turns, body.spin.turn), (momenta, body.spin.momentum)):
+                    columns.append(np.zeros(self.size))
+                    columns[-1][place] = given
+        if not turns:
+            return np.zeros((self.size, 0))
+        S = np.column_stack(turns)[: assembly.size]
+        values, combined = la.eigh(S.T @ K @ S)
+        most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
+        free = combined[:, values <= _HELD * most]
+        return la.orth(np.column_stack(momenta) @ free)
+
+    @cached_property
+    def held_basis(self) -> np.ndarray | None:
+        """Motions without a free spin as orthonormal columns; None where no spin is free.
+
+        Coordinates that have no part in it stay as they are.
+        """
+        momenta = self.free_spins
+        if not momenta.shape[1]:
+            return None
+        touched = np.flatnonzero(np.abs(momenta).max(axis=1) > 1e-12)
+        others = la.null_space(momenta[touched].T)
+        untouched = np.setdiff1d(np.arange(self.size), touched)
+        basis = np.zeros((self.size, len(untouched) + others.shape[1]))
+        basis[untouched, np.arange(len(untouched))] = 1.0
+        basis[touched, len(untouched) :] = others
+        return basis
+
+    def __repr__(self) -> str:
+        lines = [f"LinearModel of {self.size} coordinates in {self.axes} axes"]
+        for name, rotor in self.rotors.items():
+            body = next(b for b in rotors_of(self.bodies) if b.name == name)
+            known = ", ".join(rotor.interfaces) or "none"
+            label = f"rotor {name!r}" if name else "rotor"
+            lines.append(f"{label}: {body.size} coordinates, interfaces {known}")
+        standing = "" if self.foundation is None else " on a foundation"
+        acted = ", ".join(dict.fromkeys(element.what for element in self._elements[0])) or "none"
+        lines.append(f"supports{standing}: {acted}")
+        lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
+        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
+        return "\n".join(lines)
+
+
+def _named_free(names: Sequence[str], columns: np.ndarray, K: np.ndarray) -> tuple[str, ...]:
+    """Name the rigid motions that a stiffness leaves free; columns have unit mass."""
+    rigid = columns.T @ K @ columns
+    values, vectors = np.linalg.eigh(0.5 * (rigid + rigid.T))
+    free = vectors[:, values <= _HELD * max(values.max(initial=0.0), 0.0)]
+    share = np.sum(free**2, axis=1)
+    alone = [name for name, s in zip(names, share, strict=True) if s > _ALONE]
+    partly = [name for name, s in zip(names, share, strict=True) if 1.0 - _ALONE < s <= _ALONE]
+    combination = "combination of " + ", ".join(partly)
+    return (*alone, *(combination,) * (free.shape[1] - len(alone)))

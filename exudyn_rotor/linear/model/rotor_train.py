@@ -1,0 +1,181 @@
+"""Two and more rotors whose speeds are in fixed ratios, on supports and linked to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
+from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.link_places import check_places
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+
+
+@dataclass(frozen=True, eq=False)
+class RotorTrain:
+    """Rotors whose speeds are in fixed ratios: what linear analyses take in place of a rotor.
+
+    Parameters
+    ----------
+    rotors : mapping of str to ReducedRotor
+        By names without a colon; interfaces are then 'rotor:interface'. The axes (n1, n2, e) of
+        :attr:`SpinAxis.plane` are parallel for all rotors, whatever the axes of their meshes are.
+    ratios : mapping of str to float
+        Speed of each rotor over the speed Ω of the analysis, not 0; negative for one that turns
+        the other way. Results are seen from axes that turn with Ω, 'forward' is in its sense.
+    supports : mapping of str to sequence of Support or bearings, optional
+        Of each rotor on the ground; bearings and tables at its own speed, magnetic bearings and
+        pads with their coordinates.
+    links : sequence of Link, optional
+        Between rotors.
+    largest_unevenness : float, optional
+        Share of a rotor's matrices, and of the motions of its interfaces, that may differ around
+        the axis, as that of a mesh does; weighted by what slow motions see. Up to it a rotor of
+        another ratio than 1, or any beside gears or anisotropic supports at rest, counts as
+        axisymmetric, by its mean over a turn.
+    positions : mapping of str to array_like, each (3,), optional
+        Where the origins of meshes stand along (n1, n2, e) [m], of rotors for which that is to be
+        checked. Without them a rotor stands where its links put it.
+    driven : sequence of str, optional
+        Rotors whose drive holds their speed: the mean rotation about the axis is the angle of Ω
+        times the ratio, and no coordinate. The spins of all others are, and what nothing holds of
+        them is free.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For unknown names and bad numbers, for gears of other ratios, and for links whose ends are
+        not in one place. Analyses refuse rotors
+        with structural damping or with supports off the axis that hold the spin, and rotors,
+        supports and links that are uneven where the equations do not repeat with the angle of Ω.
+
+    Notes
+    -----
+    Unbalance, the rotors' own included, is that of rotors of ratio 1: :meth:`relative_to` makes the
+    speed of another rotor that of the analysis.
+
+    The mean over a turn leaves an error of frequencies of the order of the square of the
+    unevenness. Frequencies of motions with more than four nodal diameters are those in the frame of
+    their rotor.
+
+    Examples
+    --------
+    Two rigid rotors, one of which turns 1.5 times as fast, on a spring between them:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import Link, RotorTrain, SolidRotor, Support, critical_speeds
+    >>> rod = 1e9 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1]).reduce(1)
+    >>> springs = [Support(name, 2e4) for name in ("left", "right")]
+    >>> links = [Link(f"LP:{n}", f"HP:{n}", Support(n, 3e4)) for n in ("left", "right")]
+    >>> ratios = {"LP": 1.0, "HP": 1.5}
+    >>> train = RotorTrain({"LP": rotor, "HP": rotor}, ratios, {"LP": springs}, links)
+    >>> critical_speeds(train, nodal_diameters=[1]).speeds[::4].round(2)
+    array([ 64.72, 189.24])
+    """
+
+    rotors: Mapping[str, ReducedRotor]
+    ratios: Mapping[str, float]
+    supports: Mapping[str, Sequence[Given]] = field(default_factory=dict)
+    links: Sequence[Link] = ()
+    largest_unevenness: float = 0.05
+    positions: Mapping[str, np.ndarray] = field(default_factory=dict)
+    driven: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        rotors = _checked_rotors(self.rotors)
+        ratios = _checked_ratios(self.ratios, rotors)
+        supports = {}
+        for name, given in checks.mapping(self.supports, "supports", "sequence of Support").items():
+            _known(name, rotors, "supports")
+            supports[name] = given_supports(given)
+            check_interfaces(supports[name], rotors[name].interfaces)
+        links = checks.instances(self.links, "links", Link)
+        for link in links:
+            for name, interface in link.ends:
+                _known(name, rotors, "links")
+                _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
+            link.check_ratios(ratios)
+        positions = {}
+        for name, given in checks.mapping(self.positions, "positions", "array_like").items():
+            _known(name, rotors, "positions")
+            positions[name] = checks.vector(given, f"positions[{name!r}]", "m", size=3)
+        check_places(rotors, links, positions)
+        driven = checks.labels(self.driven, "driven", rotors)
+        if len(set(driven)) < len(driven):
+            raise ValueError(f"driven: needs every rotor once, got {list(driven)}")
+        uneven = checks.number(self.largest_unevenness, "largest_unevenness", least=0.0, most=1.0)
+        for name, value in {
+            "rotors": checks.read_only_mapping(rotors),
+            "ratios": checks.read_only_mapping(ratios),
+            "supports": checks.read_only_mapping(supports),
+            "links": links,
+            "largest_unevenness": uneven,
+            "positions": checks.read_only_mapping(positions),
+            "driven": driven,
+        }.items():
+            object.__setattr__(self, name, value)
+
+    def relative_to(self, rotor: str) -> RotorTrain:
+        """Return the train for analyses over the speed of one of its rotors, whose ratio is 1.
+
+        Where that rotor turns the other way, so do all speeds: a positive speed is then the
+        reverse of a positive speed before.
+
+        Parameters
+        ----------
+        rotor : str
+
+        Raises
+        ------
+        TypeError, ValueError
+            For an unknown name.
+        """
+        _known(checks.label(rotor, "rotor"), self.rotors, "rotor")
+        unit = self.ratios[rotor]
+        ratios = {name: 1.0 if name == rotor else r / unit for name, r in self.ratios.items()}
+        return replace(self, ratios=ratios)
+
+
+def _checked_rotors(given: Mapping[str, ReducedRotor]) -> Mapping[str, ReducedRotor]:
+    rotors = checks.mapping(given, "rotors", "ReducedRotor")
+    if not rotors:
+        raise ValueError("rotors: needs at least one rotor, got none")
+    how = "reduce a SolidRotor by its method reduce(…)"
+    for name, rotor in rotors.items():
+        if ":" in checks.label(name, "rotors"):
+            raise ValueError(f"rotors: needs names without a colon, got {name!r}")
+        checks.instance(rotor, f"rotors[{name!r}]", ReducedRotor, how)
+    return rotors
+
+
+def _checked_ratios(
+    given: Mapping[str, float], rotors: Mapping[str, ReducedRotor]
+) -> dict[str, float]:
+    """Return the ratios in the order of the rotors."""
+    ratios = checks.mapping(given, "ratios", "float")
+    if set(ratios) != set(rotors):
+        raise ValueError(
+            f"ratios: needs one for each of the rotors {_listed(rotors)}, got {_listed(ratios)}"
+        )
+    ratios = {name: checks.number(ratios[name], f"ratios[{name!r}]") for name in rotors}
+    if not all(ratios.values()):
+        raise ValueError(
+            f"ratios: needs numbers other than 0, got {ratios}; give a rotor that stands still "
+            "as a foundation"
+        )
+    return ratios
+
+
+def _listed(names: Mapping[str, object]) -> str:
+    return ", ".join(map(str, names)) or "none"
+
+
+def _known(name: str, known: Mapping[str, object], label: str) -> None:
+    if name not in known:
+        raise ValueError(f"{label}: {name!r} is unknown; known: {_listed(known)}")

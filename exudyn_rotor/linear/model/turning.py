@@ -1,0 +1,212 @@
+"""Axes that stand still: how the coordinates of a rotor turn about its axis.
+
+A lateral motion of a round rotor comes in pairs of waves with one nodal diameter. A wave that is
+turned about the axis by an angle α is multiplied by ``exp(±iα)``. In coordinates ``x = T c`` whose
+columns are such waves,
+
+    η = exp(Nα) x,    N = T diag(i n) T⁻¹,    n = 1, −1 for a pair, 0 for all other motions,
+
+are the coordinates as seen from axes that stand still. Supports see the mean motion of an
+interface, which has no other waves than these: in η they act as they are. Motions with more nodal
+diameters do not move an interface's mean; their coordinates stay in the frame of the rotor. Three
+and more equal sectors are round in this sense, too: a pair of bending modes holds further waves
+beside n = ±1, and turns by N all the same.
+
+The matrices of a round rotor do not change in ``exp(−Nα)ᵀ X exp(−Nα)``. The matrices of a mesh do a
+little: their mean over a turn is the round part, and the rest is the unevenness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.cached import kept
+from exudyn_rotor.linear.equations import without_rounding
+from exudyn_rotor.linear.model.points import interface_motion, rotor_points
+from exudyn_rotor.linear.model.waves import HIGHEST, wave_amplitudes
+from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.rotating_axes import turning_harmonics
+
+_POINTS = 800  # of the mesh, at most, by which waves are told
+_GROUP = 5e-2  # frequencies that differ by less may be of one pair, which a mesh splits
+_SEEN = 1e-8  # share of the largest energy below which a motion is not seen
+_TURNS = 0.05  # share of a motion's energy that one lateral wave has more than the opposite one
+_HALF = 0.5  # share of lateral waves in a motion that has no partner: half of a pair
+_RIGID_PAIRS = (
+    (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
+    (ModeKind.TILT_1, ModeKind.TILT_2),
+)
+_PAIR = np.array([[1.0, 1.0], [-1j, 1j]]) / np.sqrt(2.0)  # waves of n = 1 and −1
+
+
+@dataclass(frozen=True, eq=False)
+class Turning:
+    """How the coordinates of a rotor turn about its axis.
+
+    Attributes
+    ----------
+    T : ndarray, shape (k, k)
+        Waves as columns, unitary: the coordinates are mass-orthonormal.
+    waves : ndarray of int, shape (k,)
+        Their n, one of −1, 0, 1.
+    weights : ndarray, shape (k,)
+        ``1/(1 + ω²/ω₁²)`` of the frequencies at rest and the lowest flexible one: how much a wave
+        counts in slow motions.
+    halves : ndarray, shape (k, h)
+        Motions that are half of a pair, whose other half the number of modes has cut off.
+    """
+
+    T: np.ndarray
+    waves: np.ndarray
+    weights: np.ndarray
+    halves: np.ndarray
+
+    @property
+    def generator(self) -> np.ndarray:
+        """N, shape (k, k), skew."""
+        return (self.T * (1j * self.waves) @ self.T.conj().T).real
+
+    def within(self, basis: np.ndarray) -> Turning:
+        """Return how coordinates turn that are those of an orthonormal basis (k, r), real.
+
+        The basis holds every wave or nothing of it.
+        """
+        T = basis.T @ self.T
+        kept = np.linalg.norm(T, axis=0) > 0.5
+        return Turning(T[:, kept], self.waves[kept], self.weights[kept], np.zeros((len(T), 0)))
+
+    @property
+    def still(self) -> np.ndarray:
+        """Projector on motions that are no lateral waves, shape (k, k)."""
+        return (self.T * (self.waves == 0) @ self.T.conj().T).real
+
+    def mean(self, X: np.ndarray) -> np.ndarray:
+        """Return the mean over a turn of ``exp(−Nα)ᵀ X exp(−Nα)`` for a matrix X (k, k)."""
+        within = self.T.T @ X @ self.T
+        within[np.add.outer(self.waves, self.waves) != 0] = 0.0
+        return (self.T.conj() @ within @ self.T.conj().T).real
+
+    def motion(self, U: np.ndarray) -> dict[int, np.ndarray]:
+        """Return the Fourier terms of ``R(α) U exp(−Nα)`` for the motion U (3 or 6, k) of a place.
+
+        The term 0 is what a support that stands still sees.
+        """
+        terms: dict[int, np.ndarray] = {}
+        within = U @ self.T
+        for n, R in turning_harmonics(len(U)).items():
+            for wave in (-1, 0, 1):
+                seen = (R @ within) * (self.waves == wave)
+                term = seen @ self.T.conj().T
+                order = n - wave
+                terms[order] = terms.get(order, 0.0) + (term.real if order == 0 else term)
+        return without_rounding(terms)
+
+    def parts(self, rows: np.ndarray) -> dict[int, np.ndarray]:
+        """Return rows (…, k) as the sum of what acts on each wave, by its n."""
+        return {
+            wave: (rows @ self.T) * (self.waves == wave) @ self.T.conj().T for wave in (-1, 0, 1)
+        }
+
+    def matrix_share(self, X: np.ndarray) -> float:
+        """Return the share of a matrix that is not round, in slow motions."""
+
+        def size(Y: np.ndarray) -> float:
+            return np.linalg.norm(self.weights[:, None] * (self.T.T @ Y @ self.T) * self.weights)
+
+        whole = size(X)
+        return float(size(X - self.mean(X)) / whole) if whole else 0.0
+
+    def place_share(self, U: np.ndarray) -> float:
+        """Return the share of the lateral flexibility of a place (6, k) that is not round.
+
+        It is that of squared motions.
+        """
+
+        def size(V: np.ndarray) -> float:
+            return float(np.linalg.norm(V @ self.T * np.sqrt(self.weights)) ** 2)
+
+        U = U * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])[:, None]
+        whole = size(U)
+        return size(U - self.motion(U)[0]) / whole if whole else 0.0
+
+
+@kept
+def turning_of(rotor: ReducedRotor) -> Turning:
+    """Find the waves of a reduced rotor from its modes at rest.
+
+    Of each group of nearly equal frequencies the combinations with the most of one lateral wave,
+    and the least of the opposite one, are a pair.
+    """
+    omega, kinds = rotor.frequencies.copy(), rotor.rigid_kinds
+    size, rigid = rotor.size, len(rotor.rigid_kinds)
+    omega[:rigid] = 0.0
+    first = omega[omega > 0.0].min(initial=np.inf)
+    weights = 1.0 / (1.0 + (omega / first) ** 2)
+    T, waves, halves = np.eye(size, dtype=complex), np.zeros(size, dtype=int), []
+    for pair in _RIGID_PAIRS:
+        if set(pair) <= set(kinds):
+            columns = [kinds.index(kind) for kind in pair]
+            T[np.ix_(columns, columns)], waves[columns] = _PAIR, (1, -1)
+    seen, lateral = _energies(rotor)
+    floor = _SEEN * seen.diagonal().max(initial=0.0) or 1.0
+    # the unnamed free motions of a grounded rotor are one group
+    groups = _groups(omega, 0 if ModeKind.FREE in kinds else rigid)
+    for group in groups:
+        within = np.ix_(group, group)
+        whole = seen[within] + floor * np.eye(len(group))
+        T[within], waves[group], half = _pairs(lateral[0][within], lateral[1][within], whole)
+        halves.append(np.zeros((size, half.shape[1])))
+        halves[-1][group] = half
+    order = np.argsort(np.abs(T).argmax(axis=0), kind="stable")
+    return Turning(T[:, order], waves[order], weights[order], np.hstack([np.zeros((size, 0)), *halves]))
+
+
+def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """Return quadratic forms (k, k): the energy of all waves, and of the two lateral ones.
+
+    At points of the mesh and, as much again, at the interfaces: interfaces see motions with many
+    waves along the axis, which the points do not resolve.
+    """
+    points, motion = rotor_points(rotor, _POINTS)
+    orders, amplitudes, _ = wave_amplitudes(points, motion)
+    weight = np.sqrt(len(points) / max(len(rotor.interfaces), 1))
+    for name, place in rotor.interfaces.items():
+        U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
+        for n, turn in turning_harmonics(6).items():  # R_n projects on what turns with n
+            at = HIGHEST + n
+            amplitudes[at] = np.vstack([amplitudes[at], weight * (turn @ U)])
+    forms = [W.conj().T @ W for W in amplitudes]
+    return sum(form.real for form in forms), (forms[HIGHEST + 1], forms[HIGHEST - 1])
+
+
+def _groups(omega: np.ndarray, start: int) -> list[np.ndarray]:
+    """Return the columns from `start` on in groups of nearly equal, ascending frequencies."""
+    apart = np.diff(omega[start:]) > _GROUP * omega[start + 1 :]
+    groups = np.split(np.arange(start, len(omega)), np.flatnonzero(apart) + 1)
+    return [group for group in groups if group.size]
+
+
+def _pairs(
+    forward: np.ndarray, backward: np.ndarray, whole: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return waves as orthonormal columns (g, g), their n, and halves of pairs (g, h), real."""
+    more, columns = la.eigh(forward - backward, whole)
+    F = columns[:, more > _TURNS][:, ::-1]
+    F = F / np.linalg.norm(F, axis=0)
+    pairs, count = np.hstack([F, F.conj()]), 2 * F.shape[1]
+    span, _, turn = np.linalg.svd(pairs, full_matrices=True)
+    pairs = span[:, :count] @ turn[:count]  # the nearest orthonormal ones, pair by pair
+    rest = np.eye(len(whole)) - (pairs @ pairs.conj().T).real
+    still = np.linalg.eigh(rest)[1][:, count:]
+    within = still.T @ whole @ still
+    share, alone = la.eigh(still.T @ (forward + backward).real @ still, within)
+    half = np.linalg.qr(still @ alone[:, share > _HALF])[0] if still.size else still
+    n = np.r_[np.ones(count // 2), -np.ones(count // 2), np.zeros(len(whole) - count)]
+    if half.shape[1]:  # halves stand by themselves, so that they can be left out
+        others = la.null_space(np.hstack([half.T.conj() @ still]))
+        still = np.hstack([half, still @ others])
+    return np.hstack([pairs, still]), n.astype(int), half

@@ -1,0 +1,97 @@
+"""Motions over speeds: what Campbell diagrams, stability and maps have in common."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.threads import one_thread
+
+_AT_ONCE = 2_000_000  # entries of matrices that are made at once
+
+
+def systems_at(model: LinearModel, speeds: Sequence[float]) -> list[PeriodicSystem | None]:
+    """Return the equations at speeds [rad/s]; None where there are none, with one warning.
+
+    Raises
+    ------
+    ValueError
+        Where there are equations at none of the speeds.
+    """
+    systems, refused, first = [], [], None
+    for speed in speeds:
+        try:
+            systems.append(model.at(float(speed)))
+        except (NoCoefficientsError, UnconvergedError) as error:
+            first = first or error
+            refused.append(float(speed))
+            systems.append(None)
+    if len(refused) == len(systems):
+        raise first
+    if refused:
+        shown = ", ".join(f"{speed:.5g}" for speed in refused[:5])
+        more = " …" if len(refused) > 5 else ""
+        warnings.warn(
+            f"no values at {shown}{more} rad/s, which are NaN: {first}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+    return systems
+
+
+@one_thread()
+def motions_over(
+    model: LinearModel,
+    speeds: Sequence[float],
+    *,
+    held: bool = False,
+    method: str = "auto",
+    tolerance: float = 1e-6,
+    progress: bool = False,
+    label: str = "",
+) -> list[Motions | None]:
+    """Return the motions of a model at speeds [rad/s]; None where it has no equations.
+
+    Parameters
+    ----------
+    model : LinearModel
+    speeds : sequence of float
+    held : bool, optional
+        Whether a spin that nothing holds follows θ = Ωt and is no coordinate.
+    method, tolerance
+        See :func:`motions_of`.
+    progress : bool, optional
+        Show a progress bar with the `label`.
+    """
+    speeds = np.asarray(speeds, dtype=float)
+    count = max(1, _AT_ONCE // (2 * model.size) ** 2)
+    basis = model.held_basis if held else None
+    systems = systems_at(model, speeds)
+    found: list[Motions | None] = []
+    parts = range(0, len(speeds), 1 if progress else count)
+    if progress:
+        from tqdm import tqdm
+
+        parts = tqdm(parts, desc=label or None)
+    for first in parts:
+        few = systems[first : first + (1 if progress else count)]
+        if basis is not None:
+            few = [None if system is None else system.projected(basis) for system in few]
+        solved = motions_of(few, method, tolerance)
+        found += solved if basis is None else [_in_all(each, basis) for each in solved]
+    return found
+
+
+def _in_all(motions: Motions | None, basis: np.ndarray) -> Motions | None:
+    """Return motions of a basis in all coordinates."""
+    if motions is None:
+        return None
+    vectors = np.einsum("ck,hkj->hcj", basis, motions.vectors)
+    return Motions(motions.speed, motions.values, vectors, motions.orders, motions.bound)

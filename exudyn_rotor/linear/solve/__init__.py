@@ -1,0 +1,1 @@
+"""How linear equations are solved; knows nothing of rotors."""

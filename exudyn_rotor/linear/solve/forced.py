@@ -1,0 +1,222 @@
+"""Steady forced motion: harmonics of the speed on a frequency, constant equations or periodic.
+
+Loads ``f(t) = Re Σ F_n exp(i(ω + nΩ)t)`` give ``x(t) = Re Σ X_m exp(i(ω + mΩ)t)`` with
+
+    (K_0 + iν_m D_0 − ν_m² M) X_m + Σ_j (K_j + iν_{m−j} D_j) X_{m−j} = F_m,    ν_m = ω + mΩ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import scipy.linalg as la
+
+from exudyn_rotor.linear.equations import PeriodicSystem
+
+Harmonics = Mapping[int, np.ndarray]
+_STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
+_FREE = 1e-12  # of matrices with diagonals of one: a motion that nothing resists
+_LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
+_SINGULAR = 1e-14  # reciprocal condition of equations without a solution
+_MOST = 12  # harmonics that are added on either side, in steps of the coefficients
+
+
+def forced_motions(
+    systems: Sequence[PeriodicSystem],
+    loads: Sequence[Harmonics],
+    rates: Sequence[float],
+    *,
+    held: np.ndarray | None = None,
+    driven: np.ndarray | None = None,
+    tolerance: float = 1e-6,
+) -> list[dict[int, np.ndarray]]:
+    """Return the harmonics (k,) of the steady motion of systems of the same coordinates.
+
+    One system, load and frequency for each motion. A motion that does not exist is NaN: a constant
+    load on what nothing holds, a resonance without damping, harmonics that do not converge.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+    loads : sequence of mapping of int to ndarray
+    rates : sequence of float
+        ω [rad/s].
+    held : ndarray, shape (k, r), optional
+        Motions that are possible, orthonormal; all by default.
+    driven : ndarray, shape (k, d), optional
+        Momenta of motions whose constant part a drive keeps at zero: free spins.
+    tolerance : float, optional
+        Largest relative change of a motion by further harmonics.
+    """
+    if held is not None:
+        systems = _each(systems, lambda system: system.projected(held))
+        loads = [{n: held.T @ F for n, F in each.items()} for each in loads]
+        driven = None
+    found: list[dict] = [{} for _ in systems]
+    constant = [i for i, system in enumerate(systems) if system.is_constant]
+    if constant:
+        given = [[each[i] for i in constant] for each in (systems, loads, rates)]
+        for i, motion in zip(constant, _constant(*given, driven), strict=True):
+            found[i] = motion
+    for i, system in enumerate(systems):
+        if not system.is_constant:
+            found[i] = _periodic(system, loads[i], float(rates[i]), driven, tolerance)
+    if held is not None:
+        found = [{n: held @ X for n, X in each.items()} for each in found]
+    return found
+
+
+def _each(systems: Sequence[PeriodicSystem], change) -> list[PeriodicSystem]:
+    """Return what a function makes of systems, once for those that are one object."""
+    made: dict[int, PeriodicSystem] = {}
+    return [made.setdefault(id(s), None) or made.update({id(s): change(s)}) or made[id(s)]
+            for s in systems]  # fmt: skip
+
+
+def _constant(
+    systems: list[PeriodicSystem],
+    loads: list[Harmonics],
+    rates: list[float],
+    driven: np.ndarray | None,
+) -> list[dict[int, np.ndarray]]:
+    """Return the motions of constant equations: every harmonic by itself, all at once."""
+    places = [(i, n) for i, each in enumerate(loads) for n, F in each.items() if np.any(F)]
+    found: list[dict] = [{n: 0j * F for n, F in each.items()} for each in loads]
+    if not places:
+        return found
+    at_rest = {id(s): s.matrices() for s in systems}
+    nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
+    F = np.array([loads[i][n] for i, n in places], dtype=complex)
+    matrices = np.stack(
+        [_dynamic(systems[i], at_rest[id(systems[i])], v) for (i, _), v in zip(places, nu)]
+    )
+    X = _solved(matrices, F, nu == 0.0, driven)
+    for (i, n), x in zip(places, X, strict=True):
+        found[i][n] = x
+    return found
+
+
+def _rate(rate: float, order: int, speed: float) -> float:
+    nu = rate + order * speed
+    return 0.0 if abs(nu) <= _STILL * max(abs(rate), abs(speed)) else nu
+
+
+def _dynamic(system: PeriodicSystem, matrices: tuple, nu: float) -> np.ndarray:
+    """Return ``K + iνD − ν²M`` with structural damping."""
+    M, D, K = matrices
+    Z = K + 1j * nu * D - nu**2 * M
+    for n, H in system.H:
+        Z = Z + 1j * np.sign(_rate(nu, -n, system.speed)) * H
+    return Z
+
+
+def _solved(
+    matrices: np.ndarray, loads: np.ndarray, constant: np.ndarray, driven: np.ndarray | None
+) -> np.ndarray:
+    """Return solutions (s, k), NaN where there is none; those of `constant` loads one by one."""
+    X = np.full(loads.shape, np.nan, dtype=complex)
+    moving = np.flatnonzero(~constant)
+    if moving.size:
+        A = matrices[moving]
+        scale = 1.0 / np.sqrt(np.maximum(np.abs(A).max(axis=2), 1e-300))
+        A = scale[:, :, None] * A * scale[:, None, :]
+        try:
+            Y = np.linalg.solve(A, (scale * loads[moving])[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            Y = np.array([_one(a, b) for a, b in zip(A, scale * loads[moving], strict=True)])
+        off = np.linalg.norm(np.einsum("sij,sj->si", A, Y) - scale * loads[moving], axis=1)
+        large = np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
+        Y[large | ~np.isfinite(off)] = np.nan
+        X[moving] = scale * Y
+    for i in np.flatnonzero(constant):
+        X[i] = _static(matrices[i], loads[i], driven)
+    return X
+
+
+def _one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+    try:
+        return np.linalg.solve(A, b)
+    except np.linalg.LinAlgError:
+        return np.full(len(b), np.nan, dtype=complex)
+
+
+def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.ndarray:
+    """Return the motion under a constant load; free motions that it does not act on rest."""
+    if driven is not None and driven.shape[1]:
+        basis = la.null_space(driven.T)
+        return basis @ _static(basis.T @ A @ basis, basis.T @ load, None)
+    diagonal = np.abs(A).max(axis=1)
+    alone = diagonal <= _FREE * diagonal.max(initial=0.0)
+    scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
+    scaled, b = scale[:, None] * A * scale, scale * load
+    U, values, Vh = np.linalg.svd(scaled)
+    free = values <= _FREE * values.max(initial=0.0)
+    if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):
+        return np.full(len(load), np.nan, dtype=complex)
+    kept = ~free
+    return scale * (Vh[kept].conj().T @ ((U[:, kept].conj().T @ b) / values[kept]))
+
+
+def _periodic(
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rate: float,
+    driven: np.ndarray | None,
+    tolerance: float,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics of periodic equations, as many as the tolerance needs."""
+    step, motion = system.step, {}
+    given = {n: F for n, F in loads.items() if np.any(F)}
+    while given:
+        first = min(given)
+        group = {n: F for n, F in given.items() if (n - first) % step == 0}
+        given = {n: F for n, F in given.items() if n not in group}
+        last = None
+        for more in range(2, _MOST):
+            orders = np.arange(min(group) - more * step, max(group) + more * step + 1, step)
+            found = _coupled(system, group, rate, orders, driven)
+            size = max(np.abs(x).max() for x in found.values())
+            if not np.isfinite(size):
+                break
+            if last is not None:
+                change = max(np.abs(x - last.get(n, 0.0)).max() for n, x in found.items())
+                if change <= tolerance * size:
+                    break
+            last = found
+        else:
+            found = {n: np.nan * x for n, x in found.items()}
+        motion |= found
+    return motion or {n: 0j * F for n, F in loads.items()}
+
+
+def _coupled(
+    system: PeriodicSystem,
+    loads: Harmonics,
+    rate: float,
+    orders: np.ndarray,
+    driven: np.ndarray | None,
+) -> dict[int, np.ndarray]:
+    """Return the harmonics that are coupled, from one matrix."""
+    h, k = len(orders), system.size
+    A = np.zeros((h, k, h, k), dtype=complex)
+    F = np.zeros((h, k), dtype=complex)
+    nu = [_rate(rate, int(n), system.speed) for n in orders]
+    for a, m in enumerate(orders):
+        for b, n in enumerate(orders):
+            for terms, factor in ((system.K, 1.0), (system.D, 1j * nu[b])):
+                if m - n in terms:
+                    A[a, :, b] += factor * terms[m - n]
+        A[a, :, a] -= nu[a] ** 2 * system.M
+        for n, H in system.H:
+            A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
+        F[a] = loads.get(int(m), 0.0)
+    constant = 0.0 in nu
+    momenta = None
+    if constant and driven is not None and driven.shape[1]:
+        momenta = np.zeros((h, k, driven.shape[1]))
+        momenta[nu.index(0.0)] = driven
+        momenta = momenta.reshape(h * k, -1)
+    given = A.reshape(1, h * k, h * k), F.reshape(1, -1)
+    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
+    return {int(n): x for n, x in zip(orders, X, strict=True)}

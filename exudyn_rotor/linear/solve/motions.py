@@ -1,0 +1,211 @@
+"""Motions of linear equations: eigenvalues where these are constant, Floquet exponents else.
+
+The 2k exponents of k coordinates are conjugate pairs and an even number of real ones. One of every
+conjugate pair stands for both (Im λ > 0), and of the real ones the less damped half, so that k
+motions stand for all. A free motion, which nothing resists, has λ = 0.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.solve.floquet import floquet_motions
+from exudyn_rotor.linear.solve.hill import hill_motions
+from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
+
+METHODS = ("auto", "hill", "floquet")
+_ROUNDING = 20.0 * EPSILON  # of the size of a state matrix: what a real part may be off by
+_REAL = 1e-9  # share of |λ|: a frequency that is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """Motions ``exp(λt) Σ_m X_m exp(imΩt)`` at one speed.
+
+    Attributes
+    ----------
+    speed : float
+        Ω [rad/s].
+    values : ndarray of complex, shape (k,)
+        λ [1/s], Im λ ≥ 0 but for motions of periodic equations; NaN where it did not converge.
+    vectors : ndarray of complex, shape (h, c, k)
+        Harmonics X_m, all together of unit length.
+    orders : ndarray of int, shape (h,)
+        The harmonics m; only 0 of constant equations.
+    bound : float
+        By how much rounding can change a real part [1/s].
+    """
+
+    speed: float
+    values: np.ndarray
+    vectors: np.ndarray
+    orders: np.ndarray
+    bound: float
+
+    def columns(self, chosen: np.ndarray) -> Motions:
+        """Return some of the motions."""
+        return Motions(
+            self.speed, self.values[chosen], self.vectors[:, :, chosen], self.orders, self.bound
+        )
+
+    @property
+    def main(self) -> np.ndarray:
+        """The largest harmonic of every motion, shape (c, k)."""
+        strongest = np.argmax(np.linalg.norm(self.vectors, axis=1), axis=0)
+        return np.take_along_axis(self.vectors, strongest[None, None], axis=0)[0]
+
+
+def motions_of(
+    systems: Sequence[PeriodicSystem | None], method: str = "auto", tolerance: float = 1e-6
+) -> list[Motions | None]:
+    """Return the motions of systems of the same coordinates; None where a system is None.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem or None
+    method : {'auto', 'hill', 'floquet'}
+        For periodic equations: harmonics, or the monodromy matrix.
+    tolerance : float
+        Largest relative error of λ by harmonics that are left out.
+
+    Raises
+    ------
+    UnconvergedError
+        Where no speed has an answer.
+    """
+    known = [system for system in systems if system is not None]
+    if not known:
+        return [None] * len(systems)
+    ends = [known[0], known[-1]] if len(known) > 1 else known
+    free = free_directions(ends)
+    basis = others(free, known[0].M) if free.shape[1] else None
+    reduced = known if basis is None else [system.projected(basis) for system in known]
+    solved = iter(_solved(reduced, method, tolerance))
+    if basis is not None:
+        solved = (_beside(found, free, basis) for found in solved)
+    return [None if system is None else next(solved) for system in systems]
+
+
+def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> list[Motions]:
+    """Return the motions of each system that something resists everywhere."""
+    made = [states_of(system) for system in systems]
+    found: list[Motions | None] = [None] * len(systems)
+    constant = [i for i, system in enumerate(systems) if system.is_constant]
+    if constant and systems[0].size:
+        matrices = np.stack([made[i].A[0] for i in constant])
+        for i, values, vectors in zip(constant, *np.linalg.eig(matrices), strict=True):
+            found[i] = _constant(systems[i].speed, values, vectors, made[i])
+    size = 0
+    lost = []
+    for i, system in enumerate(systems):
+        if found[i] is not None:
+            continue
+        if not system.size:
+            none = np.zeros((1, 0, 0), dtype=complex)
+            found[i] = Motions(system.speed, none[0, 0], none, np.array([0]), 0.0)
+            continue
+        if method == "floquet":
+            parts = floquet_motions(system, made[i])
+        else:
+            *parts, size = hill_motions(system, made[i], tolerance, size)
+        found[i] = _periodic(system.speed, *parts, made[i])
+        if np.any(np.isnan(found[i].values)):
+            lost.append(system.speed)
+    if lost:
+        _warn_of_lost(lost)
+    return found
+
+
+def _warn_of_lost(speeds: list[float]) -> None:
+    shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
+    warnings.warn(
+        f"the harmonics of an uneven rotor on uneven supports do not converge for all motions at "
+        f"{shown} rad/s, which are NaN there: at a speed that is small beside the difference of "
+        "the frequencies in the rotor's two planes they are too many",
+        UserWarning,
+        stacklevel=2,
+    )
+
+
+def _bound(made: States) -> float:
+    return float(_ROUNDING * sum(np.linalg.norm(X, 2) for X in made.A.values()))
+
+
+def _constant(speed: float, values: np.ndarray, vectors: np.ndarray, made: States) -> Motions:
+    chosen = one_of_each_pair(values)
+    shapes = made.shape @ vectors[:, chosen]
+    shapes = shapes / np.linalg.norm(shapes, axis=0)
+    return Motions(speed, values[chosen], shapes[None], np.array([0]), _bound(made))
+
+
+def one_of_each_pair(values: np.ndarray) -> np.ndarray:
+    """Return which of 2k eigenvalues of a real matrix stand for all, k, ascending in frequency."""
+    count = len(values) // 2
+    real = np.abs(values.imag) <= _REAL * np.abs(values.real)
+    upper = np.flatnonzero(~real & (values.imag > 0.0))
+    single = np.flatnonzero(real)
+    single = single[np.argsort(-values[single].real, kind="stable")]
+    chosen = np.r_[upper, single[: count - len(upper)]]
+    return chosen[np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))]
+
+
+def _periodic(
+    speed: float, values: np.ndarray, states: np.ndarray, orders: np.ndarray, made: States
+) -> Motions:
+    """Return motions from 2k exponents and their states (h, 2k, 2k), one of each pair."""
+    chosen = _paired(values, states, orders, speed)
+    vectors = made.shape @ states[:, :, chosen]
+    sizes = np.linalg.norm(vectors.reshape(-1, len(chosen)), axis=0)
+    vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
+    order = np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))
+    return Motions(speed, values[chosen][order], vectors[:, :, order], orders, _bound(made))
+
+
+def _paired(
+    values: np.ndarray, states: np.ndarray, orders: np.ndarray, speed: float
+) -> np.ndarray:
+    """Return which of 2k Floquet exponents stand for all, k.
+
+    The conjugate of a motion is found by its exponent; where several have the same, by its shape.
+    """
+    count, left, chosen, real = len(values) // 2, list(range(len(values))), [], []
+    left.sort(key=lambda i: (-np.nan_to_num(values[i].imag, nan=-np.inf)))
+    while left:
+        i = left.pop(0)
+        if np.isnan(values[i]):
+            real.append(i)
+            continue
+        scale = abs(values[i]) + abs(speed)
+        apart = np.array([abs(values[j] - values[i].conj()) for j in left] + [np.inf])
+        if abs(values[i].imag) <= 1e-9 * scale and apart.min() > 1e-6 * scale:
+            real.append(i)
+            continue
+        near = np.flatnonzero(apart[:-1] <= apart.min() + 1e-7 * scale)
+        mirrored = states[::-1, :, i].conj()
+        partner = max(near, key=lambda n: abs(np.vdot(mirrored, states[:, :, left[n]])), default=None)
+        if partner is None:
+            real.append(i)
+            continue
+        left.pop(partner)
+        chosen.append(i)
+    real.sort(key=lambda i: -np.nan_to_num(values[i].real, nan=-np.inf))
+    return np.array([*chosen, *real[: count - len(chosen)]], dtype=int)
+
+
+def _beside(found: Motions, free: np.ndarray, basis: np.ndarray) -> Motions:
+    """Return the motions of a basis together with free ones, in all coordinates."""
+    vectors = np.einsum("ck,hkj->hcj", basis, found.vectors)
+    vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
+    still = np.zeros((len(found.orders), *free.shape), dtype=complex)
+    still[list(found.orders).index(0)] = free / np.linalg.norm(free, axis=0)
+    values = np.r_[np.zeros(free.shape[1]), found.values]
+    joined = np.concatenate([still, vectors], axis=2)
+    return Motions(found.speed, values, joined, found.orders, found.bound)
+
+
+__all__ = ["METHODS", "Motions", "UnconvergedError", "motions_of", "one_of_each_pair"]
