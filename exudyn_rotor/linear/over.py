@@ -64,7 +64,7 @@ def motions_over(
     model : LinearModel
     speeds : sequence of float
     held : bool, optional
-        Whether a spin that nothing holds follows θ = Ωt and is no coordinate.
+        Whether a spin that nothing holds follows θ = Ωt and is no motion.
     method, tolerance
         See :func:`motions_of`.
     progress : bool, optional
@@ -72,7 +72,9 @@ def motions_over(
     """
     speeds = np.asarray(speeds, dtype=float)
     count = max(1, _AT_ONCE // (2 * model.size) ** 2)
-    basis = model.held_basis if held else None
+    basis, neutral = model.moving_basis, model.neutral_motions
+    if held:
+        neutral = neutral[:, : neutral.shape[1] - model.free_spins.shape[1]]
     systems = systems_at(model, speeds)
     found: list[Motions | None] = []
     parts = range(0, len(speeds), 1 if progress else count)
@@ -85,13 +87,19 @@ def motions_over(
         if basis is not None:
             few = [None if system is None else system.projected(basis) for system in few]
         solved = motions_of(few, method, tolerance)
-        found += solved if basis is None else [_in_all(each, basis) for each in solved]
+        found += solved if basis is None else [_in_all(each, basis, neutral) for each in solved]
     return found
 
 
-def _in_all(motions: Motions | None, basis: np.ndarray) -> Motions | None:
-    """Return motions of a basis in all coordinates."""
+def _in_all(
+    motions: Motions | None, basis: np.ndarray, neutral: np.ndarray
+) -> Motions | None:
+    """Return motions of a basis in all coordinates, after neutral ones with λ = 0."""
     if motions is None:
         return None
     vectors = np.einsum("ck,hkj->hcj", basis, motions.vectors)
-    return Motions(motions.speed, motions.values, vectors, motions.orders, motions.bound)
+    still = np.zeros((len(motions.orders), *neutral.shape), dtype=complex)
+    still[list(motions.orders).index(0)] = neutral / np.linalg.norm(neutral, axis=0)
+    values = np.r_[np.zeros(neutral.shape[1]), motions.values]
+    joined = np.concatenate([still, vectors], axis=2)
+    return Motions(motions.speed, values, joined, motions.orders, motions.bound)

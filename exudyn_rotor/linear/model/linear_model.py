@@ -39,6 +39,7 @@ from exudyn_rotor.linear.model.body import (
 )
 from exudyn_rotor.linear.model.element import Element, elements_of
 from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.theory.stiffening import LEVELS
 
@@ -468,41 +469,73 @@ class LinearModel:
         return _named_free(names, np.hstack(columns), K)
 
     @cached_property
-    def free_spins(self) -> np.ndarray:
-        """Momenta of the spins that nothing holds, orthonormal, shape (k, f)."""
+    def _neutral(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Motions that nothing holds at any speed, (k, f); their momenta; which are spins (f,).
+
+        Spins, and shifts along the axis.
+        """
         assembly, K = self._held_at_rest
-        turns, momenta = [], []
+        motions, momenta, spins = [], [], []
         for body, place in zip(self.bodies, assembly.slices, strict=False):
-            if not isinstance(body, RotorBody) or body.spin is None:
+            if not isinstance(body, RotorBody):
                 continue
-            if len(self._used) > 1 or body.is_apart:
-                for columns, given in ((turns, body.spin.turn), (momenta, body.spin.momentum)):
+            kinds, spin = body.alone.rotor.rigid_kinds, body.spin
+            given = []
+            if spin is not None and (body.is_apart or len(self._used) > 1):
+                given.append((spin.turn, spin.momentum, True))
+            if ModeKind.AXIAL in kinds:
+                axial = body.alone.Q[kinds.index(ModeKind.AXIAL)]
+                given.append((axial, axial, False))
+            for motion, momentum, is_spin in given:
+                spins.append(is_spin)
+                for columns, part in ((motions, motion), (momenta, momentum)):
                     columns.append(np.zeros(self.size))
-                    columns[-1][place] = given
-        if not turns:
-            return np.zeros((self.size, 0))
-        S = np.column_stack(turns)[: assembly.size]
-        values, combined = la.eigh(S.T @ K @ S)
+                    columns[-1][place] = part
+        motions, momenta = (
+            np.array(each).reshape(-1, self.size).T for each in (motions, momenta)
+        )
+        found = [np.zeros((self.size, 0))] * 2, []
         most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
-        free = combined[:, values <= _HELD * most]
-        return la.orth(np.column_stack(momenta) @ free)
+        for kind in (True, False):  # spins are coupled by gears, shifts by thrust bearings
+            chosen = np.flatnonzero(np.array(spins, dtype=bool) == kind)
+            S = motions[: assembly.size, chosen]
+            values, combined = np.linalg.eigh(S.T @ K @ S)
+            free = combined[:, values <= _HELD * most]
+            found[0][0] = np.hstack([found[0][0], motions[:, chosen] @ free])
+            found[0][1] = np.hstack([found[0][1], momenta[:, chosen] @ free])
+            found[1].extend([kind] * free.shape[1])
+        return *found[0], np.array(found[1], dtype=bool)
+
+    @property
+    def free_spins(self) -> np.ndarray:
+        """Momenta of the spins that nothing holds, shape (k, f)."""
+        _, momenta, spins = self._neutral
+        return momenta[:, spins]
+
+    @property
+    def neutral_motions(self) -> np.ndarray:
+        """Motions that nothing holds at any speed: shifts along the axis, then spins, (k, f)."""
+        motions, _, spins = self._neutral
+        return motions[:, np.argsort(spins, kind="stable")]
 
     @cached_property
     def held_basis(self) -> np.ndarray | None:
-        """Motions without a free spin as orthonormal columns; None where no spin is free.
+        """Motions without a free spin as orthonormal columns; None where no spin is free."""
+        return _beside(self.free_spins)
 
-        Coordinates that have no part in it stay as they are.
+    @cached_property
+    def moving_basis(self) -> np.ndarray | None:
+        """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
+        return _beside(self._neutral[1])
+
+    @property
+    def for_responses(self) -> LinearModel:
+        """The model in which forced motions are found: nothing of the rotor is averaged.
+
+        Near a critical speed a forced motion stands in the rotor, where the unevenness of a mesh
+        counts to first order. It has few harmonics in the axes of the rotor.
         """
-        momenta = self.free_spins
-        if not momenta.shape[1]:
-            return None
-        touched = np.flatnonzero(np.abs(momenta).max(axis=1) > 1e-12)
-        others = la.null_space(momenta[touched].T)
-        untouched = np.setdiff1d(np.arange(self.size), touched)
-        basis = np.zeros((self.size, len(untouched) + others.shape[1]))
-        basis[untouched, np.arange(len(untouched))] = 1.0
-        basis[touched, len(untouched) :] = others
-        return basis
+        return replace(self, wanted_axes="rotor") if self.wanted_axes == "auto" else self
 
     def __repr__(self) -> str:
         lines = [f"LinearModel of {self.size} coordinates in {self.axes} axes"]
@@ -517,6 +550,19 @@ class LinearModel:
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
         lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
         return "\n".join(lines)
+
+
+def _beside(momenta: np.ndarray) -> np.ndarray | None:
+    """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
+    if not momenta.shape[1]:
+        return None
+    touched = np.flatnonzero(np.abs(momenta).max(axis=1) > 1e-12)
+    others = la.null_space(momenta[touched].T)
+    untouched = np.setdiff1d(np.arange(len(momenta)), touched)
+    basis = np.zeros((len(momenta), len(untouched) + others.shape[1]))
+    basis[untouched, np.arange(len(untouched))] = 1.0
+    basis[touched, len(untouched) :] = others
+    return basis
 
 
 def _named_free(names: Sequence[str], columns: np.ndarray, K: np.ndarray) -> tuple[str, ...]:
