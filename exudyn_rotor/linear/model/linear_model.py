@@ -112,7 +112,7 @@ class LinearModel:
     rotor: 6 coordinates, interfaces left, right
     supports: left, right
     free motions: translation along axis
-    stiffening: tilt, unevenness 0
+    stiffening: tilt, unevenness ...e-16
     """
 
     rotors: Mapping[str, ReducedRotor]
@@ -564,7 +564,7 @@ class LinearModel:
         acted = ", ".join(dict.fromkeys(element.what for element in self._elements[0])) or "none"
         lines.append(f"supports{standing}: {acted}")
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
-        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
+        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
 
 
