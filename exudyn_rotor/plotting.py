@@ -9,6 +9,7 @@ import io
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,15 +32,23 @@ if TYPE_CHECKING:
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", ":", "-.", (0, (1, 1)))
 
+_made: WeakSet[Figure] = WeakSet()  # figures of this package that are alive
+
 _WIDEST = 1.1  # a legend, in widths of its axes
 _LINE = 1.2  # from a line of text to the next, in sizes of its letters
 
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 4.5), **options):
-    """Return a new figure of pyplot, and its axes; `options` go to ``pyplot.subplots``."""
+    """Return a new figure of pyplot, and its axes; `options` go to ``pyplot.subplots``.
+
+    As all figures of pyplot it is shown by ``pyplot.show()`` and at the end of a notebook's cell,
+    and stays open until it is closed; see :func:`save`.
+    """
     from matplotlib import pyplot
 
-    return pyplot.subplots(rows, columns, figsize=size, layout="constrained", **options)
+    made, axes = pyplot.subplots(rows, columns, figsize=size, layout="constrained", **options)
+    _made.add(made)
+    return made, axes
 
 
 def axes_or_new(ax: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes:
@@ -60,6 +69,8 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     """Write the figure of axes, or of an array of them, or a figure.
 
     A name without an ending gets '.png'. A file of that name is replaced only by a complete one.
+    Where no window and no notebook can show it, a figure that this package has made is closed
+    afterwards, so that a script that saves many keeps none in memory.
     """
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -72,6 +83,17 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
         target = target.with_suffix(".png")
     made.savefig(content, format=target.suffix[1:], dpi=140)
     write_bytes(target, content.getvalue())
+    _close_unseen(made)
+
+
+def _close_unseen(made: Figure) -> None:
+    """Take a figure of this package from those of pyplot, where the backend only writes files."""
+    from matplotlib import get_backend, pyplot
+    from matplotlib.backends import BackendFilter, backend_registry
+
+    files_only = backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)
+    if made in _made and get_backend().lower() in files_only:
+        pyplot.close(made)
 
 
 def plot_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:
@@ -189,6 +211,7 @@ def draw_surface(
         ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
         return ax
     made = pyplot.figure()
+    _made.add(made)
     ax = made.add_subplot(projection="3d")
     ax.add_collection3d(faces)
     place = _fit(ax, *_frame(ax, points))
