@@ -10,6 +10,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+import exudyn.utilities  # noqa: F401 (scripts find it in exudyn, as they always did)
+
 import exudyn_rotor.multibody.twins.exudyn_call  # noqa: F401 (methods of Exudyn's MainSystem)
 
 if TYPE_CHECKING:
