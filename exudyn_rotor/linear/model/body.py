@@ -96,10 +96,7 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
         squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
         lowest = float(np.sqrt(max(squares[0], 0.0)))
         for name in rotor.interfaces:
-            U = interface_motion(rotor, name)[:2] @ (turning.T * np.sqrt(turning.weights))
-            halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
-            whole_size = np.linalg.norm(U) ** 2
-            left_out[name] = float(np.linalg.norm(U[:, halves]) ** 2 / (whole_size or 1.0))
+            left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
             Q = _beside(turning.halves)
             turning = turning.within(Q)
