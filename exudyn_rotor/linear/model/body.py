@@ -73,6 +73,11 @@ class RotorAlone:
     complete_up_to: float
     spin: Spin | None
 
+    @property
+    def has_halves(self) -> bool:
+        """Whether the number of modes has cut pairs in halves."""
+        return bool(np.isfinite(self.complete_up_to))
+
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
         shares = [self.turning.place_share(self.motion(name)) for name in places]
@@ -96,10 +101,7 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
         squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
         lowest = float(np.sqrt(max(squares[0], 0.0)))
         for name in rotor.interfaces:
-            U = interface_motion(rotor, name)[:2] @ (turning.T * np.sqrt(turning.weights))
-            halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
-            whole_size = np.linalg.norm(U) ** 2
-            left_out[name] = float(np.linalg.norm(U[:, halves]) ** 2 / (whole_size or 1.0))
+            left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
             Q = _beside(turning.halves)
             turning = turning.within(Q)

@@ -112,7 +112,7 @@ class LinearModel:
     rotor: 6 coordinates, interfaces left, right
     supports: left, right
     free motions: translation along axis
-    stiffening: tilt, unevenness 0
+    stiffening: tilt, unevenness ...e-16
     """
 
     rotors: Mapping[str, ReducedRotor]
@@ -169,9 +169,17 @@ class LinearModel:
         """Whether the axes of the rotors turn with Ω (1) or stand still (0)."""
         if self.wanted_axes != "auto":
             return int(self.wanted_axes == "rotor")
-        round_ones = all(u <= self.largest_unevenness for u in self._own_unevenness.values())
-        turning = [element for element in self._elements[0] if element.turns]
-        return int(not (round_ones and all(each.is_isotropic(1.0) for each in turning)))
+        elements = self._elements[0]
+        turning = [element for element in elements if element.turns]
+        if any(u > self.largest_unevenness for u in self._own_unevenness.values()):
+            return 1
+        if not all(each.is_isotropic(0.0) for each in turning):
+            return 1
+        # a basis with halves of pairs is taken whole where that is constant, too
+        constant = self.foundation is None and not self._elements[1] and len(self._used) == 1
+        constant = constant and not any(e.varies or not e.is_isotropic(0.0) for e in elements)
+        halves = any(self._alone(name, False).has_halves for name in self._used)
+        return int(constant and halves)
 
     @property
     def axes(self) -> str:
@@ -564,7 +572,7 @@ class LinearModel:
         acted = ", ".join(dict.fromkeys(element.what for element in self._elements[0])) or "none"
         lines.append(f"supports{standing}: {acted}")
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
-        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
+        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
 
 
