@@ -201,6 +201,7 @@ def _paired(
             continue
         scale = abs(values[i]) + abs(speed)
         apart = np.array([abs(values[j] - values[i].conj()) for j in left] + [np.inf])
+        apart = np.nan_to_num(apart, nan=np.inf)  # what did not converge is no partner
         if abs(values[i].imag) <= 1e-9 * scale and apart.min() > 1e-6 * scale:
             real.append(i)
             continue
