@@ -21,12 +21,53 @@ _STEPS = (64, 128, 256, 512, 1024)  # of a period
 _SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _STILL = 1e-6  # relative change of an exponent by twice the steps
 _LEAST = 1e-10  # of the largest multiplier: one below is rounding
+_FEWEST, _MOST = 16, 256  # steps of a period by which growth is sought
+_ROUNDING = 1e-12  # of a multiplier, by every step
+_SMALL = 1e-2  # share of Ω that a growth counts as at least
 
 
 def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Return the exponent of a step from h times the matrix at its two Gauss points."""
     commutator = second @ first - first @ second
     return 0.5 * (first + second) + np.sqrt(3.0) / 12.0 * commutator
+
+
+def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarray]:
+    """Return the matrices that take the state to the ends of so many steps of a period."""
+    period = 2.0 * np.pi / (system.step * abs(system.speed))
+    h, turn = period / steps, 2.0 * np.pi / system.step * np.sign(system.speed)
+    followed = [np.eye(len(made.A[0]))]
+    for number in range(steps):
+        angles = turn * (number + GAUSS_POINTS) / steps
+        first, second = (h * at_angle(made.A, angle) for angle in angles)
+        followed.append(la.expm(magnus_exponent(first, second)) @ followed[-1])
+    return followed
+
+
+def floquet_growth(
+    system: PeriodicSystem, made: States, tolerance: float, last: int = 0
+) -> tuple[np.ndarray, float, int]:
+    """Return the growth of all motions, what rounding can change of it, and how many steps it took.
+
+    It begins with half of the steps that were needed `last`.
+
+    The growth of those that matter: NaN where the largest one, of motions that are not neutral,
+    changes by more than the `tolerance` of its own, or of a hundredth of Ω, with twice the steps.
+    """
+    period = 2.0 * np.pi / (system.step * abs(system.speed))
+    before, steps = np.nan, max(_FEWEST, last // 2)
+    while True:
+        multipliers = np.linalg.eigvals(_followed(system, made, steps)[-1])
+        growth = np.log(np.maximum(np.abs(multipliers), 1e-300)) / period
+        bound = _ROUNDING * steps / period
+        largest = growth[np.abs(growth) > bound].max(initial=-np.inf)
+        if largest == before or abs(largest - before) <= tolerance * max(
+            abs(largest), _SMALL * abs(system.speed)
+        ):
+            return growth, bound, steps
+        if steps >= _MOST:
+            return np.full_like(growth, np.nan), bound, steps
+        before, steps = largest, 2 * steps
 
 
 def floquet_motions(
@@ -54,12 +95,7 @@ def _with_steps(
     And which multipliers are the upper ones of conjugate pairs, whose lower ones follow them.
     """
     period = 2.0 * np.pi / (system.step * abs(system.speed))
-    h, turn = period / steps, 2.0 * np.pi / system.step * np.sign(system.speed)
-    followed = [np.eye(len(made.A[0]))]
-    for number in range(steps):
-        angles = turn * (number + GAUSS_POINTS) / steps
-        first, second = (h * at_angle(made.A, angle) for angle in angles)
-        followed.append(la.expm(magnus_exponent(first, second)) @ followed[-1])
+    h, followed = period / steps, _followed(system, made, steps)
     multipliers, vectors = np.linalg.eig(followed[-1])
     size = np.abs(multipliers)
     upper = np.flatnonzero(multipliers.imag > 0.0)
