@@ -49,28 +49,30 @@ def hill_motions(
     Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
     decays are not waited for. Exponents that do not get there are NaN.
     """
-    place = max(begin - 1, 0)  # faster rotors need fewer
+    place = begin
     while True:
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
-        chosen, edges = one_of_each_family(values, states, orders, system)
+        chosen = one_of_each_family(values, states, orders, system)
         values, states = values[chosen], states[:, :, chosen]
+        energy = np.sum(np.abs(states) ** 2, axis=1)
+        energy = energy / energy.sum(axis=0)
+        edges = energy[0] + energy[-1]
         fast = -values.real > _FAST * abs(system.speed)
         done = fast | (edges <= _EDGE * tolerance)
         larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
         if np.all(done) or place + 1 == len(_SIZES) or larger > _LARGEST:
             break
         place += 1
+    fewer = np.all(fast | (energy[1] + energy[-2] <= _EDGE * tolerance))
     found = fast | (edges <= _LOST)
-    # what has failed is not tried again with fewer
-    place += not np.all(found)
-    return Exponents(np.where(found, values, np.nan), states, orders), place
+    return Exponents(np.where(found, values, np.nan), states, orders), max(place - fewer, 0)
 
 
 def one_of_each_family(
     values: np.ndarray, states: np.ndarray, orders: np.ndarray, system: PeriodicSystem
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which of many exponents stand for all, k, and the energy share of their edges.
+) -> np.ndarray:
+    """Return which of many exponents stand for all, k.
 
     Of each motion, its copies and their conjugates one, whose harmonics lie around zero; of motions
     that are their own conjugates the less damped half.
@@ -97,8 +99,7 @@ def one_of_each_family(
         else:
             pairs.append(i)
     single.sort(key=lambda i: -values[i].real)
-    chosen = np.array([*pairs, *single][: system.size], dtype=int)
-    return chosen, edges[chosen]
+    return np.array([*pairs, *single][: system.size], dtype=int)
 
 
 def _copies(
