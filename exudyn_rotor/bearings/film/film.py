@@ -185,9 +185,7 @@ class OilFilm(FilmData):
         """Return the state after one step, shortened until the force comes closer to the load."""
         unbalanced = state.force + load
         move = np.linalg.lstsq(state.slow_stiffness, unbalanced, rcond=1e-12)[0]
-        before = self._heights(state.position)
-        closing = before - self._heights(state.position + move)
-        move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
+        move *= min(1.0, 0.6 / state.closing(move))
         for _ in range(12):
             # the cells that are empty now: few steps from those of the next place
             motion = state.position + move, state.velocity, state.speed
