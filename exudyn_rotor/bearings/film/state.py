@@ -127,6 +127,8 @@ class FilmState:
     @property
     def slow_stiffness(self) -> np.ndarray:
         """Stiffness of a motion so slow that voids follow at once, (2, 2) [N/m]."""
+        if self.film.cavitation != "mass-conserving":
+            return self.tangent[0]
         u = np.moveaxis(self.film.grid.u, 2, 0)
         return self._gradient(-u, np.zeros_like(u)[:, 0])
 
