@@ -21,7 +21,8 @@ _FAST = 30.0  # decay over Ω above which a motion is over before the coefficien
 # energy at the edge of the sum that counts as none, over the tolerance: the error of λ is the
 # product of that and of the small part of λ that changes in a turn; and energy that is too much
 _EDGE, _LOST = 1e2, 3e-2
-_COPY, _ALIKE = 1e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
+# of pΩ and λ, and of a shape: how near a copy of a motion is that has nothing at its edge
+_COPY, _ALIKE = 1e-7, 0.7
 
 
 class Exponents(NamedTuple):
@@ -91,8 +92,10 @@ def one_of_each_family(
             break
         if not left[i]:
             continue
-        own = _copies(values, states, values[i], states[:, :, i], base)
-        mirrored = _copies(values, states, values[i].conj(), states[::-1, :, i].conj(), base)
+        near = (_COPY + edges + edges[i]) * abs(base) + _COPY * abs(values[i])
+        own = _copies(values, states, values[i], states[:, :, i], base, near)
+        mirrored = states[::-1, :, i].conj()
+        mirrored = _copies(values, states, values[i].conj(), mirrored, base, near)
         left[own] = left[mirrored] = left[i] = False
         if i in mirrored:
             single.append(i)
@@ -103,12 +106,20 @@ def one_of_each_family(
 
 
 def _copies(
-    values: np.ndarray, states: np.ndarray, value: complex, state: np.ndarray, base: float
+    values: np.ndarray,
+    states: np.ndarray,
+    value: complex,
+    state: np.ndarray,
+    base: float,
+    allowed: np.ndarray,
 ) -> np.ndarray:
-    """Return which motions are one, λ + ipΩn with its harmonics n steps lower."""
+    """Return which motions are one, λ + ipΩn with its harmonics n steps lower.
+
+    Their exponents may be off by what is `allowed` (n,).
+    """
     apart = values - value
     steps = np.round(apart.imag / base).astype(int)
-    near = np.abs(apart - 1j * steps * base) <= _COPY * abs(base) + 1e-6 * abs(value)
+    near = np.abs(apart - 1j * steps * base) <= allowed
     found, h = [], len(state)
     for j in np.flatnonzero(near & (np.abs(steps) < h)):
         n = steps[j]
