@@ -56,5 +56,5 @@ def floquet_motions(
     values = values + 1j * shift * 2.0 * np.pi / period
     if system.speed < 0.0:
         states, orders = states[::-1], -orders[::-1]
-    chosen = one_of_each_family(values, states, orders, system)
+    chosen = one_of_each_family(values, states, orders, system, made)
     return Exponents(values[chosen], states[:, :, chosen], orders)
