@@ -20,7 +20,7 @@ _LARGEST = 420  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 # energy at the edge of the sum that counts as none, over the tolerance: the error of λ is the
 # product of that and of the small part of λ that changes in a turn; and energy that is too much
-_EDGE, _LOST = 1e2, 3e-2
+_EDGE, _LOST = 1e2, 3e-3
 _COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
