@@ -62,34 +62,38 @@ class Coupled:
         motions = motions_over(self._model(multiple), [self.speed], held=True)[0]
         return Modes(multiple, self._content.named(motions))
 
-    def first_forward(self) -> tuple[Modes, int]:
-        """Return the modes without cross-coupling, and which of them is the first forward one.
+    def first_forward(self) -> tuple[tuple[Modes, int], tuple[Modes, int]]:
+        """Return the modes without and with little cross-coupling, and the first forward one.
 
         That is the lowest lateral mode that the cross-coupling makes less stable, for its work on
         an orbit has the sign of the orbit's sense: in bearings that differ in their two directions
         modes may have no sense until it is applied. A mode that is damped so much that it has no
-        resonance is passed over, unless all are.
+        resonance is passed over; where all are, it is the least damped one.
 
         Raises
         ------
         ValueError
-            Where it feeds no mode that oscillates.
+            Where it feeds no lateral mode.
         """
         start, little = self.modes(0.0), self.modes(_LITTLE)
-        named = start.named
-        moves = start.lateral & (named.inertial > _STILL * self.speed)
-        moves &= np.isfinite(start.decrements)
-        fed = [
-            i
-            for i in np.flatnonzero(moves)
-            if little.decrements[start.continued(i, little)[0]] < start.decrements[i] - ROUNDING
-        ]
-        if not fed:
+        named, growth = start.named, start.named.motions.values.real
+        found = {}
+        for i in np.flatnonzero(start.lateral & np.isfinite(growth)):
+            mode, _ = start.continued(i, little)
+            gained = little.named.motions.values.real[mode] - growth[i]
+            if gained > ROUNDING * max(named.inertial[i], abs(growth[i])):
+                found[i] = mode
+        if not found:
             raise ValueError(f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling")
-        resonant = [i for i in fed if start.ratios[i] < _RESONANT]
-        if not resonant:
-            return start, min(fed, key=lambda i: start.ratios[i])
-        return start, min(resonant, key=lambda i: named.inertial[i])
+        resonant = [
+            i
+            for i in found
+            if start.ratios[i] < _RESONANT and named.inertial[i] > _STILL * self.speed
+        ]
+        first = min(resonant, key=lambda i: named.inertial[i], default=None)
+        if first is None:
+            first = max(found, key=lambda i: growth[i])
+        return (start, first), (little, found[first])
 
     def followed(self, start: Modes, mode: int, multiple: float) -> tuple[Modes, int]:
         """Return the modes under another multiple, and which of them continues a mode.
@@ -120,8 +124,10 @@ class Modes:
 
     @property
     def decrements(self) -> np.ndarray:
-        """Logarithmic decrements; NaN where a mode does not oscillate."""
-        return damping_of(self.named.motions.values.real, self.named.inertial)[1]
+        """Logarithmic decrements; infinite where a mode decays or grows without oscillating."""
+        growth = self.named.motions.values.real
+        found = damping_of(growth, self.named.inertial)[1]
+        return np.where(np.isnan(found), -np.sign(growth) * np.inf, found)
 
     @property
     def ratios(self) -> np.ndarray:

@@ -95,6 +95,7 @@ class StabilityLevelOne(Result):
     applied : ndarray, shape (q,)
         Sum of the cross-coupled stiffnesses Q, from 0 to 10 Q_A [N/m].
     log_decrement : ndarray, shape (q,)
+        Infinite where the mode decays without oscillating.
     frequencies : ndarray, shape (q,)
         Of the mode in the inertial frame [rad/s].
     anticipated : float
@@ -127,7 +128,7 @@ class StabilityLevelOne(Result):
     """
 
     applied: np.ndarray = numbers("applied", least=0.0)
-    log_decrement: np.ndarray = numbers("applied")
+    log_decrement: np.ndarray = numbers("applied", finite=False)
     frequencies: np.ndarray = numbers("applied")
     anticipated: float
     speed: float
@@ -148,6 +149,8 @@ class StabilityLevelOne(Result):
     @property
     def anticipated_decrement(self) -> float:
         """Log decrement under the anticipated cross-coupling."""
+        if self.anticipated in self.applied:  # beside it may be infinite ones
+            return float(self.log_decrement[self.applied == self.anticipated][0])
         return float(np.interp(self.anticipated, self.applied, self.log_decrement))
 
     @property
@@ -326,9 +329,11 @@ def stability_level_one(
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
     coupled = Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
-    followed = [coupled.first_forward()]
+    first, last = coupled.first_forward()
+    followed = [first]
     for multiple in _MULTIPLES[1:]:
-        followed.append(coupled.followed(*followed[-1], multiple))
+        last = coupled.followed(*last, multiple)
+        followed.append(last)
     total, threshold = float(amounts.sum()), None
     _warn_of_others(followed, total)
     decrement = np.array([modes.decrements[mode] for modes, mode in followed])
@@ -340,7 +345,7 @@ def stability_level_one(
 
             def between(multiple: float) -> float:
                 modes, mode = coupled.followed(*followed[end - 1], multiple)
-                return float(modes.decrements[mode])
+                return -float(modes.named.motions.values.real[mode])
 
             threshold = total * brentq(between, *_MULTIPLES[end - 1 : end + 1])
     return StabilityLevelOne(

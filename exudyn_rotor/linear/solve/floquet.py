@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, at_angle
+from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
 from exudyn_rotor.linear.solve.state import States
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
@@ -70,10 +71,8 @@ def floquet_growth(
         before, steps = largest, 2 * steps
 
 
-def floquet_motions(
-    system: PeriodicSystem, made: States
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return 2k exponents, their states (h, 2k, 2k) and the harmonics."""
+def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
+    """Return the motions of a system."""
     before = _with_steps(system, made, _STEPS[0])[0]
     for steps in _STEPS[1:]:
         values, states, orders, upper = _with_steps(system, made, steps)
@@ -84,7 +83,13 @@ def floquet_motions(
         if np.all(still | np.isnan(values) | (np.abs(values) > _SLOW * abs(system.speed))):
             break
         before = values
-    return np.where(still, values, np.nan), states, orders
+    found, lost = np.flatnonzero(still), np.flatnonzero(~still)
+    chosen = found[
+        one_of_each_family(values[found], states[:, :, found], orders, system, made)
+    ]
+    chosen = np.r_[chosen, lost][: system.size]
+    values = np.where(still, values, np.nan)
+    return Exponents(values[chosen], states[:, :, chosen], orders)
 
 
 def _with_steps(
