@@ -127,7 +127,7 @@ class Modes:
         """Logarithmic decrements; infinite where a mode decays or grows without oscillating."""
         growth = self.named.motions.values.real
         found = damping_of(growth, self.named.inertial)[1]
-        return np.where(np.isnan(found), -np.sign(growth) * np.inf, found)
+        return np.where(np.isnan(found), np.copysign(np.inf, -growth), found)
 
     @property
     def ratios(self) -> np.ndarray:

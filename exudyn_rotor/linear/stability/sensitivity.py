@@ -151,7 +151,7 @@ def _unstable(
 
     `loops` are the motions of the controllers of bearings of the `names`.
     """
-    which = least_stable_of(named)
+    which = least_stable_of(named.motions)
     shape = named.motions.main[:, which]
     moves = [np.linalg.norm([U[_OWN] @ shape for U in loop.values()]) for loop in loops]
     return ValueError(

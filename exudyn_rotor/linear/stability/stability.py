@@ -7,6 +7,7 @@ on any supports, or of an uneven one on supports alike in all directions, else F
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl_new import UNKNOWN, Content, Named
@@ -25,7 +27,7 @@ from exudyn_rotor.linear.model.build import (
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
-from exudyn_rotor.linear.solve.motions import METHODS
+from exudyn_rotor.linear.solve.motions import METHODS, Motions
 from exudyn_rotor.linear.stability.stability_result import Stability
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero
@@ -124,11 +126,23 @@ def check_options(method: str, tolerance: float, accuracy: float | None) -> None
     options.check_basis_accuracy(accuracy)
 
 
-def least_stable_of(named: Named) -> int:
+def least_stable_of(motions: Motions) -> int:
     """Return which motion is the least stable one of those that are not neutral."""
-    growth = named.motions.values.real
-    told = np.abs(growth) > named.motions.bound
-    return int(np.argmax(np.where(told, growth, -np.inf)))
+    growth = motions.values.real
+    return int(np.argmax(np.where(np.abs(growth) > motions.bound, growth, -np.inf)))
+
+
+def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
+    """Warn of points without values; raise the first error where all of `count` have none."""
+    if len(refused) == count:
+        raise refused[0][1]
+    if refused:
+        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
+        warnings.warn(
+            f"no values at {shown}, which are NaN: {refused[0][1]}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
 
 
 def _collected(
@@ -186,7 +200,7 @@ def _shifts(
     shifts = basis_error.shifts_over(model, speeds, tracked, held=True)
     return np.array(
         [
-            np.nan if each is None else row[least_stable_of(each)]
+            np.nan if each is None else row[least_stable_of(each.motions)]
             for each, row in zip(tracked, shifts, strict=True)
         ],
         dtype=complex,

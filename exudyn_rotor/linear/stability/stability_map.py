@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.basis_error import NOT_KNOWN
@@ -20,6 +18,7 @@ from exudyn_rotor.linear.modal.whirl_new import (
     UNKNOWN,
     WHIRLS,
     Content,
+    Named,
     damping_of,
     families,
 )
@@ -27,7 +26,11 @@ from exudyn_rotor.linear.model.build import Target, linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.solve.motions import Motions, motions_of
-from exudyn_rotor.linear.stability.stability import check_options, least_stable_of
+from exudyn_rotor.linear.stability.stability import (
+    check_options,
+    least_stable_of,
+    warn_of_refused,
+)
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
@@ -222,17 +225,6 @@ def _is_geometric(values: np.ndarray) -> bool:
     return bool(np.ptp(ratios) <= _EVEN * ratios[0])
 
 
-class _Point(NamedTuple):
-    """What is known of one point; see :class:`StabilityMap`."""
-
-    growth: float = np.nan
-    stable: bool = False
-    inertial: float = np.nan
-    code: int = UNKNOWN
-    diameters: int = -1
-    error: float = np.nan
-
-
 @one_thread()
 def stability_map(
     build: Callable[[float, float], PeriodicSystem | tuple[Target, float]],
@@ -293,56 +285,57 @@ def stability_map(
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     shape = len(grid[0]), len(grid[1])
-    judged = {(0, 0), (shape[0] - 1, 0), (0, shape[1] - 1), (shape[0] - 1, shape[1] - 1)}
+    growth, inertial, errors = (np.full(shape, np.nan) for _ in range(3))
+    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
+    diameters = np.full(shape, -1, dtype=np.int64)
+    judged = {(a, b) for a in (0, shape[0] - 1) for b in (0, shape[1] - 1)}
     judged.add((shape[0] // 2, shape[1] // 2))
-    found, models, refused, contents = [], {}, [], {}
-    for a, b in _places(shape, progress):
-        at = float(grid[0][a]), float(grid[1][b])
+    refused, contents, worst = [], {}, (0.0, "", None)
+    places = list(np.ndindex(*shape))
+    if progress:
+        from tqdm import tqdm
+
+        places = tqdm(places, desc="stability map")
+    for at in places:
+        point = float(grid[0][at[0]]), float(grid[1][at[1]])
+        shown = f"({point[0]:.5g}, {point[1]:.5g})"
         try:
-            built = _built(build, at)
-            point = _point(built, contents, method, tolerance)
-            if (a, b) in judged and not isinstance(built, PeriodicSystem):
-                error = _basis_error(*built, contents, method, tolerance, accuracy)
-                models[at] = built[0]
-                point = point._replace(error=error)
+            built = _built(build, point)
+            motions = _motions(built, method, tolerance)
         except ValueError as error:
-            refused.append((at, error))
-            point = _Point()
-        found.append(point)
-    _warn_of_refused(refused, len(found))
-    growth, stable, inertial, codes, diameters, errors = (
-        np.array(column).reshape(shape) for column in zip(*found, strict=True)
-    )
-    result = StabilityMap(
+            refused.append((shown, error))
+            continue
+        growth[at], which = np.nanmax(motions.values.real), least_stable_of(motions)
+        stable[at] = growth[at] <= motions.bound
+        inertial[at] = abs(motions.values[which].imag)
+        if isinstance(built, PeriodicSystem):
+            continue
+        named = _content_of(built[0], contents).named(motions)
+        inertial[at], codes[at], diameters[at] = (each[which] for each in named[1:2] + named[3:])
+        if at in judged and basis_error.is_known(built[0], accuracy):
+            errors[at] = _basis_error(*built, named, which)
+            worst = max(worst, (np.nan_to_num(errors[at]), shown, built[0]), key=lambda each: each[0])
+    warn_of_refused(refused, growth.size)
+    if worst[2] is not None:
+        basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
+    return StabilityMap(
         *grid,
         growth,
         stable,
         names,
         basis_errors=None if np.all(np.isnan(errors)) else errors,
         frequencies_inertial=inertial,
-        whirl_codes=codes.astype(np.int64),
-        nodal_diameters=diameters.astype(np.int64),
+        whirl_codes=codes,
+        nodal_diameters=diameters,
         log_decrement=damping_of(growth, inertial)[1],
     )
-    _warn_of_basis(result, models, accuracy)
-    return result
-
-
-def _places(shape: tuple[int, int], progress: bool):
-    """Return the places of the grid, with a progress bar if that is asked for."""
-    places = list(np.ndindex(*shape))
-    if not progress:
-        return places
-    from tqdm import tqdm
-
-    return tqdm(places, desc="stability map")
 
 
 def _built(
-    build: Callable, at: tuple[float, float]
+    build: Callable, point: tuple[float, float]
 ) -> PeriodicSystem | tuple[LinearModel, float]:
     """Return the model and the speed of a point, or its equations."""
-    built = build(*at)
+    built = build(*point)
     if isinstance(built, PeriodicSystem):
         return built
     if not isinstance(built, tuple) or len(built) != 2:
@@ -354,41 +347,13 @@ def _built(
     return linear_model(built[0]), speed
 
 
-def _point(
-    built: PeriodicSystem | tuple[LinearModel, float],
-    contents: dict,
-    method: str,
-    tolerance: float,
-) -> _Point:
-    """Return the least stable motion at a point."""
+def _motions(
+    built: PeriodicSystem | tuple[LinearModel, float], method: str, tolerance: float
+) -> Motions:
     if isinstance(built, PeriodicSystem):
-        motions = motions_of([built], method, tolerance)[0]
-        which = _least_stable(motions)
-        growth = motions.values.real
-        inertial = abs(motions.values[which].imag)
-        return _Point(np.nanmax(growth), np.nanmax(growth) <= motions.bound, inertial)
+        return motions_of([built], method, tolerance)[0]
     model, speed = built
-    motions = motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
-    growth = np.nanmax(motions.values.real)
-    named = _content_of(model, contents).named(motions.columns(_near(motions)))
-    which = least_stable_of(named)
-    return _Point(
-        growth, growth <= motions.bound, named.inertial[which], named.codes[which],
-        named.diameters[which],
-    )  # fmt: skip
-
-
-def _least_stable(motions: Motions) -> int:
-    """Return which motion is the least stable one of those that are not neutral."""
-    growth = motions.values.real
-    return int(np.argmax(np.where(np.abs(growth) > motions.bound, growth, -np.inf)))
-
-
-def _near(motions: Motions) -> np.ndarray:
-    """Return the least stable motion and those of the same λ, whose shapes are arbitrary."""
-    value = motions.values[_least_stable(motions)]
-    scale = 1e-6 * max(abs(value), abs(motions.speed)) + motions.bound
-    return np.flatnonzero(np.abs(motions.values - value) <= scale)
+    return motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
 
 
 def _content_of(model: LinearModel, contents: dict) -> Content:
@@ -400,50 +365,9 @@ def _content_of(model: LinearModel, contents: dict) -> Content:
     return contents[key][0]
 
 
-def _basis_error(
-    model: LinearModel,
-    speed: float,
-    contents: dict,
-    method: str,
-    tolerance: float,
-    accuracy: float | None,
-) -> float:
-    """Return the relative error of the least stable motion; NaN where it is not known."""
-    if not basis_error.is_known(model, accuracy):
-        return np.nan
-    if model.is_full:
-        return 0.0
-    motions = motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
-    named = _content_of(model, contents).named(motions)
-    which = least_stable_of(named)
-    shift = basis_error.shifts_over(model, np.array([speed]), [named], held=True)[:, [which]]
-    given = named.motions.values.real[[[which]]], named.inertial[[[which]]]
-    return float(basis_error.relative_errors(shift, *given, np.array([speed]))[0, 0])
-
-
-def _warn_of_refused(refused: list, count: int) -> None:
-    """Warn of points without values; raise the first error where no point has any."""
-    if not refused:
-        return
-    if len(refused) == count:
-        raise refused[0][1]
-    shown = ", ".join(f"({a:.5g}, {b:.5g})" for (a, b), _ in refused[:5])
-    more = " …" if len(refused) > 5 else ""
-    warnings.warn(
-        f"no values at {shown}{more}, which are NaN: {refused[0][1]}",
-        UserWarning,
-        stacklevel=user_level(),
-    )
-
-
-def _warn_of_basis(
-    result: StabilityMap, models: dict[tuple, LinearModel], accuracy: float | None
-) -> None:
-    """Warn where the basis leaves out too much for the worst of the points."""
-    errors = result.basis_errors
-    if errors is None or accuracy is None:
-        return
-    a, b = np.unravel_index(np.nanargmax(errors), errors.shape)
-    at = float(result.x[a]), float(result.y[b])
-    what = f"the least stable motion at ({at[0]:.5g}, {at[1]:.5g})"
-    basis_error.warn(errors, what, models[at], accuracy)
+def _basis_error(model: LinearModel, speed: float, named: Named, which: int) -> float:
+    """Return the relative error of the least stable motion; NaN where it is not found again."""
+    at = np.array([speed])
+    shift = basis_error.shifts_over(model, at, [named], held=True)[:, [which]]
+    given = named.motions.values.real[None, [which]], named.inertial[None, [which]]
+    return float(basis_error.relative_errors(shift, *given, at)[0, 0])

@@ -8,8 +8,6 @@ whether it crosses.
 
 from __future__ import annotations
 
-import warnings
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -21,7 +19,6 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.modal.whirl_new import Content, Named
@@ -33,7 +30,12 @@ from exudyn_rotor.linear.model.build import (
 )
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import margins_over, motions_over
-from exudyn_rotor.linear.stability.stability import WHAT, check_options, least_stable_of
+from exudyn_rotor.linear.stability.stability import (
+    WHAT,
+    check_options,
+    least_stable_of,
+    warn_of_refused,
+)
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero
@@ -46,31 +48,41 @@ _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing mot
 _NONE = NoCoefficientsError, UnconvergedError
 
 
-class _Growth(ABC):
-    """Growth of the least stable motion over a parameter; values are computed once."""
+class _Growth:
+    """Growth of the least stable motion over a parameter; values are computed once.
 
-    def __init__(self) -> None:
+    Made from a function that gives the model and the spin speed at a point, and options of
+    :func:`margins_over`. Where the parameter is the speed there is one model at all points.
+    """
+
+    def __init__(
+        self, model_at: Callable[[float], tuple[LinearModel, float]], is_speed: bool, **given
+    ) -> None:
+        self.model_at, self.is_speed, self.given = model_at, is_speed, given
         self.known: dict[float, float] = {}
 
-    @abstractmethod
-    def _computed(self, points: Sequence[float]) -> np.ndarray:
-        """Return the margins at points; NaN where there are no coefficients."""
-
-    @abstractmethod
-    def model_at(self, point: float) -> tuple[LinearModel, float]:
-        """Return the model and the spin speed at a point."""
-
     def at(self, points: Sequence[float]) -> None:
-        """Compute the margin at points that are new."""
-        new = [float(p) for p in points if float(p) not in self.known]
-        if new:
-            self.known.update(zip(new, self._computed(new).tolist(), strict=True))
+        """Compute the margin at points; NaN where there are no coefficients, with one warning."""
+        points = [float(point) for point in points]
+        if self.is_speed:
+            margins = margins_over(self.model_at(points[0])[0], points, **self.given)
+            self.known.update(zip(points, margins.tolist(), strict=True))
+            return
+        refused = []
+        for point in points:
+            try:
+                model, speed = self.model_at(point)
+                self.known[point] = float(margins_over(model, [speed], **self.given)[0])
+            except _NONE as error:
+                self.known[point] = np.nan
+                refused.append((f"{point:.5g}", error))
+        warn_of_refused(refused, len(points))
 
     def __call__(self, point: float) -> float:
-        """Return the margin between two points that have one; negative where it has none."""
+        """Return the margin at a point between two that have one; negative where it has none."""
         if point not in self.known:
             try:
-                self.known[point] = float(self._computed([point])[0])
+                self.at([point])
             except _NONE:
                 self.known[point] = np.nan
         margin = self.known[point]
@@ -111,50 +123,6 @@ class _Growth(ABC):
                 lambda p, sign=sign: sign * self(float(p)), bounds=ends, method="bounded",
                 options={"maxiter": _STEPS},
             )  # fmt: skip
-
-
-class _OverSpeed(_Growth):
-    """Growth over the spin speed of one model."""
-
-    def __init__(self, model: LinearModel, method: str, tolerance: float) -> None:
-        super().__init__()
-        self.model, self._given = model, {"method": method, "tolerance": tolerance}
-
-    def _computed(self, points: Sequence[float]) -> np.ndarray:
-        return margins_over(self.model, points, **self._given)
-
-    def model_at(self, point: float) -> tuple[LinearModel, float]:
-        return self.model, point
-
-
-class _OverParameter(_Growth):
-    """Growth over a parameter of the target or its supports at one speed."""
-
-    def __init__(self, build: Callable[[float], LinearModel], speed: float, **given) -> None:
-        super().__init__()
-        self.build, self.speed, self._given = build, speed, given
-
-    def _computed(self, points: Sequence[float]) -> np.ndarray:
-        margins, first, refused = np.full(len(points), np.nan), None, []
-        for i, point in enumerate(points):
-            try:
-                margins[i] = margins_over(self.build(point), [self.speed], **self._given)[0]
-            except _NONE as error:
-                first = first or error
-                refused.append(f"{point:.5g}")
-        if len(refused) == len(points):
-            raise first
-        if refused:
-            warnings.warn(
-                f"no values at {', '.join(refused[:5])}{' …' if len(refused) > 5 else ''}, which "
-                f"are left out: {first}",
-                UserWarning,
-                stacklevel=user_level(),
-            )
-        return margins
-
-    def model_at(self, point: float) -> tuple[LinearModel, float]:
-        return self.build(point), self.speed
 
 
 def stability_threshold(
@@ -234,27 +202,27 @@ def stability_threshold(
     if label is None:
         label = "speed [rad/s]" if is_speed else "parameter"
     checks.label(label, "label")
-    given = {"method": method, "tolerance": tolerance}
     made = {"body": body, "stiffening": stiffening, "axes": axes}
     if is_speed:
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        growth: _Growth = _over_speed(target, high, made | {"supports": supports}, given)
+        model = _checked_model(target, high, supports=supports, **made)
+        kinks = model.table_speeds
     else:
         speed = _checked_speed(target, supports, speed)
 
-        def build(point: float) -> LinearModel:
-            return linear_model(
-                target(point) if callable(target) else target,
-                supports=supports(point) if callable(supports) else supports,
-                **made,
-            )
+        kinks = np.zeros(0)
 
-        warn_of_left_out_stiffening(build(low), speed)
-        growth = _OverParameter(build, speed, **given)
+    def model_at(point: float) -> tuple[LinearModel, float]:
+        if is_speed:
+            return model, point
+        chosen = target(point) if callable(target) else target
+        held = supports(point) if callable(supports) else supports
+        return linear_model(chosen, supports=held, **made), speed
+
+    growth = _Growth(model_at, is_speed, method=method, tolerance=tolerance)
     points = np.linspace(low, high, _INNER * samples + 1)
-    kinks = growth.model.table_speeds if is_speed else np.zeros(0)
     growth.at(np.union1d(points, kinks[(kinks > low) & (kinks < high)]))
     growth.look_at_peaks()
     found = growth.changes(_ROOT * max(abs(low), abs(high)))
@@ -309,13 +277,15 @@ def unstable_ranges(
     """
     values = ascending_from_zero(speeds, "speeds")
     check_options(method, tolerance, accuracy)
-    made = {"supports": supports, "body": body, "stiffening": stiffening, "axes": axes}
-    growth = _over_speed(target, values[-1], made, {"method": method, "tolerance": tolerance})
+    model = _checked_model(
+        target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
+    )
+    growth = _Growth(lambda speed: (model, speed), True, method=method, tolerance=tolerance)
     growth.at(values)
     growth.look_at_peaks()
     points, margins = growth.course
     found = growth.changes(_ROOT * values[-1])
-    if basis_error.is_known(growth.model, accuracy) and not growth.model.is_full:
+    if basis_error.is_known(model, accuracy) and not model.is_full:
         limits = _limits(growth, found, values[-1] - values[0], accuracy)
         _warn_of_basis(limits, values[-1] - values[0], "speed [rad/s]", accuracy)
     edges = [points[0]] if margins[0] > 0.0 else []
@@ -324,11 +294,12 @@ def unstable_ranges(
     return np.array(edges, dtype=float).reshape(-1, 2)
 
 
-def _over_speed(target: Target, fastest: float, made: dict, given: dict) -> _OverSpeed:
+def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
+    """Return the model of a search over the speed; warn of what it leaves out."""
     model = linear_model(target, **made)
     warn_of_structural_damping(model, WHAT)
     warn_of_left_out_stiffening(model, fastest)
-    return _OverSpeed(model, **given)
+    return model
 
 
 def _checked_speed(target: object, supports: object, speed: float | None) -> float:
@@ -366,11 +337,11 @@ def _limits(
         width = ends[place + 1 if onset else place - 1] - value
         beside = value + np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
         model, speed = growth.model_at(beside)
-        motions = motions_over(model, [speed], held=True, **growth._given)[0]
+        motions = motions_over(model, [speed], held=True, **growth.given)[0]
         if id(model) not in contents:
             contents[id(model)] = Content.of(model)
         named = contents[id(model)].named(motions)
-        which = least_stable_of(named)
+        which = least_stable_of(motions)
         name = named.inertial[which], int(named.codes[which]), int(named.diameters[which])
         shift = None
         if basis_error.is_known(model, accuracy):
