@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,13 +24,13 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     SHOWN,
     CriticalSpeeds,
     checked,
-    critical_speeds_of,
+    collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS
+from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
 from exudyn_rotor.linear.modal.whirl_new import BACKWARD, FORWARD, WHIRLS, Content
-from exudyn_rotor.linear.model.build import linear_model
-from exudyn_rotor.linear.model.linear_model import AXES
+from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CURVE = 200  # speeds of a bearing's own curve
+_UNIT = 1e15  # N/m, beside which all others are rounding
 _OFF = 0.02  # by which a line may leave where a critical speed can lie next, relative
 
 
@@ -296,22 +297,25 @@ def critical_speed_map(
     options.check_basis_accuracy(accuracy)
     checks.flag(progress, "progress")
     curve = None if bearing is None else _as_support(bearing)
+    first = linear_model(
+        target, supports=_with(supports, names, values[0]), foundation=foundation,
+        stiffening=stiffening, axes=axes,
+    ).undamped()  # fmt: skip
+    unit = {n: X / _UNIT for n, X in _added(first, names).items()}
+    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, is_exact=False)
     judged = set() if accuracy is None else set(points(len(values)).tolist())
     solved: list[CriticalSpeeds | None] = []
-    failed, content = {}, None
+    failed: dict[float, Exception] = {}
     for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
-        varied = tuple(Support(name, float(stiffness)) for name in names)
-        model = linear_model(
-            target, supports=supports + varied, foundation=foundation, stiffening=stiffening,
-            axes=axes,
-        ).undamped()  # fmt: skip
-        content = content or Content.of(model)
-        with warnings.catch_warnings(record=row > 0):  # once is enough
-            try:
-                solved.append(critical_speeds_of(model, content, given, tolerance, row in judged))
-            except NO_EQUATIONS as error:
-                solved.append(None)
-                failed[float(stiffness)] = error
+        model = first
+        if row in judged:
+            model = replace(first, supports={"": _with(supports, names, stiffness)})
+        try:
+            found = search.resonances(stiffness - values[0])
+            solved.append(collected(found, search, model, row in judged))
+        except (*NO_EQUATIONS, np.linalg.LinAlgError) as error:
+            solved.append(None)
+            failed[float(stiffness)] = error
     if len(failed) == len(values):
         raise next(iter(failed.values()))
     if failed:
@@ -321,15 +325,35 @@ def critical_speed_map(
             UserWarning,
             stacklevel=user_level(),
         )
-    result = _collected(values, given[0], solved, curve, max_speed, is_known(model, accuracy))
+    search.warn()
+    result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
+    if np.any(result.speeds > 0.0):
+        warn_of_left_out_stiffening(first, max_speed or np.nanmin(result.speeds))
     if result.basis_errors is not None:
-        warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
+        warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
     return result
+
+
+def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
+    return (*supports, *(Support(name, float(stiffness)) for name in names))
+
+
+def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of what supports of a large stiffness add, without motions that
+    nothing holds."""
+    stiff, none = (
+        replace(
+            model, supports={"": _with((), names, _UNIT)[:count]}, wanted_axes=model.axes,
+            largest_unevenness=np.inf,
+        ).at(1.0).K  # fmt: skip
+        for count in (None, 0)
+    )
+    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
+    return {n: basis.T @ (X - none.get(n, 0.0)) @ basis for n, X in stiff.items()}
 
 
 def _collected(
     values: np.ndarray,
-    order: float,
     solved: list[CriticalSpeeds | None],
     curve: Support | None,
     max_speed: float | None,
@@ -352,7 +376,7 @@ def _collected(
         top = max_speed or float(np.nanmax(speeds, initial=1.0))
         own["bearing_speeds"], own["bearing_stiffnesses"] = _curve(curve, top)
     return CriticalSpeedMap(
-        values, speeds, codes.astype(np.int64), order, known[0].stiffening,
+        values, speeds, codes.astype(np.int64), known[0].order, known[0].stiffening,
         basis_errors=errors if has_errors else None, axes=known[0].axes,
         unevenness=known[0].unevenness, **own,
     )  # fmt: skip

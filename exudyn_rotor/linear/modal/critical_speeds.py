@@ -14,10 +14,11 @@ from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
-    Resonances,
+    Resonance,
+    Search,
     Stiffness,
+    named,
     refined,
-    resonances,
 )
 from exudyn_rotor.linear.modal.whirl_new import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
@@ -222,7 +223,12 @@ def critical_speeds(
         target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
         axes=axes,
     ).undamped()  # fmt: skip
-    result = critical_speeds_of(model, Content.of(model), given, tolerance, accuracy is not None)
+    search = Search(Stiffness(model), Content.of(model), *given, tolerance)
+    result = collected(search.resonances(), search, model, accuracy is not None)
+    search.warn()
+    if result.speeds.size:
+        fastest = result.speeds[0] if max_speed is None else max_speed
+        warn_of_left_out_stiffening(model, fastest)
     if accuracy is not None and result.basis_errors is not None:
         warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
     return result
@@ -241,33 +247,23 @@ def checked(
     return order, sorted({int(n) for n in values}), max_speed
 
 
-def critical_speeds_of(
-    model: LinearModel,
-    content: Content,
-    given: tuple[float, list[int], float | None],
-    tolerance: float,
-    estimate: bool,
+def collected(
+    found: list[Resonance], search: Search, model: LinearModel, estimate: bool
 ) -> CriticalSpeeds:
-    """Return the critical speeds of an undamped model.
-
-    The `content` is that of the rotor, whatever its supports are; `given` is what :func:`checked`
-    returns; errors of the basis are estimated where `estimate`.
-    """
-    found = resonances(model, content, *given, tolerance)
-    limit = given[-1]
-    if found.speeds.size:
-        warn_of_left_out_stiffening(model, found.speeds[0] if limit is None else limit)
+    """Return the result of a search; errors by the basis of the model where they are asked for."""
+    found, names = named(found, search.content)
+    speeds = np.array([one.speed for one in found])
     errors = None
     if estimate and basis_error.is_known(model, 1.0):
-        errors = basis_errors(model, found, len(found.speeds) if limit is not None else JUDGED)
-    shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for x in found.vectors]
+        errors = basis_errors(model, found, len(found) if search.limit is not None else JUDGED)
+    shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
     shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
     return CriticalSpeeds(
-        order=given[0],
-        speeds=found.speeds,
-        frequencies_rotor=found.rotor * found.speeds,
-        whirl=tuple(WHIRLS[code] for code in found.codes),
-        nodal_diameters=found.diameters,
+        order=search.order,
+        speeds=speeds,
+        frequencies_rotor=names.rotor * speeds,
+        whirl=tuple(WHIRLS[code] for code in names.codes),
+        nodal_diameters=names.diameters,
         vectors=shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
         stiffening=model.stiffening,
         basis_errors=errors,
@@ -277,22 +273,21 @@ def critical_speeds_of(
 
 
 @one_thread()
-def basis_errors(model: LinearModel, found: Resonances, count: int) -> np.ndarray:
+def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> np.ndarray:
     """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
     Each motion is followed into the model with the shapes that the basis lacks.
     """
-    errors = np.full(len(found.speeds), np.nan)
+    errors = np.full(len(found), np.nan)
     if model.is_full:
         errors[:count] = 0.0
         return errors
     richer = model.richer
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
-    for i, speed in enumerate(found.speeds[:count]):
-        multiples = found.multiples[i]
-        x = stiffness.coordinates(found.vectors[i] @ lifted.T).ravel()
+    for i, (speed, vectors, multiples) in enumerate(found[:count]):
+        x = stiffness.coordinates(vectors @ lifted.T).ravel()
         try:
-            new, y = refined(lambda s, f=multiples: stiffness(s, f), float(speed), x)
+            new, y = refined(lambda s, f=multiples: stiffness(s, f), speed, x)
         except NO_EQUATIONS:
             continue
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real

@@ -7,9 +7,8 @@ motion with the frequency fΩ in the axes of the equations has the undamped dyna
 
 a Hermitian matrix; f = p in axes that stand still. Where only the spin itself changes with the
 speed, ``H = K0 − Ω² B``: one eigenproblem has all critical speeds. Tables and films leave the zeros
-of the sorted eigenvalues of H, which are continuous functions of Ω; each change of a sign between
-neighbours of some 200 speeds is refined. Two zeros between neighbours, of one eigenvalue, are
-missed.
+of the sorted eigenvalues of H, which are continuous functions of Ω: each change of a sign between
+neighbours of some 200 speeds is refined. Two zeros of one eigenvalue between neighbours are missed.
 
 In the axes of an uneven rotor a wave n answers at f = p − n. Supports that differ in their two
 directions couple f, f ± 2, …: H is a matrix of blocks, of which five are solved, and then more are
@@ -21,25 +20,27 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from exudyn_rotor.bearings.bearing import NoEquilibriumError
 from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
 from exudyn_rotor.linear.modal.whirl_new import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.solve.hill import real_waves
 from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.threads import one_thread
 
-NO_EQUATIONS = NoCoefficientsError, NoEquilibriumError, UnconvergedError
+NO_EQUATIONS = NoCoefficientsError, UnconvergedError
 _SHARE = 0.4  # of a motion's energy that must turn with the excitation
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
@@ -47,36 +48,31 @@ _SAME = 1e-7  # relative distance of speeds that are one
 _AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
 _FREE = 1e-13  # share of the largest stiffness that is rounding
 _NO_INERTIA = 1e-6  # share of the largest inertia
-_BRACKETS = 200  # speeds at which signs of eigenvalues are looked at
-_HALVES = 6  # of the first of these
-_FINE = 1e-11  # of the largest speed, to which zeros are refined
+_BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
+_SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
+_FINE = 1e-10  # of the largest speed, to which zeros are refined
 _FEW, _MOST = 2, 7  # blocks on each side of the middle one
 _ITERATIONS = 8
+_OFF = 0.03  # by which films that are smooth between speeds may err
 _STEP = 1e-5  # of the speed, for the derivative of H
 
+Pair = tuple[float, np.ndarray]  # a speed [rad/s] and the motion there
 
-class Resonances(NamedTuple):
-    """Critical speeds, ascending, of one speed from backward to forward waves.
 
-    Attributes
-    ----------
-    speeds : ndarray, shape (c,)
-        [rad/s]
-    rotor : ndarray, shape (c,)
-        Frequency in the frame of the rotor over the speed.
-    codes, diameters : ndarray of int, shape (c,)
-        Index into :data:`WHIRLS`, and nodal diameters.
-    vectors : tuple of ndarray, shape (h, k)
-        Harmonics of each motion at `multiples` of the speed.
-    multiples : tuple of ndarray, shape (h,)
-    """
+class Resonance(NamedTuple):
+    """A critical speed [rad/s] and its motion: harmonics (h, k) at `multiples` (h,) of the speed."""
 
-    speeds: np.ndarray
+    speed: float
+    vectors: np.ndarray
+    multiples: np.ndarray
+
+
+class Names(NamedTuple):
+    """Of critical speeds the frequency in the frame of the rotor over Ω, whirl and diameters."""
+
     rotor: np.ndarray
     codes: np.ndarray
     diameters: np.ndarray
-    vectors: tuple[np.ndarray, ...]
-    multiples: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,60 +80,83 @@ class Stiffness:
     """The dynamic stiffness of an undamped model, whose equations are made once per speed.
 
     Motions that nothing holds at any speed, like a free spin, are none of its coordinates.
+
+    Attributes
+    ----------
+    model : LinearModel
+    unit : Terms
+        Fourier terms of a stiffness that is added by its `factor`.
+    factor : float
+    between : callable, optional
+        Gives equations between the speeds at which films are solved.
     """
 
     model: LinearModel
+    unit: Terms = field(default_factory=dict)
+    factor: float = 0.0
+    between: Callable[[float], PeriodicSystem] | None = None
     known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
     def system(self, speed: float) -> PeriodicSystem:
-        """Return the equations at a speed [rad/s]."""
+        """Return the equations at a speed [rad/s], without what is added."""
         if speed not in self.known:
-            system = self.model.at(speed)
-            basis = self.model.moving_basis
+            if self.between is not None:
+                return self.between(speed)
+            system, basis = self.model.at(speed), self.model.moving_basis
             self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
 
     def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
         """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
         system, h = self.system(speed), len(multiples)
-        H = np.zeros((h, system.size, h, system.size), dtype=complex)
-        for a, first in enumerate(multiples):
-            H[a, :, a] -= (first * speed) ** 2 * system.M
-            for b, second in enumerate(multiples):
-                n = round(first - second)
-                if n in system.K:
-                    H[a, :, b] += system.K[n]
-                if n in system.D and second:
-                    H[a, :, b] += 1j * second * speed * system.D[n]
+        K = dict(system.K)
+        if self.factor:
+            add(K, self.unit, self.factor)
+        H = _blocks(multiples, K)
+        for b, f in enumerate(multiples):
+            for a, n in enumerate(_orders(multiples)[:, b]):
+                if n in system.D and f:
+                    H[a, :, b] += (1j * f * speed) * system.D[n]
+            H[b, :, b] -= (f * speed) ** 2 * system.M
         H = H.reshape(h * system.size, -1)
         # what damps and what drives a motion is the other part
         return 0.5 * (H + H.conj().T)
 
-    def motions(self, vectors: np.ndarray) -> np.ndarray:
-        """Return harmonics (h, c, n) in all coordinates of the model."""
+    def motions(self, vector: np.ndarray, multiples: np.ndarray) -> np.ndarray:
+        """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
         basis = self.model.moving_basis
-        return vectors if basis is None else np.einsum("ck,hkn->hcn", basis, vectors)
+        harmonics = vector.reshape(len(multiples), -1, *vector.shape[1:])
+        return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
 
     def coordinates(self, vectors: np.ndarray) -> np.ndarray:
-        """Return harmonics (h, k) in the coordinates of H."""
+        """Return harmonics (h, c) in the coordinates of H, (h, k)."""
         basis = self.model.moving_basis
         return vectors if basis is None else vectors @ basis
 
 
-@one_thread()
-def resonances(
-    model: LinearModel,
-    content: Content,
-    order: float,
-    diameters: Sequence[int],
-    limit: float | None,
-    tolerance: float,
-) -> Resonances:
-    """Return all critical speeds of an undamped model up to a limit.
+def _orders(multiples: np.ndarray) -> np.ndarray:
+    """Return the differences (h, h) of frequencies, whole numbers."""
+    return np.subtract.outer(multiples, multiples).round().astype(int)
 
-    Parameters
+
+def _blocks(multiples: np.ndarray, terms: Terms) -> np.ndarray:
+    """Return Fourier terms (k, k) as the matrix that couples frequencies, (h, k, h, k)."""
+    orders, k = _orders(multiples), len(terms[0])
+    H = np.zeros((len(orders), k, len(orders), k), dtype=complex)
+    for a, row in enumerate(orders):
+        for b, n in enumerate(row):
+            if n in terms:
+                H[a, :, b] = terms[n]
+    return H
+
+
+@dataclass(eq=False)
+class Search:
+    """The search for critical speeds of an undamped model.
+
+    Attributes
     ----------
-    model : LinearModel
+    stiffness : Stiffness
     content : Content
     order : float
         p ≥ 0.
@@ -147,80 +166,252 @@ def resonances(
         Largest speed [rad/s]; needed where the stiffness varies with it.
     tolerance : float
         Largest relative change of a speed by further harmonics.
-
-    Raises
-    ------
-    ValueError
-        Where the limit is needed and missing, or a support has a negative stiffness.
+    is_exact : bool
+        Whether films are solved at each critical speed, too; else they are smooth between some 200
+        speeds.
+    lost : list of float
+        Speeds that did not settle.
     """
-    if limit is None and model.stiffness_varies:
-        raise ValueError(
-            "max_speed: a system that varies with the speed needs the largest speed of interest "
-            "[rad/s]"
-        )
-    stiffness = Stiffness(model)
-    sampled = _Sampled(stiffness, limit) if model.stiffness_varies else None
-    step = stiffness.system(sampled.grid[-1] if sampled else 1.0).step
-    found: list[tuple[float, np.ndarray, np.ndarray]] = []
-    lost: list[float] = []
-    for center in _centers(model, order, diameters, step):
-        few = center + step * np.arange(-_FEW, _FEW + 1) if step else np.array([center])
-        if sampled is not None:
-            pairs = sampled.zeros(few)
-        else:
-            pairs = _direct(*_quadratic(stiffness, few))
-        pairs = [pair for pair in pairs if limit is None or pair[0] <= limit]
-        speeds, vectors = _turning(pairs, few, stiffness, content, order, diameters)
-        for speed, x in zip(speeds, vectors, strict=True):
-            multiples = few
+
+    stiffness: Stiffness
+    content: Content
+    order: float
+    diameters: Sequence[int]
+    limit: float | None
+    tolerance: float
+    is_exact: bool = True
+    lost: list[float] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.limit is None and self.stiffness.model.stiffness_varies:
+            raise ValueError(
+                "max_speed: a system that varies with the speed needs the largest speed of "
+                "interest [rad/s]"
+            )
+
+    @one_thread()
+    def resonances(self, factor: float = 0.0) -> list[Resonance]:
+        """Return all critical speeds up to the limit, with `factor` times what is added.
+
+        Raises
+        ------
+        ValueError
+            Where a support has a negative stiffness.
+        """
+        varies, step = self.stiffness.model.stiffness_varies, self._step
+        exact = replace(self.stiffness, factor=factor)
+        stiffness = replace(exact, between=self._between) if varies else exact
+        found: list[Resonance] = []
+        for center in self._centers(step):
+            few = center + step * np.arange(-_FEW, _FEW + 1) if step else np.array([center])
+            met = Excitation(self.content, self.order, self.diameters, few)
+            pairs = self._zeros(stiffness, met) if varies else _direct(*_quadratic(stiffness, few))
+            pairs = [
+                (speed, stiffness.motions(x, few))
+                for speed, x in pairs
+                if self.limit is None or speed <= self.limit
+            ]
+            answers = [Resonance(speed, x, few) for speed, x in met.answering(pairs)]
             if step:
-                speed, x, multiples = _settled(stiffness, speed, x, few, step, tolerance)
-                if x is None:
-                    lost.append(speed)
+                settled = [_settled(stiffness, one, step, self.tolerance) for one in answers]
+                self.lost += [a.speed for a, b in zip(answers, settled, strict=True) if b is None]
+                answers = [one for one in settled if one is not None]
+            found += answers
+        if stiffness.between is not None and self.is_exact:
+            found = [_polished(exact, one) for one in found]
+        return found
+
+    @cached_property
+    def _step(self) -> int:
+        varies = self.stiffness.model.stiffness_varies
+        return self.stiffness.system(self.known[0][-1] if varies else 1.0).step
+
+    def _centers(self, step: int) -> list[float]:
+        """Return the frequencies over Ω at which waves answer; of those that are coupled, one."""
+        model = self.stiffness.model
+        ratios = {model.ratios[body.name] for body in rotors_of(model.bodies)}
+        shifts = []
+        for n in self.diameters:
+            for sign in (1, -1) if n and self.order else (1,):  # at order 0 they are conjugates
+                # waves of more diameters stay in the axes of their rotor
+                shifts += [sign * n * r for r in ratios] if n > 1 else [sign * n * model.turns]
+        centers = sorted({self.order - shift for shift in shifts}, key=lambda f: (abs(f), f))
+        first: dict[float, float] = {}
+        for f in centers:
+            first.setdefault(round(f % step, 9) % step if step else f, f)
+        return list(first.values())
+
+    @cached_property
+    def known(self) -> tuple[list[float], list[Pair]]:
+        """Speeds with equations, and those of them that are neighbours. Others cost a warning."""
+        model = self.stiffness.model
+        count = _BRACKETS // (1 + model.turns)
+        first = self.limit / count
+        kinks = model.table_speeds
+        kinks = kinks[(kinks > first) & (kinks < self.limit)]
+        slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
+        wanted = np.unique([*np.linspace(first, self.limit, count), *slow[slow > first], *kinks])
+        wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
+        refused, error = self._refused(wanted)
+        if len(refused) == len(wanted):
+            raise error
+        if refused:
+            _warn_of_refused(wanted, refused, error)
+        else:  # as far down as there are equations
+            lower = slow[slow < first]
+            last = max(self._refused(lower)[0], default=0.0)
+            wanted = np.r_[lower[lower > last], wanted]
+        near = [pair for pair in pairwise(wanted.tolist()) if not refused.intersection(pair)]
+        return [speed for speed in wanted.tolist() if speed not in refused], near
+
+    def _refused(self, speeds: np.ndarray) -> tuple[set[float], Exception | None]:
+        """Return the speeds without equations, and why the first of them has none."""
+        refused, first = set(), None
+        for speed in speeds.tolist():
+            try:
+                self.stiffness.system(speed)
+            except NO_EQUATIONS as error:
+                refused.add(speed)
+                first = first or error
+        return refused, first
+
+    @cached_property
+    def _between(self) -> Callable[[float], PeriodicSystem] | None:
+        """Equations between the speeds at which films are solved, which are smooth over the speed.
+
+        None for tables, which have kinks.
+        """
+        grid, near = self.known
+        if self.stiffness.model.table_speeds.size or len(near) + 1 < max(len(grid), 4):
+            return None
+        systems = [self.stiffness.system(speed) for speed in grid]
+        orders = {n for system in systems for n in system.K}
+        K = {n: CubicSpline(np.log(grid), [s.K.get(n, 0.0 * s.M) for s in systems]) for n in orders}
+        last = systems[-1]
+
+        def between(speed: float) -> PeriodicSystem:
+            D = {n: X * (speed / last.speed) for n, X in last.D.items()}
+            stiffness = {n: curve(np.log(speed)) for n, curve in K.items()}
+            return PeriodicSystem(speed, last.M, D, stiffness)
+
+        return between
+
+    @cached_property
+    def _samples(self) -> dict[bytes, tuple]:
+        """H over the grid for given frequencies."""
+        return {}
+
+    def _sampled(self, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return a basis without motions that are free at every speed, H in it, and the unit.
+
+        Their signs are rounding. Real where the frequencies lie on both sides of zero alike.
+        """
+        key = multiples.tobytes()
+        if key not in self._samples:
+            plain, grid = self.stiffness, self.known[0]
+            H = np.array([plain(speed, multiples) for speed in grid])
+            unit = _blocks(multiples, plain.unit or {0: 0.0 * plain.system(grid[0]).M})
+            unit, h = unit.reshape(H[0].shape), len(multiples)
+            basis, is_real = np.eye(len(unit)), False
+            if h % 2 and np.array_equal(multiples, -multiples[::-1]):
+                basis, is_real = np.kron(real_waves(h), np.eye(len(unit) // h)), True
+            within, unit = (basis.conj().T @ X @ basis for X in (H, unit))
+            if is_real:
+                within, unit = within.real, unit.real
+            looked = [within[i] for i in (0, len(grid) // 2, -1)] + [unit]
+            stack = np.vstack([X / (np.linalg.norm(X) or 1.0) for X in looked])
+            _, sizes, rows = np.linalg.svd(stack, full_matrices=False)
+            held = rows[sizes > _FREE * len(rows)].conj().T
+            within, unit = (held.conj().T @ X @ held for X in (within, unit))
+            self._samples[key] = basis @ held, within, unit
+        return self._samples[key]
+
+    def _zeros(self, stiffness: Stiffness, met: Excitation) -> list[Pair]:
+        """Return the speeds at which H is singular, each with its null vector.
+
+        Only those with a part that the excitation meets, as far as is seen close to them.
+        """
+        multiples, (grid, near) = met.multiples, self.known
+        held, within, unit = self._sampled(multiples)
+        within = within + stiffness.factor * unit
+        place = {speed: i for i, speed in enumerate(grid)}
+        signs = np.linalg.eigvalsh(within)
+
+        def matrix(speed: float) -> np.ndarray:
+            H = held.conj().T @ stiffness(speed, multiples) @ held
+            return H if np.iscomplexobj(within) else H.real
+
+        places = []
+        for low, high in near:
+            before, after = signs[place[low]], signs[place[high]]
+            for j in np.flatnonzero((before < 0.0) != (after < 0.0)).tolist():
+                ends = {low: before[j], high: after[j]}
+                at = low + (high - low) * before[j] / (before[j] - after[j])
+                beside = np.linalg.eigh(matrix(at))[1][:, max(j - 1, 0) : j + 2]
+                share, _ = met.shares(stiffness.motions(held @ beside, multiples))
+                if share.max() < 0.5 * _SHARE:
                     continue
-            found.append((speed, x, multiples))
-    if lost:
-        shown = ", ".join(f"{speed:.5g}" for speed in sorted(lost))
-        warnings.warn(
-            f"critical speeds: near {shown} rad/s they still change with harmonics up to the "
-            f"{_MOST * step}th, and are left out",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    return _named(found, stiffness, content)
+
+                def value(speed: float, ends: dict = ends, j: int = j) -> float:
+                    return ends[speed] if speed in ends else np.linalg.eigvalsh(matrix(speed))[j]
+
+                places.append((brentq(value, low, high, xtol=_FINE * self.limit, rtol=_FINE), j))
+        places.sort()
+        found: list[Pair] = []
+        for group in same_speed([speed for speed, _ in places]):
+            _, vectors = np.linalg.eigh(matrix(places[group[0]][0]))
+            found += [(places[i][0], held @ vectors[:, places[i][1]]) for i in group]
+        return found
+
+    def warn(self) -> None:
+        """Warn of critical speeds that are left out."""
+        if self.lost:
+            shown = ", ".join(f"{speed:.5g}" for speed in sorted(self.lost)[:5])
+            warnings.warn(
+                f"critical speeds near {shown}{' …' * (len(self.lost) > 5)} rad/s still change "
+                f"with harmonics up to the {_MOST * self._step}th, and are left out",
+                UserWarning,
+                stacklevel=user_level(),
+            )
 
 
-def _centers(
-    model: LinearModel, order: float, diameters: Sequence[int], step: int
-) -> list[float]:
-    """Return the frequencies over Ω at which waves answer; of those that are coupled, one."""
-    ratios = {model.ratios[body.name] for body in rotors_of(model.bodies)}
-    shifts = []
-    for n in diameters:
-        for sign in (1, -1) if n and order else (1,):  # at order 0 a motion and its conjugate
-            # waves of more diameters stay in the axes of their rotor
-            shifts += [sign * n * r for r in ratios] if n > 1 else [sign * n * model.turns]
-    centers = sorted({order - shift for shift in shifts}, key=lambda f: (abs(f), f))
-    if not step:
-        return centers
-    first = {}
-    for f in centers:
-        first.setdefault(round(f % step, 9) % step, f)
-    return list(first.values())
+def _warn_of_refused(wanted: np.ndarray, refused: set[float], error: Exception) -> None:
+    """Warn of ranges in which no critical speeds are looked for."""
+    ranges: list[list[float]] = []
+    for before, speed in pairwise([0.0, *wanted.tolist()]):
+        if speed in refused:
+            if not ranges or ranges[-1][1] != before:
+                ranges.append([before if before == 0.0 else speed, speed])
+            ranges[-1][1] = speed
+    shown = " and ".join(f"from {low:.4g} to {high:.4g} rad/s" for low, high in ranges[:3])
+    warnings.warn(
+        f"critical speeds: {shown}{' …' * (len(ranges) > 3)} none are looked for: {error}",
+        UserWarning,
+        stacklevel=user_level(),
+    )
 
 
-# ------------------------------------------------------------------ singular stiffness
+def same_speed(speeds: Sequence[float]) -> list[list[int]]:
+    """Return places of ascending speeds in groups of one speed."""
+    groups: list[list[int]] = []
+    for i, speed in enumerate(speeds):
+        if groups and speed - speeds[groups[-1][-1]] <= _SAME * speed:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return groups
 
 
 def _quadratic(stiffness: Stiffness, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return K0 and B of ``H = K0 − Ω² B``."""
     K0 = stiffness(_AT_REST, multiples)
     M = stiffness.system(_AT_REST).M
-    speed = float(np.sqrt(np.abs(K0).max() / max(np.abs(M).max(initial=0.0), 1e-300))) or 1.0
+    speed = float(np.sqrt(np.abs(K0).max() / np.abs(M).max())) if len(M) else 0.0
+    speed = speed or 1.0
     return K0, (K0 - stiffness(speed, multiples)) / speed**2
 
 
-def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
+def _direct(A: np.ndarray, B: np.ndarray) -> list[Pair]:
     """Solve ``A φ = Ω² B φ`` for positive Ω²; A Hermitian, not negative, B Hermitian.
 
     Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
@@ -244,145 +435,62 @@ def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
     return list(zip(speeds.tolist(), (W @ shapes[:, positive]).T, strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class _Sampled:
-    """Zeros of the eigenvalues of H over the speed, between speeds that have equations."""
-
-    stiffness: Stiffness
-    limit: float
-    grid: list[float] = field(init=False)
-    neighbours: list[tuple[float, float]] = field(init=False)
-
-    def __post_init__(self) -> None:
-        model, first = self.stiffness.model, self.limit / _BRACKETS
-        even = np.linspace(first, self.limit, _BRACKETS)
-        kinks = model.table_speeds
-        kinks = kinks[(kinks > first) & (kinks < self.limit)]
-        wanted = np.unique([*even, *kinks])
-        refused, error = self._refused(wanted)
-        if len(refused) == len(wanted):
-            raise error
-        if not refused:  # as far down as there are equations
-            lower = first * 0.5 ** np.arange(_HALVES, 0, -1)
-            failed, _ = self._refused(lower)
-            lower = lower[lower > max(failed, default=0.0)]
-            wanted = np.r_[lower, wanted]
-        known = [speed for speed in wanted.tolist() if speed not in refused]
-        place = {speed: i for i, speed in enumerate(wanted.tolist())}
-        near = [(a, b) for a, b in pairwise(known) if place[b] == place[a] + 1]
-        object.__setattr__(self, "grid", known)
-        object.__setattr__(self, "neighbours", near)
-        if refused:
-            _warn_of_refused(wanted, refused, error)
-
-    def _refused(self, speeds: np.ndarray) -> tuple[set[float], Exception | None]:
-        """Return the speeds without equations, and why the first of them has none."""
-        refused, first = set(), None
-        for speed in speeds.tolist():
-            try:
-                self.stiffness.system(speed)
-            except NO_EQUATIONS as error:
-                refused.add(speed)
-                first = first or error
-        return refused, first
-
-    def zeros(self, multiples: np.ndarray) -> list[tuple[float, np.ndarray]]:
-        """Return the speeds at which H is singular, each with its null vector."""
-        held = self._held(multiples)
-
-        def values(speed: float) -> np.ndarray:
-            H = self.stiffness(speed, multiples)
-            return np.linalg.eigvalsh(held.conj().T @ H @ held)
-
-        signs = {speed: values(speed) for speed in self.grid}
-        places = []
-        for low, high in self.neighbours:
-            for j in np.flatnonzero((signs[low] < 0.0) != (signs[high] < 0.0)):
-                def value(speed: float, j: int = j) -> float:
-                    return signs[speed][j] if speed in signs else values(speed)[j]
-
-                at = brentq(value, low, high, xtol=_FINE * self.limit, rtol=_FINE)
-                places.append((at, int(j)))
-        places.sort()
-        found = []
-        for group in same_speed([speed for speed, _ in places]):
-            H = self.stiffness(places[group[0]][0], multiples)
-            _, vectors = np.linalg.eigh(held.conj().T @ H @ held)
-            found += [(places[i][0], held @ vectors[:, places[i][1]]) for i in group]
-        return found
-
-    def _held(self, multiples: np.ndarray) -> np.ndarray:
-        """Return a basis without motions that are free at every speed: rounding has their signs."""
-        chosen = {self.grid[0], self.grid[len(self.grid) // 2], self.grid[-1]}
-        parts = [self.stiffness(speed, multiples) for speed in sorted(chosen)]
-        stack = np.vstack([H / max(np.linalg.norm(H), 1e-300) for H in parts])
-        _, sizes, rows = np.linalg.svd(stack, full_matrices=False)
-        return rows[sizes > _FREE * len(rows)].conj().T
-
-
-def _warn_of_refused(wanted: np.ndarray, refused: set[float], error: Exception) -> None:
-    """Warn of ranges in which no critical speeds are looked for."""
-    ranges: list[list[float]] = []
-    for i, speed in enumerate(wanted.tolist()):
-        if speed in refused:
-            if not (i and wanted[i - 1] in refused):
-                ranges.append([speed, speed] if i else [0.0, speed])
-            ranges[-1][1] = speed
-    shown = " and ".join(f"from {low:.4g} to {high:.4g} rad/s" for low, high in ranges[:3])
-    warnings.warn(
-        f"critical speeds: {shown}{' …' if len(ranges) > 3 else ''} none are looked for: {error}",
-        UserWarning,
-        stacklevel=user_level(),
-    )
-
-
-def same_speed(speeds: Sequence[float]) -> list[list[int]]:
-    """Return places of ascending speeds in groups of one speed."""
-    groups: list[list[int]] = []
-    for i, speed in enumerate(speeds):
-        if groups and speed - speeds[groups[-1][-1]] <= _SAME * speed:
-            groups[-1].append(i)
-        else:
-            groups.append([i])
-    return groups
-
-
 # ------------------------------------------------------------------ which motions answer
 
 
-def _turning(
-    pairs: list[tuple[float, np.ndarray]],
-    multiples: np.ndarray,
-    stiffness: Stiffness,
-    content: Content,
-    order: float,
-    diameters: Sequence[int],
-) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return speeds and harmonics (h, k) of the motions that turn with the excitation.
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """Which motions an excitation of the order p meets, at frequencies `multiples` (h,) of Ω."""
 
-    Of a motion and its conjugate, one.
-    """
-    if not pairs:
-        return np.zeros(0), []
-    pairs = sorted(pairs, key=lambda pair: pair[0])
-    speeds = np.array([speed for speed, _ in pairs])
-    vectors = np.column_stack([vector for _, vector in pairs])
-    vectors = stiffness.motions(vectors.reshape(len(multiples), -1, len(pairs)).astype(complex))
-    vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
-    seen = multiples[:, None] + content.shifts[None, :]
-    for group in same_speed(speeds.tolist()):
-        if len(group) > 1:
-            vectors[:, :, group] = _one_sense(vectors[:, :, group], seen, content)
-    energy = _energy(content.forms, vectors)
-    standing, total = (_energy(F[None], vectors)[:, 0] for F in (content.standing, content.whole))
-    total = np.maximum(total.sum(axis=0), 1e-300)
-    meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(np.abs(content.waves), diameters)
-    turning = np.sum(energy * meets[..., None], axis=(0, 1))
-    # what stands still beside the rotor answers to all
-    turning += (np.abs(np.abs(multiples) - order) < 1e-9) @ standing
-    conjugate = np.einsum("hw,hwn->n", seen, energy) < -_CONJUGATE * order * total
-    kept = np.flatnonzero((turning >= _SHARE * total) & ~conjugate)
-    return speeds[kept], [vectors[:, :, column] for column in kept]
+    content: Content
+    order: float
+    diameters: Sequence[int]
+    multiples: np.ndarray
+
+    @property
+    def seen(self) -> np.ndarray:
+        """Frequencies over Ω with which harmonics of each wave are seen from outside, (h, w)."""
+        return self.multiples[:, None] + self.content.shifts[None, :]
+
+    def shares(self, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the share of energy of motions (h, k, n) that turns so, and the mean order, (n,).
+
+        The mean order is over p; it is negative of the conjugate of another motion.
+        """
+        content, p = self.content, self.order
+        energy = _energy(content.forms, vectors)
+        standing, total = (
+            _energy(F[None], vectors)[:, 0] for F in (content.standing, content.whole)
+        )
+        total = np.maximum(total.sum(axis=0), 1e-300)
+        meets = (np.abs(np.abs(self.seen) - p) < 1e-9) & np.isin(
+            np.abs(content.waves), self.diameters
+        )
+        turning = np.sum(energy * meets[..., None], axis=(0, 1))
+        # what stands still beside the rotor answers to all
+        turning += (np.abs(np.abs(self.multiples) - p) < 1e-9) @ standing
+        mean = np.einsum("hw,hwn->n", self.seen, energy)
+        return turning / total, mean / (total * (p or 1.0))
+
+    def answering(
+        self, pairs: list[tuple[float, np.ndarray]]
+    ) -> list[tuple[float, np.ndarray]]:
+        """Return those of speeds and harmonics (h, k) whose motions turn with the excitation.
+
+        Of a motion and its conjugate, one.
+        """
+        if not pairs:
+            return []
+        pairs = sorted(pairs, key=lambda pair: pair[0])
+        speeds = [speed for speed, _ in pairs]
+        vectors = np.stack([vector for _, vector in pairs], axis=2).astype(complex)
+        vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
+        for group in same_speed(speeds):
+            if len(group) > 1:
+                vectors[:, :, group] = _one_sense(vectors[:, :, group], self.seen, self.content)
+        share, mean = self.shares(vectors)
+        kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
+        return [(speeds[i], vectors[:, :, i]) for i in kept]
 
 
 def _energy(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -440,64 +548,55 @@ def refined(
 
 
 def _settled(
-    stiffness: Stiffness,
-    speed: float,
-    x: np.ndarray,
-    multiples: np.ndarray,
-    step: int,
-    tolerance: float,
-) -> tuple[float, np.ndarray | None, np.ndarray]:
+    stiffness: Stiffness, found: Resonance, step: int, tolerance: float
+) -> Resonance | None:
     """Add harmonics to a motion until its critical speed does not change; None where it does."""
-    x, last = stiffness.coordinates(x), speed
+    x, last, multiples = stiffness.coordinates(found.vectors), found.speed, found.multiples
     for _ in range(_FEW, _MOST):
         multiples = np.r_[multiples[0] - step, multiples, multiples[-1] + step]
-        given = np.pad(x, ((1, 1), (0, 0)))
+        x = np.pad(x, ((1, 1), (0, 0)))
         try:
-            new, vector = refined(
-                lambda s, f=multiples: stiffness(s, f), last, given.ravel()
-            )
+            new, vector = refined(lambda s, f=multiples: stiffness(s, f), last, x.ravel())
         except NO_EQUATIONS:
-            break
-        if np.isnan(new):
-            break
-        x, change, last = vector.reshape(given.shape), abs(new - last), new
+            return None
+        x, change, last = vector.reshape(x.shape), abs(new - last), new
         if change <= tolerance * new:
-            return new, stiffness.motions(x[:, :, None])[:, :, 0], multiples
-    return speed, None, multiples
+            return Resonance(new, stiffness.motions(vector, multiples), multiples)
+        if np.isnan(new):
+            return None
+    return None
 
 
-# ------------------------------------------------------------------ names
+def _polished(stiffness: Stiffness, found: Resonance) -> Resonance:
+    """Return a critical speed with the films that are there."""
+    x = stiffness.coordinates(found.vectors).ravel()
+    try:
+        speed, vector = refined(lambda s: stiffness(s, found.multiples), found.speed, x)
+    except NO_EQUATIONS:
+        return found
+    if not abs(speed - found.speed) < _OFF * found.speed:
+        return found
+    return Resonance(speed, stiffness.motions(vector, found.multiples), found.multiples)
 
 
-def _named(
-    found: list[tuple[float, np.ndarray, np.ndarray]], stiffness: Stiffness, content: Content
-) -> Resonances:
-    """Return critical speeds in order, with the names of their motions."""
-    speeds = np.array([speed for speed, _, _ in found])
+def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance], Names]:
+    """Return critical speeds, ascending, those of one speed from backward to forward waves."""
     rotor = np.zeros(len(found))
     codes, diameters = np.zeros((2, len(found)), dtype=np.int64)
     alike: dict[tuple, list[int]] = {}
-    for i, (_, _, multiples) in enumerate(found):
-        alike.setdefault(tuple(multiples), []).append(i)
+    for i, one in enumerate(found):
+        alike.setdefault(tuple(one.multiples), []).append(i)
     for multiples, places in alike.items():
         center = multiples[len(multiples) // 2]
         orders = np.round(np.array(multiples) - center).astype(int)
-        vectors = np.stack([found[i][1] for i in places], axis=2)
+        vectors = np.stack([found[i].vectors for i in places], axis=2)
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         # all frequencies go with the speed, so that one speed stands for all
         values = np.full(len(places), 1j * center)
-        named = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
-        codes[places], diameters[places] = named.codes, named.diameters
-        rotor[places] = named.rotor
-    ascending = np.argsort(speeds, kind="stable")
-    senses = signed_diameters(codes, diameters)
-    row = [
-        ascending[i]
-        for group in same_speed(speeds[ascending].tolist())
-        for i in sorted(group, key=lambda i: senses[ascending[i]])
-    ]
-    row = np.array(row, dtype=int)
-    return Resonances(
-        np.sort(speeds), rotor[row], codes[row], diameters[row],
-        tuple(found[i][1] for i in row), tuple(found[i][2] for i in row),
-    )  # fmt: skip
+        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
+        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+    ascending = np.argsort([one.speed for one in found], kind="stable")
+    senses = signed_diameters(codes, diameters)[ascending]
+    groups = same_speed([found[i].speed for i in ascending])
+    row = [ascending[i] for group in groups for i in sorted(group, key=senses.__getitem__)]
+    return [found[i] for i in row], Names(*(each[row] for each in (rotor, codes, diameters)))
