@@ -126,9 +126,9 @@ class Content:
         return cls(np.array(waves), np.array(shifts), np.array(spins), np.array(forms), **parts,
                    standing=standing)  # fmt: skip
 
-    def named(self, motions: Motions) -> Named:
-        """Return motions with their names."""
-        motions = self._as_waves(motions)
+    def named(self, motions: Motions, *, apart: bool = False) -> Named:
+        """Return motions with their names; repeated ones are waves of one sense where `apart`."""
+        motions = motions if apart else self._as_waves(motions)
         values, speed = motions.values, motions.speed
         nu = np.abs(np.nan_to_num(values.imag))
         vectors = np.where(values.imag < 0.0, motions.vectors[::-1].conj(), motions.vectors)
