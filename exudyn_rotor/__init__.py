@@ -42,10 +42,10 @@ from exudyn_rotor.html_report import report
 from exudyn_rotor.linear.modal.campbell import Campbell, campbell
 from exudyn_rotor.linear.modal.critical_speed_map import CriticalSpeedMap, critical_speed_map
 from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds, critical_speeds
-from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.links import Link
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.links import Link
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.linear.response.base_response import BaseResponse, base_response
 from exudyn_rotor.linear.response.harmonic_loads import BaseAcceleration, HarmonicForce
 from exudyn_rotor.linear.response.responses import HarmonicResponse, UnbalanceResponse
