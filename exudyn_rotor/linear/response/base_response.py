@@ -158,7 +158,8 @@ def base_response(
         Largest change of a motion by halved steps, relative to the largest motion. Constant
         equations are followed exactly with any step.
     axes : {'auto', 'inertial', 'rotor'}
-        Axes of the equations, see :func:`linear_model`.
+        Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
+        nothing is averaged.
 
     Raises
     ------
@@ -198,6 +199,7 @@ def base_response(
         raise ValueError(refusal)
     warn_of_structural_damping(model, "base_response computes motion over time")
     warn_of_left_out_stiffening(model, speed)
+    model = model.for_responses
     observed = places(model, at, speed)
     time, motion = ShakenRotor.of(model, speed, record, observed).converged(end, tolerance)
     motion[:, [one.is_node for one in observed], 3:] = np.nan
