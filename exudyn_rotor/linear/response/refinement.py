@@ -31,7 +31,8 @@ def refined(
 ) -> tuple[np.ndarray, Solved]:
     """Add points until the phase of every motion turns little between neighbours.
 
-    No point is added beside a value without a steady motion.
+    No point is added where there is no steady motion, as at a resonance without damping, nor
+    beside such a value.
 
     Parameters
     ----------
@@ -50,6 +51,7 @@ def refined(
         All speeds or frequencies, and their solutions.
     """
     narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
+    given = values
     for _ in range(_MOST_ROUNDS):
         wide = (np.diff(values) > narrowest) & (_turns(phasors(solved)) > _MOST_TURN)
         between = np.flatnonzero(wide)[: most - len(values)]
@@ -59,7 +61,8 @@ def refined(
         order = np.argsort(np.r_[values, added], kind="stable")
         solved = solved + solve(added)
         values, solved = np.r_[values, added][order], [solved[i] for i in order]
-    return values, solved
+    known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
+    return values[known], [one for one, is_known in zip(solved, known, strict=True) if is_known]
 
 
 def _turns(phasors: np.ndarray) -> np.ndarray:

@@ -146,10 +146,10 @@ class ShakenRotor:
             for n in range(count):
                 stepped = weights[n] @ (tall @ states[n]).reshape(-1, size)
                 states[n + 1] = stepped + given[n]
-        motion = np.zeros((count + 1, len(self.seen), 6))
-        for place, seen in enumerate(self.seen):
-            for n, U in seen.items():
-                motion[:, place] += (waves[n][:, None] * (states @ U.T)).real
+            motion = np.zeros((count + 1, len(self.seen), 6))
+            for place, seen in enumerate(self.seen):
+                for n, U in seen.items():
+                    motion[:, place] += (waves[n][:, None] * (states @ U.T)).real
         return times, motion
 
     def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
