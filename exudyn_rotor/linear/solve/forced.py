@@ -16,9 +16,10 @@ from exudyn_rotor.linear.equations import PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
-_FREE = 1e-12  # of matrices with diagonals of one: a motion that nothing resists
+_FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resists
+_NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
-_SINGULAR = 1e-14  # reciprocal condition of equations without a solution
+_SINGULAR = 1e-13  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
 
 
@@ -151,7 +152,7 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
     scaled, b = scale[:, None] * A * scale, scale * load
     U, values, Vh = np.linalg.svd(scaled)
-    free = values <= _FREE * values.max(initial=0.0)
+    free = values <= _NONE * values.max(initial=0.0)
     if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):
         return np.full(len(load), np.nan, dtype=complex)
     kept = ~free
