@@ -9,9 +9,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
@@ -21,6 +21,10 @@ from exudyn_rotor.linear.response.refinement import HALF_POWER, STILL, resolved_
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 _CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
 _ONE_LABEL = 0.01  # of the range of speeds: peaks so near each other have one label

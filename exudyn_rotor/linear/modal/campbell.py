@@ -3,101 +3,96 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear import options
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
-from exudyn_rotor.linear.modal.damping import damping_of, decays_alone, oscillates
-from exudyn_rotor.linear.modal.listing import listed, ranks
-from exudyn_rotor.linear.modal.mesh_pairs import pair_splits
-from exudyn_rotor.linear.modal.tracking import Tracks, track
-from exudyn_rotor.linear.modal.whirl import STATIC, WhirlContent, named_still
-from exudyn_rotor.linear.models.basis.basis_error import BasisError, judged
-from exudyn_rotor.linear.models.linear_model import (
+from exudyn_rotor.linear.modal.tracking import track
+from exudyn_rotor.linear.modal.whirl_new import (
+    OVERDAMPED,
+    UNKNOWN,
+    Content,
+    Named,
+    damping_of,
+    signed_diameters,
+)
+from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.models.protocol import LinearModel, Space
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import checked_speeds, sweep
+from exudyn_rotor.sweep import checked_speeds
 from exudyn_rotor.theory.rotating_axes import FRAMES
-from exudyn_rotor.threads import meanwhile, one_thread
 from exudyn_rotor.units import Units
 
-_FULL_MODES = 10  # that are sought of a large SolidRotor by default
-_SLOW = 1.0  # rad/s
-_MOSTLY = 0.9  # share of a motion's energy
+_DIGITS = 9  # of the largest value in a row: what is sorted
+_FEWEST = 6  # modes that are listed of a basis with halves of pairs
 
 
 def campbell(
     target: Target,
     speeds: ArrayLike,
     *,
-    supports: Sequence[Support] = (),
+    supports: Sequence[Given] | Given = (),
+    foundation: Foundation | None = None,
     body: RotorBody | Sequence[RotorBody] | None = None,
     modes: int | None = None,
     frame: str = "inertial",
     stiffening: str = "auto",
+    axes: str = "auto",
     allow_negative: bool = False,
-    tolerance: float = 1e-8,
-    residual: float = 1e-5,
+    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
-    executor: Executor | None = None,
     progress: bool = False,
 ) -> Campbell:
     """Compute the eigenfrequencies of a rotor on supports, or of a scene, over spin speed.
 
     Solves ``(λ²M + λ(D + 2ΩG) + K + Ω²(K2 − C)) x = 0``, the homogeneous Eq. (105) or (109) with
-    supports and centrifugal stiffening; by Hill's method where supports that stand still differ
-    in their two directions. Every conjugate pair counts once, and so does every pair of real
-    eigenvalues: all modes are found, rigid and repeated ones included, or an error is raised.
+    supports and centrifugal stiffening, in axes in which it is constant (:func:`linear_model`).
+    Every conjugate pair counts once, and so does every pair of real eigenvalues.
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
-        See :func:`linear_model`. A SolidRotor of more than 600 degrees of freedom is solved for
-        its lowest modes, each checked by the residual of the full equations.
+    target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or LinearModel
+        See :func:`linear_model`.
     speeds : array_like, shape (s,)
         Ascending spin speeds [rad/s].
-    supports : sequence of Support, optional
+    supports : sequence of Support or bearings, optional
         Of a rotor.
-    body : RotorBody or sequence of these, optional
+    foundation : Foundation, optional
+        What carries them; the ground by default.
+    body : RotorBody or sequence of RotorBody, optional
         The rotor in a scene, or all of several, see :func:`linear_model`.
     modes : int, optional
         How many modes to keep: those with the lowest frequencies in the `frame` at the first
         speed, followed from there, overdamped ones and those of voids in films last. All by
-        default, 10 of a large SolidRotor; that is solved for as many more at every speed as move at
-        up to the highest of their frequencies with one nodal diameter at most.
+        default; of a basis that cuts pairs of bending modes in halves, those below the first half.
     frame : {'inertial', 'rotor'}
         In which modes are chosen, stand in order in the result, and are drawn.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         Centrifugal stiffening; 'none' gives the paper's equations, 'full' needs a rotor with
         prestress (:meth:`SolidRotor.prestress`).
+    axes : {'auto', 'inertial', 'rotor'}
+        Of the equations, see :func:`linear_model`.
     allow_negative : bool, optional
         Accept speeds below zero.
     tolerance : float, optional
-        Largest error of an eigenvalue by the harmonics that Hill's method leaves out, relative to
-        the larger of its size and the frequency of the turning coefficients.
-    residual : float, optional
-        Largest relative residual of a large SolidRotor; its eigenvalues err by about the square.
+        Largest relative error of an eigenvalue by the harmonics that are left out of periodic
+        equations, of an uneven rotor on uneven supports.
     accuracy : float, optional
         Relative error of frequencies and growth by the basis of a reduced rotor, estimated, above
         which a warning is given: see :attr:`Campbell.basis_errors`. It looks at the modes asked
         for by `modes`; without, at those up to twice the highest speed and at the lowest six. None
         for no estimate.
-    executor : concurrent.futures.Executor, optional
-        Computes the modes at the speeds. A large SolidRotor does not use it: its speeds share one
-        subspace.
     progress : bool, optional
         Show a progress bar.
 
@@ -106,26 +101,17 @@ def campbell(
     TypeError
         If the target, the body or a support is of another kind.
     ValueError
-        If speeds are not finite, ascending and non-negative, an interface is unknown, or modes
-        are lost.
+        If speeds are not finite, ascending and non-negative, an interface is unknown, or nothing
+        can be computed at any speed. A single speed that fails is NaN, with a warning.
 
     Notes
     -----
     A spin that no support holds has the frequency 0 and no growth, at every speed and level of
-    stiffening. Rigid lateral motion is not coupled with it but is that of a rotor driven at
-    constant speed, as in :func:`stability` and the responses: the mean rotation about the axis
-    follows Ωt. Elastic motion is coupled by its Coriolis force alone, as a disc that breathes.
-    Without a drive an eccentric centre of mass couples all. A
-    Jeffcott rotor (mass m, eccentricity e, inertia Θ about the axis, critical speed ω) then has
-    frequencies that differ, relative to ω, by ``½ m e²/Θ`` at rest and ``m r²/Θ`` near ω, with the
-    whirl radius r of the centre of mass, and is unstable from ω to ``ω(1 + (½ m e²/Θ)^⅓)``; a
-    product of inertia J adds ``½ J²/(I_t Θ)`` to tilts of the inertia ``I_t``. There is a warning
-    from 0.1 % at rest on. A scene has its spin prescribed, for elastic motion, too, as
-    :func:`stability` has it.
-
-    Springs in the frame of the rotor that hold its spin, by torsion or off the axis, and springs
-    that stand still with a distance between them, are complete, with the stiffness of the spin by
-    their steady forces; tilts lack that stiffness.
+    stiffening. Lateral motion is that of a rotor driven at constant speed, as in :func:`stability`
+    and the responses. Without a drive an eccentric centre of mass couples both: a Jeffcott rotor
+    (mass m, eccentricity e, inertia Θ about the axis, critical speed ω) then has frequencies that
+    differ, relative to ω, by ``½ m e²/Θ`` at rest and ``m r²/Θ`` near ω, with the whirl radius r of
+    the centre of mass.
 
     Examples
     --------
@@ -140,249 +126,145 @@ def campbell(
     >>> result.frequencies_inertial[1, 1:5].round(2)
     array([99.97, 99.97, 99.97, 99.97])
     >>> result.whirl[1, 1:5].tolist()
-    ['forward', 'forward', 'backward', 'backward']
+    ['backward', 'backward', 'forward', 'forward']
     """
     values = checked_speeds(speeds, allow_negative)
     if modes is not None:
-        checks.count(modes, "modes", least=1)
+        modes = checks.count(modes, "modes", least=1)
     tolerance = options.accuracy(tolerance, "tolerance")
-    residual = options.accuracy(residual, "residual")
     options.check_basis_accuracy(accuracy)
-    options.check_sweep(executor, progress)
-    seen = checks.choice(frame, "frame", FRAMES) == "inertial"
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
+    checks.flag(progress, "progress")
+    checks.choice(frame, "frame", FRAMES)
+    model = linear_model(
+        target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
+        axes=axes,
+    )  # fmt: skip
+    if modes is not None and modes > model.size:
+        raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    count = _checked_count(modes, model)
-    space = model.space(count, np.abs(values).max(), residual=residual)
-    if executor is not None:
-        space = space.prepared(values)
-    with (
-        meanwhile(BasisError.of, model, accuracy) as basis_made,
-        meanwhile(WhirlContent.of, model) as content_made,
-    ):
-        computed = model.size if model.gives_all else count
-        if seen and not model.gives_all:
-            fastest = values[np.argmax(np.abs(values))]
-            computed = _computed(space, count, fastest, tolerance, content_made())
-        modes_at = _modes_at(space, values, tolerance, executor, progress)
-        basis, content = basis_made(), content_made()
-    solved = _classified(modes_at, values, content, computed, seen)
-    static = np.array([entry.codes == STATIC for entry in solved])
-    seen_from_outside = content.mean_waves, static
-    found = [entry.modes for entry in solved]
-    tracks = track(found, values, model.mass_matrix.__matmul__, *seen_from_outside)
-    solved, tracks = _lowest(solved, tracks, count, seen, model)
-    inertial = np.array([entry.inertial for entry in solved])
-    growth = np.array([entry.modes.values.real for entry in solved])
-    chosen = judged(inertial, growth, values, modes is not None)
-    shifts = basis.shifts(values, [entry.modes for entry in solved], chosen)
-    splits = _splits(solved, values, content, space)
-    result = _collected(values, solved, tracks, model, (shifts, splits, frame))
-    _warn_of_basis(basis, result)
+    motions = motions_over(
+        model, values, tolerance=tolerance, progress=progress, label="Campbell"
+    )
+    content = Content.of(model)
+    named = [None if each is None else content.named(each) for each in motions]
+    named = [None if each is None else each.columns(_ascending(each, frame)) for each in named]
+    order, continued = track(named, values, model.mass_matrix)
+    kept = _lowest(named, order, modes, frame, model)
+    tracked = [
+        None if each is None else each.columns(row[kept])
+        for each, row in zip(named, order, strict=True)
+    ]
+    shifts = None
+    if accuracy is not None:
+        shifts = basis_error.shifts_over(model, values, tracked)
+    result = _collected(values, tracked, continued[:, kept], shifts, model, frame, modes)
+    _warn_of_basis(result, model, accuracy)
     return result
 
 
-@one_thread()
-def _modes_at(
-    space: Space, speeds: np.ndarray, tolerance: float, executor: Executor | None, progress: bool
-) -> list[FloquetModes]:
-    """Return the modes at all speeds; at once where nobody else is to compute them."""
-    if executor is None and not progress:
-        try:
-            modes = space.modes_at(speeds, tolerance)
-        except ValueError:
-            modes = None  # one by one below, so that the error names its speed
-        if modes is not None:
-            return modes
-    task = _Task(space, tolerance)
-    workers = None if space.is_shared else executor
-    return sweep(task, speeds, executor=workers, progress=progress, label="Campbell")
+def _ascending(found: Named, frame: str) -> np.ndarray:
+    """Return the order of motions: ascending in a frame, overdamped ones and lost ones last.
 
-
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """Solves one speed; picklable where the space is, so that processes can do it."""
-
-    space: Space
-    tolerance: float
-
-    def __call__(self, speed: float) -> FloquetModes:
-        return self.space.modes(speed, self.tolerance)
-
-
-class _Solved(NamedTuple):
-    """Modes at one speed, with inertial frequency, whirl and nodal diameter, each (k,)."""
-
-    modes: FloquetModes
-    inertial: np.ndarray
-    codes: np.ndarray
-    diameters: np.ndarray
-
-    def columns(self, chosen: np.ndarray) -> _Solved:
-        """Return some of the modes."""
-        return _Solved(self.modes.columns(chosen), *(array[chosen] for array in self[1:]))
-
-
-@one_thread()
-def _classified(
-    modes: Sequence[FloquetModes],
-    speeds: Sequence[float],
-    content: WhirlContent,
-    count: int,
-    seen: bool,
-) -> list[_Solved]:
-    """Return the modes ascending as they are `seen` from outside, or in the rotor frame.
-
-    Overdamped ones, which get the inertial frequency 0, stand behind the others.
+    Where frequencies are one but for rounding, from backward to forward waves, and by their decay.
     """
-    vectors, *named = zip(*content.named_at(modes, speeds), strict=True)
-    inertial, codes, diameters = (np.array([row[:count] for row in rows]) for rows in named)
-    values = np.array([entry.values[:count] for entry in modes])
-    growth, decays = values.real, np.array([_decays(entry)[:count] for entry in modes])
-    resolution = np.array([[entry.resolution] for entry in modes])
-    moves = oscillates(growth, inertial, resolution)
-    moves &= ~decays_alone(growth, values.imag, np.reshape(speeds, (-1, 1)))
-    codes = named_still(codes, ~moves & decays, ~moves & ~decays)
-    inertial = np.where(moves, inertial, 0.0)
-    bounds = np.array(
-        [np.broadcast_to(_rounding(each), each.values.shape)[:count] for each in modes]
-    )
-    found = values, bounds, inertial, codes, diameters
-    order = listed(*found, last=~moves & decays, seen=seen)
-    solved = zip(modes, vectors, inertial, codes, diameters, order, strict=True)
-    return [
-        _Solved(
-            FloquetModes(entry.values, shapes, entry.orders, entry.resolution, entry.bounds), *found
-        ).columns(chosen)
-        for entry, shapes, *found, chosen in solved
-    ]
+    main, other = found.inertial, found.rotor
+    if frame == "rotor":
+        main, other = other, main
+    last = (found.codes == OVERDAMPED) | np.isnan(found.motions.values)
+    keys = [-found.motions.values.real, signed_diameters(found.codes, found.diameters), other, main]
+    return np.lexsort([*map(_rounded, keys), last])
 
 
-def _decays(modes: FloquetModes) -> np.ndarray:
-    """Return which motions decay by more than rounding, shape (k,)."""
-    return modes.values.real < -_rounding(modes)
-
-
-def _rounding(modes: FloquetModes) -> np.ndarray | float:
-    """Return the error of real parts by rounding, shape (k,) or one for all."""
-    return modes.resolution if modes.bounds is None else modes.bounds
-
-
-def _computed(
-    space: Space, count: int, speed: float, tolerance: float, content: WhirlContent
-) -> int:
-    """Return how many modes of a large rotor to solve for, so that none of `count` is missed.
-
-    A motion with one nodal diameter at most that is seen at ω has at most ω + Ω in the rotor frame.
-    The space solves for as many from here on.
-    """
-    while True:
-        modes = space.modes(speed, tolerance)
-        lowest = _classified([modes], [speed], content, space.count, True)[0].inertial[:count]
-        if modes.values.imag.max() >= lowest.max() + abs(speed) or not space.ask_for_more():
-            return space.count
-
-
-@one_thread()
-def _splits(
-    solved: list[_Solved], speeds: np.ndarray, content: WhirlContent, space: Space
-) -> np.ndarray:
-    """Return :attr:`Campbell.splits`; anisotropic supports have no pairs."""
-    if np.any(speeds):
-        alike = all(len(entry.modes.orders) == 1 for entry in solved)
-    else:  # supports that stand still differ from turning ones at a speed only
-        alike = space.at(_SLOW).is_constant
-    inertial, codes, diameters = (np.array(rows) for rows in list(zip(*solved, strict=True))[1:])
-    if not alike:
-        return np.zeros(inertial.shape)
-    return pair_splits(content, [e.modes.central for e in solved], inertial, codes, diameters)
+def _rounded(values: np.ndarray) -> np.ndarray:
+    largest = np.nanmax(np.abs(values), initial=0.0) or 1.0
+    return np.round(np.nan_to_num(values / largest, nan=2.0), _DIGITS)
 
 
 def _lowest(
-    solved: list[_Solved], tracks: Tracks, count: int, seen: bool, model: LinearModel
-) -> tuple[list[_Solved], Tracks]:
-    """Keep the modes that have the lowest frequencies at the first speed.
-
-    Of overdamped ones, and of those of voids in films, only where there are no others left.
-    """
-    if count >= tracks.columns.shape[1]:
-        return solved, tracks
-    first = solved[0].columns(tracks.columns[0])
-    modes = first.modes
-    last = (first.inertial == 0.0) & _decays(modes) | _of_voids(modes, model)
-    frequencies = first.inertial if seen else modes.values.imag
-    chosen = np.sort(np.lexsort((ranks(frequencies, _rounding(modes)), last))[:count])
-    used = tracks.columns[:, chosen]
-    ascending = np.sort(used, axis=1)
-    places = [np.searchsorted(*rows) for rows in zip(ascending, used, strict=True)]
-    fewer = [entry.columns(row) for entry, row in zip(solved, ascending, strict=True)]
-    return fewer, Tracks(np.array(places), tracks.continued[:, chosen])
-
-
-def _of_voids(modes: FloquetModes, model: LinearModel) -> np.ndarray:
-    """Return which motions have nearly all kinetic energy in what films remember, shape (k,)."""
-    if not model.voids.size:
-        return np.zeros(len(modes.values), dtype=bool)
-    x, M = modes.vectors, model.mass_matrix
-    moved = np.sum(np.abs(x[:, model.voids]) ** 2, axis=0)
-    own = M.diagonal()[model.voids] @ moved
-    return own > _MOSTLY * np.einsum("hck,cd,hdk->k", x.conj(), M, x).real
+    named: list[Named | None], order: np.ndarray, modes: int | None, frame: str, model: LinearModel
+) -> np.ndarray:
+    """Return the tracked columns that are kept: the lowest at the first speed with values."""
+    row, first = next((i, each) for i, each in enumerate(named) if each is not None)
+    first = first.columns(order[row])
+    frequencies = first.inertial if frame == "inertial" else first.rotor
+    count = modes or len(frequencies)
+    if modes is None and np.isfinite(model.complete_up_to):
+        complete = np.count_nonzero(np.abs(first.motions.values) < model.complete_up_to)
+        count = max(min(_FEWEST, count), complete)
+    of_voids = np.zeros(len(frequencies), dtype=bool)
+    rows = [i for i, name in enumerate(model.coordinates) if name.startswith("voids")]
+    if rows:
+        x = first.motions.main
+        moved = np.abs(x) ** 2 * np.diag(model.mass_matrix)[:, None]
+        of_voids = moved[rows].sum(axis=0) > 0.9 * moved.sum(axis=0)
+    last = (first.codes == OVERDAMPED) | of_voids | np.isnan(first.motions.values)
+    return np.sort(np.lexsort((_rounded(frequencies), last))[:count])
 
 
 def _collected(
     speeds: np.ndarray,
-    solved: list[_Solved],
-    tracks: Tracks,
+    tracked: list[Named | None],
+    continued: np.ndarray,
+    shifts: np.ndarray | None,
     model: LinearModel,
-    found: tuple[np.ndarray | None, np.ndarray, str],
+    frame: str,
+    modes: int | None,
 ) -> Campbell:
-    modes, inertial, whirl, diameters = zip(*solved, strict=True)
-    # adding zero turns −0 into 0
-    eigenvalues = np.array([entry.values for entry in modes]) + 0.0
-    inertial = np.array(inertial)
-    resolution = np.array([[entry.resolution] for entry in modes])
-    neutral = (inertial == 0.0) & (np.abs(eigenvalues.real) <= resolution)
-    neutral &= ~np.array([_decays(entry) for entry in modes])
-    growth = np.where(neutral, 0.0, eigenvalues.real)
-    told = [np.abs(entry.values.real) > _rounding(entry) for entry in modes]
-    ratio, decrement = damping_of(np.where(told, growth, 0.0), inertial)
+    """Return the result, whose columns ascend at every speed."""
+    shape = continued.shape
+    arrays = {name: np.full(shape, np.nan) for name in ("rotor", "inertial", "growth")}
+    codes, diameters = np.full(shape, UNKNOWN), np.full(shape, -1)
+    vectors = np.full((shape[0], model.size, shape[1]), np.nan, dtype=complex)
+    order = np.tile(np.arange(shape[1]), (shape[0], 1))
+    told = np.zeros(shape)
+    for row, found in enumerate(tracked):
+        if found is None:
+            continue
+        ascending = _ascending(found, frame)
+        order[row] = np.argsort(ascending)
+        found = found.columns(ascending)
+        growth, bound = found.motions.values.real, found.motions.bound
+        arrays["growth"][row] = np.where(np.abs(growth) <= bound, 0.0, growth)
+        told[row] = np.where(np.abs(growth) <= bound, 0.0, growth)
+        arrays["rotor"][row], arrays["inertial"][row] = found.rotor, found.inertial
+        codes[row], diameters[row] = found.codes, found.diameters
+        vectors[row] = found.motions.main
+        if shifts is not None:
+            shifts[row] = shifts[row][ascending]
+    if shifts is not None:
+        chosen = basis_error.judged(arrays["inertial"], arrays["growth"], speeds, modes is not None)
+        shifts = np.where(chosen, shifts, np.nan)
+    ratio, decrement = damping_of(told, arrays["inertial"])
     return Campbell(
         speeds=speeds,
-        frequencies_rotor=eigenvalues.imag,
-        growth=growth,
-        frequencies_inertial=inertial,
+        frequencies_rotor=arrays["rotor"],
+        growth=arrays["growth"],
+        frequencies_inertial=arrays["inertial"],
         damping_ratio=ratio,
         log_decrement=decrement,
-        whirl_codes=np.array(whirl, dtype=np.int64),
-        nodal_diameters=np.array(diameters, dtype=np.int64),
-        vectors=np.array([entry.central for entry in modes]),
-        order=tracks.columns,
-        continued=tracks.continued,
+        whirl_codes=codes.astype(np.int64),
+        nodal_diameters=diameters.astype(np.int64),
+        vectors=vectors,
+        order=order,
+        continued=continued,
         free_motions=model.free_motions,
         stiffening=model.stiffening,
-        basis_shifts=found[0],
-        splits=found[1],
-        frame=found[2],
+        basis_shifts=shifts,
+        frame=frame,
+        axes=model.axes,
+        unevenness=model.unevenness,
     )
 
 
-def _warn_of_basis(basis: BasisError, result: Campbell) -> None:
+def _warn_of_basis(result: Campbell, model: LinearModel, accuracy: float | None) -> None:
     """Warn where the basis leaves out too much for the modes that count."""
     errors = result.basis_errors
-    if errors is None:
+    if accuracy is None or errors is None or not np.any(np.nan_to_num(errors) > accuracy):
         return
     at, mode = np.unravel_index(np.argmax(np.nan_to_num(errors)), errors.shape)
     shown = Units.of("rpm")
     speed = shown.speeds(result.speeds[at])
     heard = shown.frequencies(result.frequencies_inertial[at, mode])
-    word = result.whirl[at, mode]
-    basis.warn(errors, f"mode {mode + 1} ({word}, {heard:.4g} Hz) at {speed:.5g} rpm")
-
-
-def _checked_count(modes: int | None, model: LinearModel) -> int:
-    if modes is None:
-        return model.size if model.gives_all else min(_FULL_MODES, model.size)
-    if modes > model.size:
-        raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
-    return int(modes)
+    what = f"mode {mode + 1} ({result.whirl[at, mode]}, {heard:.4g} Hz) at {speed:.5g} rpm"
+    basis_error.warn(errors, what, model, accuracy)

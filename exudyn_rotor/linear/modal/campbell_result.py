@@ -5,25 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
+from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal import excitation
-from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
-from exudyn_rotor.linear.modal.damping import oscillates
-from exudyn_rotor.linear.modal.tracking import joined_in_space
-from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.modal.whirl_new import BACKWARD, WHIRLS, oscillates
+from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 # growth below this share of frequency and speed is not marked: what is left of a free spin of a
 # rotor with an uneven mesh looks like that
 _UNSTABLE = 1e-4
+_SHOWN = 1e-6  # unevenness that is told
 
 
 @storable
@@ -31,20 +34,19 @@ _UNSTABLE = 1e-4
 class Campbell(Result):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
-    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others; real
-    eigenvalues of the rotor frame are such from a decay of a hundred times the speed on.
-    In the order of :meth:`tracked`, column j is the same mode at all speeds.
+    Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
+    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is the same mode at all speeds.
 
     Attributes
     ----------
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
     frequencies_rotor : ndarray, shape (s, k)
-        Natural frequencies ``ν = |Im λ|`` seen in the rotor frame [rad/s].
+        Frequency of the mode's strongest wave seen in the rotor frame [rad/s].
     growth : ndarray, shape (s, k)
         Real parts of the eigenvalues λ [1/s], the same in both frames; positive means unstable.
     frequencies_inertial : ndarray, shape (s, k)
-        Frequency of the mode's strongest wave seen from outside, ``|ν + nΩ|`` [rad/s].
+        Frequency of the mode's strongest wave seen from outside [rad/s].
     damping_ratio, log_decrement : ndarray, shape (s, k)
         ``−Re λ / |Re λ + iω|`` and ``−2π Re λ / ω`` at the inertial frequency ω; 0 where Re λ is
         rounding.
@@ -54,8 +56,8 @@ class Campbell(Result):
         n where ±n hold at least 70 % of the mode's energy; −1 where none does. Without mode shapes
         n comes from the interfaces and is 0 or 1.
     vectors : ndarray, shape (s, c, k)
-        Modes in the coordinates of the rotor frame, unit length; the central harmonic of
-        periodic systems.
+        Modes in the coordinates of the model, in its :attr:`axes`; the largest harmonic of
+        periodic equations.
     order : ndarray of int, shape (s, k)
         ``order[i, j]`` is the column at speed i that continues column j of the first speed.
     continued : ndarray of bool, shape (s, k)
@@ -71,12 +73,13 @@ class Campbell(Result):
         faster than these; None where it is not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
-    splits : ndarray, shape (s, k), or None
-        Relative distance to the other mode of a pair in two planes, less than 1 % apart, of a rotor
-        whose mesh or shaft is uneven: positive at the lower one, which stands for both in the
-        table, negative at the upper one, 0 for single modes.
     frame : {'inertial', 'rotor'}
         In which columns ascend, and modes were chosen.
+    axes : {'inertial', 'rotor'}
+        In which the equations were solved, and :attr:`vectors` are.
+    unevenness : float
+        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
+        over a turn.
 
     Examples
     --------
@@ -91,22 +94,22 @@ class Campbell(Result):
     >>> result.tracked().damping_ratio[:, 1].round(4)
     array([0.025, 0.025])
     >>> print(result.table(1))
-      speed [Hz]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
+     speed [rpm]  mode  rotor frame [Hz]  inertial [Hz]  damping ratio  n  whirl
                0     1                 0              0              0  0  axial
-         7.95775     1                 0              0              0  0  axial
+         477.465     1                 0              0              0  0  axial
     free motions: translation along axis
     stiffening: tilt
     """
 
     speeds: np.ndarray = numbers("speeds")
-    frequencies_rotor: np.ndarray = numbers("speeds", "modes")
-    growth: np.ndarray = numbers("speeds", "modes")
-    frequencies_inertial: np.ndarray = numbers("speeds", "modes")
-    damping_ratio: np.ndarray = numbers("speeds", "modes")
+    frequencies_rotor: np.ndarray = numbers("speeds", "modes", finite=False)
+    growth: np.ndarray = numbers("speeds", "modes", finite=False)
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
+    damping_ratio: np.ndarray = numbers("speeds", "modes", finite=False)
     log_decrement: np.ndarray = numbers("speeds", "modes", finite=False)
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
-    vectors: np.ndarray = numbers("speeds", "coordinates", "modes", dtype=complex)
+    vectors: np.ndarray = numbers("speeds", "coordinates", "modes", dtype=complex, finite=False)
     order: np.ndarray = numbers("speeds", "modes", dtype=int, least=0)
     continued: np.ndarray = numbers("speeds", "modes", dtype=bool)
     free_motions: tuple[str, ...] = ()
@@ -114,12 +117,14 @@ class Campbell(Result):
     basis_shifts: np.ndarray | None = numbers(
         "speeds", "modes", dtype=complex, finite=False, optional=True
     )
-    splits: np.ndarray | None = numbers("speeds", "modes", optional=True)
     frame: str = "inertial"
+    axes: str = "inertial"
+    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice(self.frame, "frame", FRAMES)
+        checks.choice(self.axes, "axes", AXES)
         if self.stiffening is not None:
             checks.choice(self.stiffening, "stiffening", LEVELS)
         if np.any(np.sort(self.order, axis=1) != np.arange(self.order.shape[1])):
@@ -174,9 +179,7 @@ class Campbell(Result):
         """
         names = ("frequencies_rotor", "growth", "frequencies_inertial", "damping_ratio",
                  "log_decrement", "whirl_codes", "nodal_diameters")  # fmt: skip
-        names += tuple(
-            name for name in ("basis_shifts", "splits") if getattr(self, name) is not None
-        )
+        names += ("basis_shifts",) if self.basis_shifts is not None else ()
         moved = {name: np.take_along_axis(getattr(self, name), self.order, 1) for name in names}
         moved["vectors"] = np.take_along_axis(self.vectors, self.order[:, None, :], 2)
         moved["order"] = np.broadcast_to(np.arange(self.order.shape[1]), self.order.shape).copy()
@@ -207,29 +210,21 @@ class Campbell(Result):
         inertial = checks.choice(frame, "frame", FRAMES) == "inertial"
         tracked = self.tracked()
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
-        return excitation.crossings(self.speeds, values, tracked._joined(inertial), order)
-
-    def _joined(self, inertial: bool) -> np.ndarray:
-        """Return where a line goes on from the speed before, in one of the frames, shape (s, k)."""
-        if not inertial:
-            return self.continued
-        seen = self.frequencies_rotor, self.frequencies_inertial, self.nodal_diameters
-        return joined_in_space(self.speeds, *seen, self.continued)
+        return excitation.crossings(self.speeds, values, tracked.continued, order)
 
     def plot(
         self,
         ax: Axes | None = None,
         frame: str | None = None,
         *,
-        units: str = "Hz",
+        units: str = "rpm",
         orders: Sequence[float] | float | None = None,
         operating_range: ArrayLike | None = None,
         margins: ArrayLike | None = None,
     ) -> Axes:
         """Draw the tracked modes over the spin speed; see :mod:`exudyn_rotor.plotting`.
 
-        A line breaks where it would join different modes, or waves of a mode that stands in the
-        rotor frame: it is seen at ``ν + nΩ`` and ``ν − nΩ``, and the stronger one is drawn.
+        A line breaks where it would join different modes.
 
         Parameters
         ----------
@@ -237,7 +232,7 @@ class Campbell(Result):
             A new figure without a window by default.
         frame : {'inertial', 'rotor'}, optional
             That of the result by default.
-        units : {'Hz', 'rpm', 'SI'}
+        units : {'rpm', 'Hz', 'SI'}
             Of the picture: 'rpm' has speeds in rpm and frequencies in Hz, 'SI' rad/s.
         orders : sequence of float, optional
             Lines of excitation pΩ with p in `orders`, with the modes' crossings marked; by default
@@ -256,6 +251,8 @@ class Campbell(Result):
         """
         frame = self.frame if frame is None else checks.choice(frame, "frame", FRAMES)
         shown, inertial = Units.of(units), frame == "inertial"
+        from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
+
         limits = excitation.checked_range(operating_range)
         shares = excitation.checked_margins(margins, limits is not None)
         if orders is not None:
@@ -265,7 +262,7 @@ class Campbell(Result):
         values = tracked.frequencies_inertial if inertial else tracked.frequencies_rotor
         scale = np.maximum(tracked.frequencies_inertial, np.abs(self.speeds)[:, None])
         unstable = tracked.growth > _UNSTABLE * scale
-        codes, continued = tracked.whirl_codes, tracked._joined(inertial)
+        codes, continued = tracked.whirl_codes, tracked.continued
         drawn = np.where(tracked.oscillates, shown.frequencies(values), np.nan)
         handles = draw_campbell(ax, speeds, drawn, codes, continued, unstable)
         if limits is not None:
@@ -302,17 +299,11 @@ class Campbell(Result):
             "nodal diameters": tracked.nodal_diameters.ravel(),
             "whirl": tracked.whirl.ravel(),
             "continued": tracked.continued.ravel(),
-            "split": np.zeros(rows) if self.splits is None else tracked.splits.ravel(),
             "basis error": np.full(rows, np.nan) if errors is None else errors.ravel(),
         }
 
-    def _listed(self, row: int) -> np.ndarray:
-        """Return the columns at one speed without the upper modes of pairs."""
-        columns = np.arange(self.order.shape[1])
-        return columns if self.splits is None else columns[self.splits[row] >= 0.0]
-
-    def table(self, count: int | None = None, *, units: str = "Hz") -> str:
-        """Return the lowest `count` modes at every speed as lines of text, a pair as one line.
+    def table(self, count: int | None = None, *, units: str = "rpm") -> str:
+        """Return the lowest `count` modes at every speed as lines of text.
 
         `units` are those of :meth:`plot`. The error of the basis is '-' where it is not estimated,
         see :attr:`basis_shifts`.
@@ -333,12 +324,13 @@ class Campbell(Result):
             known.frequencies(f) for f in (self.frequencies_rotor, self.frequencies_inertial)
         )
         for i, at in enumerate(known.speeds(self.speeds)):
-            for j in self._listed(i)[shown]:
+            if np.all(np.isnan(self.growth[i])):
+                lines.append(f"{at:12.6g}  no values")
+                continue
+            for j in np.arange(self.order.shape[1])[shown]:
                 n = self.nodal_diameters[i, j]
                 error = f"{in_table(errors[i, j]):>13}" if reduced else ""
                 kind = f"{n if n >= 0 else '-'}  {self.whirl[i, j]}"
-                if self.splits is not None and self.splits[i, j] > 0.0:
-                    kind += f"  pair, the other {self.splits[i, j]:.1e} above"
                 lines.append(
                     f"{at:12.6g}{j + 1:6d}{rotor[i, j]:18.6g}{inertial[i, j]:15.6g}"
                     f"{self.damping_ratio[i, j]:15.3g}{error}  {kind}"
@@ -347,6 +339,8 @@ class Campbell(Result):
             lines.append("free motions: " + ", ".join(self.free_motions))
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
+        if self.unevenness > _SHOWN:
+            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         lost = known.speeds(self.speeds[~np.all(self.continued, axis=1)])
         if lost.size:
             listed = ", ".join(f"{f:.6g}" for f in lost)

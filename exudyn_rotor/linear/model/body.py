@@ -56,6 +56,8 @@ class RotorAlone:
         in slow motions.
     left_out : mapping of str to float
         Of each interface the share of its lateral flexibility by motions that are half of a pair.
+    complete_up_to : float
+        Frequency of the lowest of these halves [rad/s].
     spin : Spin or None
         The spin as a coordinate.
     """
@@ -68,6 +70,7 @@ class RotorAlone:
     turning: Turning
     uneven: float
     left_out: dict[str, float]
+    complete_up_to: float
     spin: Spin | None
 
     def unevenness(self, places: tuple[str, ...]) -> float:
@@ -88,13 +91,12 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
     invariants = rotor.invariants.moved(origin - rotor.center_of_mass)
     level = chosen_level(stiffening, invariants.K2 is not None)
     turning, Q = turning_of(rotor), np.eye(rotor.size)
-    left_out = {}
+    left_out, lowest = {}, np.inf
     if turning.halves.shape[1]:
+        squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
+        lowest = float(np.sqrt(max(squares[0], 0.0)))
         for name in rotor.interfaces:
-            U = interface_motion(rotor, name)[:2] @ (turning.T * np.sqrt(turning.weights))
-            halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
-            whole_size = np.linalg.norm(U) ** 2
-            left_out[name] = float(np.linalg.norm(U[:, halves]) ** 2 / (whole_size or 1.0))
+            left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
             Q = _beside(turning.halves)
             turning = turning.within(Q)
@@ -105,7 +107,7 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
     terms = replace(terms, C_hat=_unresisted(terms.C_hat, rotor, spin, Q), K4=K4)
     shares = [turning.matrix_share(X) for X in (invariants.K, terms.C_hat)]
     return RotorAlone(
-        rotor, invariants, terms, level, Q, turning, max(shares), left_out, spin
+        rotor, invariants, terms, level, Q, turning, max(shares), left_out, lowest, spin
     )
 
 

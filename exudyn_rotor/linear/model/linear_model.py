@@ -112,7 +112,7 @@ class LinearModel:
     rotor: 6 coordinates, interfaces left, right
     supports: left, right
     free motions: translation along axis
-    stiffening: tilt, unevenness 0
+    stiffening: tilt, unevenness ...e-16
     """
 
     rotors: Mapping[str, ReducedRotor]
@@ -149,7 +149,7 @@ class LinearModel:
             self.supports, self.ratios, self.links, bases, turns, self.is_undamped
         )
 
-    def _places(self, name: str) -> tuple[str, ...]:
+    def places(self, name: str) -> tuple[str, ...]:
         """Return the interfaces of a rotor that elements act on."""
         ends = (end for element in self._elements[0] for end in element.ends)
         return tuple(dict.fromkeys(interface for owner, interface in ends if owner == name))
@@ -161,7 +161,7 @@ class LinearModel:
     def _own_unevenness(self) -> dict[str, float]:
         """Unevenness of each rotor and of the places that something acts on."""
         return {
-            name: self._alone(name, False).unevenness(self._places(name)) for name in self._used
+            name: self._alone(name, False).unevenness(self.places(name)) for name in self._used
         }
 
     @cached_property
@@ -303,6 +303,11 @@ class LinearModel:
         )
 
     @property
+    def mass_matrix(self) -> np.ndarray:
+        """M, shape (k, k)."""
+        return self._running.M
+
+    @property
     def size(self) -> int:
         """Number of coordinates k."""
         return self._running.size
@@ -321,7 +326,9 @@ class LinearModel:
         """The model with the shapes that the bases of its rotors lack; None if not known."""
         if self.is_richer or any(r.with_attachments is None for r in self.rotors.values()):
             return None
-        return replace(self, is_richer=True)
+        return replace(
+            self, is_richer=True, wanted_axes=self.axes, largest_unevenness=np.inf
+        )
 
     # ------------------------------------------------------------------ what it consists of
 
@@ -335,6 +342,15 @@ class LinearModel:
         """Largest share of a rotor that differs around its axis and is averaged over a turn."""
         averaged = [b.name for b in rotors_of(self.bodies) if b.mean]
         return max((self._own_unevenness[name] for name in averaged), default=0.0)
+
+    @cached_property
+    def complete_up_to(self) -> float:
+        """Frequency of the lowest pair of which the basis holds one half alone [rad/s].
+
+        Such a half is left out of a round rotor; infinity where there is none.
+        """
+        averaged = [b.alone for b in rotors_of(self.bodies) if b.mean]
+        return min((alone.complete_up_to for alone in averaged), default=np.inf)
 
     @property
     def stiffening(self) -> str:
@@ -548,7 +564,7 @@ class LinearModel:
         acted = ", ".join(dict.fromkeys(element.what for element in self._elements[0])) or "none"
         lines.append(f"supports{standing}: {acted}")
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
-        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
+        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.solve.state import States
 
-_SIZES = (2, 3, 4, 6, 9)  # harmonics on either side, in steps of the coefficients
-_LARGEST = 640  # unknowns, beyond which harmonics are not added
+_SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
+_LARGEST = 420  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 
 
@@ -28,7 +28,7 @@ def hill_motions(
     that do not get there are NaN.
     """
     count = 2 * system.size
-    place = begin
+    place = max(begin - 1, 0)  # faster rotors need fewer
     while True:
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
@@ -39,8 +39,9 @@ def hill_motions(
         if np.all(done) or place + 1 == len(_SIZES) or larger > _LARGEST:
             break
         place += 1
-    values = np.where(fast | (edges <= 1e3 * tolerance), values, np.nan)
-    return values, states, orders, place
+    found = fast | (edges <= 1e3 * tolerance)
+    # what has failed is not tried again with fewer
+    return np.where(found, values, np.nan), states, orders, place + (not np.all(found))
 
 
 def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:

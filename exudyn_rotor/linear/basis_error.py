@@ -1,0 +1,201 @@
+"""What the basis of a reduced rotor leaves out: the analysis again with a richer one.
+
+Beside its modes a reduced rotor carries static responses to loads at its interfaces and to the
+inertia forces of its modes in a turning frame (:mod:`exudyn_rotor.reduction`). The model with these
+shapes, too, is solved at a few points of an analysis, and compared.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
+
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.modal.whirl_new import Content, Named
+from exudyn_rotor.linear.model.assembly import rotors_of
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+
+NOT_KNOWN = "error of the basis: not known"
+_DAMPED = 0.01  # share of the frequency that growth counts as at least
+_SLOW = 0.1  # share of the spin speed that a frequency counts as at least
+_RANGE, _LOWEST = 2.0, 6  # times the fastest speed, and lowest modes: what is judged in any case
+_ALIKE = 0.2  # likeness of two shapes below which they are not the same motion
+_NEAR = 0.3  # share of a frequency by which the same motion may differ
+_MISSING = 0.1  # share of a flexibility that counts as missing
+_POINTS = 3  # speeds at which the richer model is solved
+
+
+def is_known(model: LinearModel, accuracy: float | None) -> bool:
+    """Return whether an estimate is asked for and can be given."""
+    return accuracy is not None and (model.is_full or model.richer is not None)
+
+
+def points(count: int) -> np.ndarray:
+    """Return which of so many speeds the richer model is solved at: first, middle and last."""
+    return np.unique(np.linspace(0, count - 1, min(count, _POINTS)).round().astype(int))
+
+
+def shifts_over(
+    model: LinearModel,
+    speeds: np.ndarray,
+    named: Sequence[Named | None],
+    *,
+    held: bool = False,
+) -> np.ndarray | None:
+    """Return ``λ_richer − λ`` of motions at all speeds, in the frame of the rotor, (s, k).
+
+    The motions of one column are the same at all speeds. Between the speeds at which the richer
+    model is solved shifts follow straight lines; NaN where a motion is not found again, None where
+    nothing is known. Zero where the basis leaves nothing out.
+    """
+    known = [i for i, each in enumerate(named) if each is not None]
+    shape = len(named), len(named[known[0]].inertial)
+    if model.is_full:
+        return np.zeros(shape, dtype=complex)
+    richer = model.richer
+    if richer is None:
+        return None
+    chosen = [known[i] for i in points(len(known))]
+    content, lifted = Content.of(richer), lifting(model, richer)
+    found = motions_over(richer, speeds[chosen], held=held)
+    shifts = np.full((len(chosen), shape[1]), np.nan, dtype=complex)
+    for row, (place, motions) in enumerate(zip(chosen, found, strict=True)):
+        if motions is not None:
+            shifts[row] = _shifts(named[place], content.named(motions), lifted)
+    if len(chosen) == 1:
+        return np.broadcast_to(shifts, shape).copy()
+    result = np.empty(shape, dtype=complex)
+    for column in range(shape[1]):
+        parts = (np.interp(speeds, speeds[chosen], part) for part in
+                 (shifts[:, column].real, shifts[:, column].imag))  # fmt: skip
+        real, imaginary = parts
+        result[:, column] = real + 1j * imaginary
+    return result
+
+
+def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
+    """Return the coordinates of a richer model (l, k) that are those of a model."""
+    blocks = []
+    for body, wide in zip(model.bodies, richer.bodies, strict=True):
+        if body in rotors_of(model.bodies):
+            rotor = model.rotors[body.name]
+            blocks.append(wide.alone.Q.T @ rotor.in_attached @ body.alone.Q)
+        else:
+            blocks.append(np.eye(body.size))
+    return la.block_diag(*blocks)
+
+
+def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
+    """Return the shifts (k,) of motions at one speed."""
+    x, z = lifted @ given.motions.main, richer.motions.main
+    sizes = np.outer(np.linalg.norm(x, axis=0), np.linalg.norm(z, axis=0))
+    products = np.maximum(np.abs(x.conj().T @ z), np.abs(x.T @ z))
+    likeness = (products / np.maximum(sizes, 1e-300)) ** 2
+    least = np.maximum(np.abs(given.motions.values), abs(given.motions.speed))[:, None] + 1e-12
+    frequency = np.abs(given.rotor[:, None] - richer.rotor) / least
+    growth = np.abs(given.motions.values.real[:, None] - richer.motions.values.real) / least
+    cost = 1.0 - likeness + np.minimum((frequency + growth) / _NEAR, 2.0)
+    rows, columns = linear_sum_assignment(np.nan_to_num(cost, nan=1e3))
+    shifts = np.full(len(given.inertial), np.nan, dtype=complex)
+    good = (likeness[rows, columns] > _ALIKE) & (cost[rows, columns] < 2.0)
+    rows, columns = rows[good], columns[good]
+    shifts[rows] = (
+        richer.motions.values.real[columns]
+        - given.motions.values.real[rows]
+        + 1j * (richer.rotor[columns] - given.rotor[rows])
+    )
+    return shifts
+
+
+def relative_errors(
+    shifts: np.ndarray, growth: np.ndarray, frequencies: np.ndarray, speeds: np.ndarray
+) -> np.ndarray:
+    """Return the larger of the relative errors of frequency and growth, shape (s, k).
+
+    Parameters
+    ----------
+    shifts : ndarray, shape (s, k)
+        ``λ_richer − λ`` [1/s].
+    growth, frequencies : ndarray, shape (s, k)
+        The latter in the inertial frame. A frequency counts as at least a tenth of the spin speed,
+        a growth as at least a hundredth of the frequency. At rest, what neither oscillates nor
+        grows has no relative error, NaN.
+    speeds : ndarray, shape (s,)
+        [rad/s]
+    """
+    least = np.maximum(np.abs(frequencies), _SLOW * np.abs(speeds)[:, None])
+    sizes = np.maximum(np.abs(growth), _DAMPED * least)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = np.abs(shifts.imag) / least, np.abs(shifts.real) / sizes
+    errors = np.where(shifts == 0.0, 0.0, np.maximum(*parts))
+    return np.where(np.isinf(errors), np.nan, errors)
+
+
+def judged(
+    frequencies: np.ndarray, growth: np.ndarray, speeds: np.ndarray, every: bool = False
+) -> np.ndarray:
+    """Return which modes (s, k) an analysis of all modes is judged by.
+
+    Those up to twice the fastest speed in the inertial frame, and the lowest six that move, or all
+    if these are fewer; the highest modes of a basis are always wrong. If `every`, all that move.
+    Overdamped ones count up to decays of that size.
+    """
+    moving = np.where(frequencies > 0.0, frequencies, np.inf)
+    lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
+    lowest = np.where(np.isfinite(lowest), lowest, np.nanmax(frequencies, axis=1, keepdims=True))
+    limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
+    overdamped = (frequencies == 0.0) & (-growth > limit)
+    return ((frequencies <= limit) | every) & ~overdamped
+
+
+def in_table(error: float, digits: int = 1) -> str:
+    """Return an error as tables show it: '-' where it was not estimated."""
+    return "-" if np.isnan(error) else f"{error:.{digits}e}"
+
+
+def warn(errors: np.ndarray, what: str, model: LinearModel, accuracy: float) -> None:
+    """Warn where an estimated error exceeds the accuracy; `what` names the worst."""
+    worst = np.max(np.nan_to_num(errors), initial=0.0)
+    if worst <= accuracy:
+        return
+    bases = " and ".join(_basis(name, rotor) for name, rotor in model.rotors.items())
+    advice = "reduce the rotor with more, up to twice as many"
+    if any(_lacks_flexibility(model, name) for name in model.rotors):
+        advice = (
+            "they lack flexibility at the interfaces; reduce the rotor with "
+            "craig_bampton_modes(rotor, …), whose static modes have it"
+        )
+    warnings.warn(
+        f"{what} errs by about {worst:.2g} of its value, for {bases} are too few for the accuracy "
+        f"of {accuracy:g}: {advice}, give another accuracy=…, or None for no check",
+        UserWarning,
+        stacklevel=user_level(),
+    )
+
+
+def _basis(name: str, rotor: ReducedRotor) -> str:
+    elastic = rotor.size - len(rotor.rigid_kinds)
+    highest = rotor.frequencies[-1] / (2.0 * np.pi) if elastic else 0.0
+    label = f"rotor {name!r}" if name else "the reduced rotor"
+    return f"the flexible modes of {label} ({elastic}, up to {highest:.4g} Hz)"
+
+
+def _lacks_flexibility(model: LinearModel, name: str) -> bool:
+    """Return whether a basis misses much of the flexibility at the places that are loaded."""
+    rotor, places = model.rotors[name], model.places(name)
+    richer = rotor.with_attachments
+    if richer is None or not places:
+        return False
+    found = []
+    for each in (rotor, richer):
+        motion = np.vstack([each.interfaces[place].motion for place in places])
+        flexible = slice(len(each.rigid_kinds), None)
+        given = motion[:, flexible] / np.maximum(each.frequencies[flexible], 1e-300)
+        found.append(np.linalg.norm(given) ** 2)
+    return bool(found[1] - found[0] > _MISSING * found[1])
