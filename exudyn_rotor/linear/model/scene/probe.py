@@ -196,7 +196,9 @@ class Probe:
     def _rotor_terms(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return the rotor's M, D, K and constant force at Ω, in the free coordinates."""
         body, size = self.scene.body, len(self.scene.free)
-        form = replace(body.motion.formulation, spin=ConstantSpeed(self.speed, theta))
+        form = replace(
+            body.motion.formulation, spin=ConstantSpeed(self.speed, theta), spin_coupling="full"
+        )
         if form.moves_origin:
             form = replace(form, translation="none")
         motion = Motion(
