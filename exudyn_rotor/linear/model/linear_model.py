@@ -418,8 +418,11 @@ class LinearModel:
         """Return the motion of a mesh node of the only rotor, as :meth:`seen` does; no rotation."""
         assembly = self.assembly(speed)
         body = rotors_of(assembly.bodies)[0]
-        rotor = body.alone.rotor
-        rows = rotor.shapes.matrix[3 * number : 3 * number + 3] @ body.alone.Q
+        rotor = self.rotors[body.name]
+        rows = rotor.shapes.matrix[3 * number : 3 * number + 3]
+        if self.is_richer:  # the shapes that are added have no motion of nodes
+            rows = rows @ rotor.in_attached.T
+        rows = rows @ body.alone.Q
         rows = np.column_stack([rotor.axis.plane, rotor.axis.direction]).T @ rows
         if body.is_apart:
             rows = body.spin.about_axis(rows)
