@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.modal.campbell import campbell
-from exudyn_rotor.linear.models.linear_model import linear_model
+from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling is not changed
@@ -91,4 +91,4 @@ class Coupled:
 
     @cached_property
     def _mass_matrix(self) -> np.ndarray:
-        return linear_model(self.target, supports=self.supports).mass_matrix
+        return linear_model(self.target, supports=self.supports).at(self.speed).M
