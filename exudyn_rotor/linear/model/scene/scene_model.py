@@ -12,6 +12,7 @@ second term is the unevenness that is averaged, so that connectors see the same 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -192,6 +193,14 @@ class SceneModel(LinearModel):
     def _running_size(self) -> int:
         """Number of coordinates but those of films."""
         return sum(body.size for body in self.bodies[:2])
+
+    def unknowns(self, motion: Mapping[int, np.ndarray], speed: float) -> dict[int, np.ndarray]:
+        """Return harmonics of the unknowns y of the scene, given those (k,) of coordinates."""
+        W, found = _Seen.of(self, self.assembly(speed).bodies[0]).W, {}
+        for m, rows in W.items():
+            for n, x in motion.items():
+                found[m + n] = found.get(m + n, 0.0) + rows @ x[: rows.shape[1]]
+        return found
 
     # ------------------------------------------------------------------ what a scene tells
 
