@@ -24,6 +24,7 @@ from exudyn_rotor import (
     steady_state,
 )
 from exudyn_rotor.bearings.film.reynolds import Equation
+from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.linear.modal import hermitian_zeros
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 
@@ -253,7 +254,10 @@ def test_refused_input():
     rotor = rigid_rotor()
     with pytest.raises(ValueError, match="'left': linear analyses need its static load"):
         stability(rotor, [SPEED], supports=[bearing(load=None)])
-    with pytest.raises(ValueError, match="without rotation the film does not carry"):
+    nothing = r"bearing at 'left': at 0 rad/s its film carries nothing; .* carries from 1 rad/s on"
+    with pytest.raises(NoCoefficientsError, match=nothing):
+        journals(rotor)[0].linearised().parts(0.0)
+    with pytest.raises(ValueError, match=nothing):
         stability(rotor, [0.0], supports=journals(rotor))
 
 

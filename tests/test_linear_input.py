@@ -26,6 +26,11 @@ from exudyn_rotor import (
     unbalance_response,
     unstable_ranges,
 )
+from exudyn_rotor.bearings.support import (
+    BelowTableError,
+    NoCoefficientsError,
+    OutsideTableError,
+)
 from exudyn_rotor.linear.models import linear_model as source
 
 ROTOR = (
@@ -265,6 +270,10 @@ def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
                 campbell(rotor, [speed], supports=[held]).frequencies_rotor,
                 atol=1e-12,
             )
+            with pytest.raises(BelowTableError if speed < 5.0 else OutsideTableError) as refused:
+                support.check_range(speed)
+            assert isinstance(refused.value, BelowTableError) == (speed < 5.0)
+            assert isinstance(refused.value, NoCoefficientsError)
     short = [Support("left", ([0.0, 10.0], [1.0, 3.0]))]
     for call, given in ((critical_speeds, {"max_speed": 40.0}), (stability, {"speeds": [40.0]})):
         with pytest.raises(ValueError, match="holds 0 to 10 rad/s, not"):

@@ -248,12 +248,47 @@ def test_films_brake_a_free_spin():
     assert slower == pytest.approx(torque / (MASS * 0.1**2) * 1e-7, rel=2e-3)
 
 
-def test_absent_pads_have_no_tilt_to_linearise():
+def test_absent_pads_are_held_by_next_to_nothing_and_told_once():
     loose = grooved_pads(CLEARANCE, np.radians([10.0, 130.0, 250.0]), 0.2)
     film = OilFilm(RADIUS, RADIUS, 0.02, loose, nodes=36, axial_nodes=0)
     pads = TiltingPadBearing(interface="left", film=film, load=[0.0, -500.0], pad_inertia=INERTIA)
-    with pytest.raises(ValueError, match=r"pads \[0\] carry nothing at 314"):
-        pads.linearised().films[1].terms(SPEED)
+    linear = pads.linearised()
+    with pytest.warns(UserWarning, match=r"pads \[0\] carry nothing at 314") as told:
+        found = [each.matrices(speed) for speed in (SPEED, 0.9 * SPEED) for each in linear.films]
+    assert len(told) == 1
+    assert 0.0 < np.abs(found[0][0]).max() < 2e-6 * np.abs(found[1][0]).max()
+    t, mass = linear.tangents[0], linear.masses[0]
+    K, D = (t @ X[:2, :2] @ t for X in found[0])
+    assert np.all(np.roots([mass, D, K]).real < 0.0)
+    assert np.all(np.roots([mass, D, K]).imag == 0.0)
+
+
+@pytest.mark.parametrize("preload", [0.0, 0.5])
+def test_equilibria_do_not_depend_on_what_was_asked_before(preload):
+    speeds = np.linspace(0.2, 1.0, 5) * SPEED
+    up, down, alone = (bearing(preload=preload, nodes=60) for _ in range(3))
+    first = [up.coefficients(speed) for speed in speeds]
+    last = [down.coefficients(speed) for speed in speeds[::-1]][::-1]
+    np.testing.assert_allclose(
+        alone.coefficients(speeds[2]), first[2], rtol=1e-7, atol=1e-7 * np.abs(first[2]).max()
+    )
+    np.testing.assert_allclose(first, last, rtol=0.0, atol=1e-7 * np.abs(first).max())
+
+
+def test_support_asks_for_one_equilibrium_at_a_speed(monkeypatch):
+    """Stiffness, damping and the check of the speed, and at a later look."""
+    asked, solved = [], TiltingPadBearing._solved
+
+    def counting(one, speed, load):
+        asked.append(speed)
+        return solved(one, speed, load)
+
+    monkeypatch.setattr(TiltingPadBearing, "_solved", counting)
+    support = bearing(nodes=60).linearised()
+    for speed in (SPEED, 0.9 * SPEED, SPEED):
+        support.parts(speed)
+        support.undamped().parts(speed)
+    assert asked == [SPEED, 0.9 * SPEED]
 
 
 def test_refused_input():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import hypot, inf
 from typing import ClassVar
 
@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import COEFFICIENTS, Support
+from exudyn_rotor.bearings.film.equilibria import Equilibria
+from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
+_REMEMBERED = 1000  # coefficients of a bearing
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
@@ -21,7 +23,7 @@ ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left 
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
-class NoEquilibriumError(ValueError):
+class NoEquilibriumError(NoCoefficientsError):
     """A bearing under load has no equilibrium at a speed, as films at rest."""
 
 
@@ -85,6 +87,9 @@ class Bearing(LoadedBearing):
     uses_angle: ClassVar[bool] = False  # whether the law depends on the spin angle
 
     _tried: ClassVar[np.ndarray] = _HIGHER
+    _linear: Equilibria[tuple[np.ndarray, ...]] = field(
+        default_factory=lambda: Equilibria(_REMEMBERED), init=False, repr=False
+    )
 
     @property
     def law(self) -> Law:
@@ -175,7 +180,10 @@ class Linearised:
         raise refused
 
     def _value(self, speed: float) -> np.ndarray:
-        return self.bearing.coefficients(speed)[self.index]
+        bearing = self.bearing
+        return bearing._linear.at(speed, bearing._static_load(None), bearing.coefficients)[
+            self.index
+        ]
 
     def check_range(self, speed: float) -> None:
         """Refuse a speed at which the bearing has no equilibrium.
@@ -185,12 +193,24 @@ class Linearised:
         NoEquilibriumError
         """
         try:
-            self._check(speed)
+            self._value(speed)
         except (ValueError, ArithmeticError) as error:
-            raise NoEquilibriumError(str(error)) from error
+            raise NoEquilibriumError(self._refusal(speed, str(error))) from error
 
-    def _check(self, speed: float) -> None:
-        self.bearing.equilibrium(speed)
+    def _refusal(self, speed: float, reason: str) -> str:
+        """Return why there is no equilibrium, and the lowest higher speed tried that has one."""
+        name = f"bearing at {self.bearing.interface!r}"
+        if speed == 0.0:
+            reason = f"{name}: at 0 rad/s its film carries nothing"
+        elif name not in reason:
+            reason = f"{name}: {reason}"
+        for tried in sorted(self.bearing._tried[self.bearing._tried > abs(speed)]):
+            try:
+                self._value(tried)
+            except (ValueError, ArithmeticError):
+                continue
+            return f"{reason}; of the higher speeds tried it carries from {tried:g} rad/s on"
+        return reason
 
 
 def bearing_of(support: object) -> Bearing | None:

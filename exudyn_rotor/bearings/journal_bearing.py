@@ -152,7 +152,13 @@ class JournalBearing(Bearing):
 
     def _state(self, speed: float, load: ArrayLike | None) -> FilmState:
         """Return the film in equilibrium."""
-        return self._equilibria.at(speed, self._static_load(load), self.film.equilibrium)
+        return self._equilibria.at(speed, self._static_load(load), self._solved)
+
+    def _solved(self, speed: float, load: np.ndarray) -> FilmState:
+        """Return the film in equilibrium: from that of the speed beside, if this leads to one."""
+        known = self._equilibria.beside(speed, load)
+        found = known and self.film._beside(known, speed, load)
+        return found or self.film.equilibrium(speed, load)
 
 
 @dataclass(frozen=True, eq=False)

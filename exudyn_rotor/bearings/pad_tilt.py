@@ -50,6 +50,11 @@ def shift_of_pad(
     return tilting.anywhere() if np.isnan(near) else near
 
 
+def stiffness_unit(film: OilFilm, speed: float) -> float:
+    """Return ``μ Ω L (R/c)³`` [N/m]."""
+    return film.viscosity * abs(speed) * film.length * (film.radius / film.clearance) ** 3
+
+
 class _TiltingPad:
     """A pad at one place of the journal, as it tilts."""
 
@@ -67,7 +72,7 @@ class _TiltingPad:
     def near(self, last: float) -> float:
         """Return s by Newton's method from the last one; NaN where it leaves the film."""
         film, t = self._film, self._t
-        unit = film.viscosity * abs(self._speed) * film.length * (film.radius / film.clearance) ** 3
+        unit = stiffness_unit(film, self._speed)
         for _ in range(_NEAR):
             if not self._low < last < self._high:  # or NaN
                 break

@@ -23,7 +23,11 @@ class NoCoefficientsError(ValueError):
     """A support has no coefficients at a speed."""
 
 
-class BelowTableError(NoCoefficientsError):
+class OutsideTableError(NoCoefficientsError):
+    """A speed is beyond the end of a table."""
+
+
+class BelowTableError(OutsideTableError):
     """A speed is below the first one of a table."""
 
 
@@ -113,8 +117,9 @@ class Support:
 
         Raises
         ------
-        ValueError
-            If the speed is beyond a table that may not be extrapolated.
+        NoCoefficientsError
+            If the speed is beyond a table that may not be extrapolated, or a bearing has no
+            equilibrium there.
         """
         damping, stiffness, carried = self.parts(speed)
         both = {n: speed * X for n, X in carried.items()}
@@ -162,7 +167,7 @@ class Support:
 
         Raises
         ------
-        TypeError, ValueError
+        TypeError, NoCoefficientsError
         """
         checks.number(speed, "speed", "rad/s")
         for name in () if self.extrapolate else COEFFICIENTS:
@@ -174,7 +179,7 @@ class Support:
             slack = _ROUNDING * np.abs(value[0]).max()
             least, most = value[0][0] - slack, value[0][-1] + slack
             if not least <= speed <= most:
-                kind = BelowTableError if speed < least else ValueError
+                kind = BelowTableError if speed < least else OutsideTableError
                 raise kind(
                     f"support at {self.interface!r}: the table of its {name} holds "
                     f"{value[0][0]:g} to {value[0][-1]:g} rad/s, not {speed:g} rad/s: give more of "

@@ -18,6 +18,7 @@ J. W. Lund, *Spring and damping coefficients for the tilting-pad journal bearing
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -32,13 +33,16 @@ from exudyn_rotor.bearings.film.film import OilFilm
 from exudyn_rotor.bearings.film.pads import direction
 from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
-from exudyn_rotor.bearings.pad_tilt import shift_of_pad
+from exudyn_rotor.bearings.pad_tilt import shift_of_pad, stiffness_unit
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.callers import user_level
 
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain
+_TOGETHER, _NARROWER = 15, 0.6  # steps of journal and tilts together, what of a film one may close
+_LOOSE, _FIRM = 1e-6, 1e5  # of μ Ω L (R/c)³: no stiffness; condition of one that holds all ways
 _HELD = 1e-6  # of its stiffness: what goes where no pad holds the journal
-_CLOSE = 1e-9  # of the load: it stops there
+_CLOSE, _STILL = 1e-9, 1e-11  # of the load and of the clearance: it stops there
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -182,12 +186,18 @@ class TiltingPadBearing(Bearing):
     def linearised(self) -> Support | PadSupport:
         """Return the support for linear analyses: the coefficients under the load at every speed.
 
-        With the pads' tilts as coordinates where these have inertia; then every pad must carry.
+        With the pads' tilts as coordinates where these have inertia. A pad that carries nothing is
+        absent but for a millionth of the bearing's stiffness, which holds its tilt.
 
         Raises
         ------
         ValueError
             Where the bearing has no load.
+
+        Warns
+        -----
+        UserWarning
+            Of pads with inertia, by the analysis, at the first speed at which one carries nothing.
         """
         if self.pad_inertia is None:
             return super().linearised()
@@ -201,6 +211,26 @@ class TiltingPadBearing(Bearing):
         static = _OfPads(self, 0)
         return PadSupport(self.interface, masses, self.tangents, tuple(films), static)
 
+    def _of_pads(self, speed: float, load: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return stiffness and damping of each pad's film (p, 2, 2), and stiffness of all."""
+        state, mass = self._state(speed, load), self.pad_mass
+        whole = state.impedance(self.whirl_ratio * abs(speed), mass).real
+        absent = [pad for pad, each in enumerate(state.states) if each is None]
+        if absent and not self.__dict__.get("_told"):
+            object.__setattr__(self, "_told", True)
+            warnings.warn(
+                f"bearing at {self.interface!r}: pads {absent} carry nothing at {speed:g} rad/s: "
+                "they count as absent, their tilts as held by next to nothing",
+                stacklevel=user_level(),
+            )
+        soft = min(mass * speed**2, _HELD * float(np.abs(whole).max()))
+        held = np.array([soft, 4.0 * np.sqrt(soft * mass)])  # overdamped: no vibration of its own
+        films = [
+            np.multiply.outer(held, np.outer(t, t)) if each is None else each
+            for each, t in zip(state.coefficients, self.tangents, strict=True)
+        ]
+        return *np.moveaxis(np.array(films), 1, 0), whole
+
     def _state(self, speed: float, load: ArrayLike | None) -> _Pads:
         """Return the pads in equilibrium."""
         return self._equilibria.at(speed, self._static_load(load), self._solved)
@@ -212,8 +242,15 @@ class TiltingPadBearing(Bearing):
                 f"speed, load: bearing at {self.interface!r}: need numbers other than 0, got "
                 f"{speed:g} rad/s and {size:g} N"
             )
+        beside = self._equilibria.beside(speed, load)
+        found = beside and beside.together(speed, load)
+        if found is not None:
+            return found
         pads, far = _Pads.of(self, speed), 0.2 * self.film.clearance
         state, best, vain = pads.at(1.5 * far * load / size), np.inf, 0
+        found = state.together(speed, load)
+        if found is not None:
+            return found
         for _ in range(_STEPS):
             left = state.force + load
             if np.linalg.norm(left) < _CLOSE * size:
@@ -286,6 +323,46 @@ class _Pads:
             raise refused
         return found
 
+    def together(self, speed: float, load: np.ndarray) -> _Pads | None:
+        """Return the equilibrium at a speed, by Newton's method for journal and tilts at once.
+
+        None where it does not end, a film vanishes or is too thin, and where absent pads carry.
+        """
+        place, shifts, states, still = self.place, self.shifts, list(self.states), np.zeros(2)
+        films, present = self.films, [pad for pad, state in enumerate(states) if state is not None]
+        units = [stiffness_unit(film, speed) for film in films]
+        small = _STILL * min(film.clearance for film in films)
+        for _ in range(_TOGETHER):
+            left, total, moved = load.copy(), np.zeros((2, 2)), np.full((len(states), 3), np.nan)
+            for pad in present:
+                film, t, empty = films[pad], self.tangents[pad], states[pad].solution.empty
+                states[pad] = film.law(place - shifts[pad] * t, still, speed, empty)
+                force, stiffness = states[pad].force, states[pad].tangent[0]
+                rise, lever = t @ stiffness @ t, stiffness @ t
+                if not rise > _LOOSE * units[pad]:
+                    return None
+                moved[pad] = *(t @ stiffness / rise), t @ force / rise
+                left += force - lever * moved[pad, 2]
+                total += stiffness - np.outer(lever, moved[pad, :2])
+            if not np.linalg.cond(total) < _FIRM:
+                return None
+            move = np.linalg.solve(total, left)
+            tilting = moved[:, :2] @ move - moved[:, 2]
+            if np.nanmax(np.abs([*move, *tilting])) < small:
+                break
+            seen = move - tilting[:, None] * self.tangents
+            share = min(1.0, _NARROWER / max(states[pad].closing(seen[pad]) for pad in present))
+            place, shifts = place + share * move, shifts + share * tilting
+        else:
+            return None
+        for film, t, state in zip(films, self.tangents, states, strict=True):
+            thin = state is not None and state.solution.equation.heights.min() < film.thinnest
+            if thin or (
+                state is None and not np.isnan(shift_of_pad(film, place, t, speed, np.nan))
+            ):
+                return None
+        return replace(self, speed=speed, place=place, shifts=shifts, states=states)
+
     @property
     def force(self) -> np.ndarray:
         """Force on the journal [N], shape (2,)."""
@@ -316,19 +393,7 @@ class _OfPads(Linearised):
 
     pad: int | None = None
 
-    def _check(self, speed: float) -> None:
-        self._value(speed)
-
     def _value(self, speed: float) -> np.ndarray:
-        state = self.bearing._state(speed, None)
-        if any(each is None for each in state.states):
-            absent = [number for number, each in enumerate(state.states) if each is None]
-            raise ValueError(
-                f"bearing at {self.bearing.interface!r}: pads {absent} carry nothing at {speed:g} "
-                "rad/s, so that their tilts are free; give the pads a preload, or leave out "
-                "pad_inertia"
-            )
-        if self.pad is None:
-            whirl = self.bearing.whirl_ratio * abs(speed)
-            return state.impedance(whirl, self.bearing.pad_mass).real
-        return state.coefficients[self.pad][self.index]
+        bearing = self.bearing
+        *films, whole = bearing._linear.at(speed, bearing._static_load(None), bearing._of_pads)
+        return whole if self.pad is None else films[self.index][self.pad]

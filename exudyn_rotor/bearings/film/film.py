@@ -168,9 +168,23 @@ class OilFilm(FilmData):
             "it is left; a load that points into a groove may have none"
         )
 
-    def _newton(self, start: np.ndarray, load: np.ndarray, speed: float) -> FilmState | None:
+    def _beside(self, known: FilmState, speed: float, load: np.ndarray) -> FilmState | None:
+        """Return the film that carries a load, from one beside it; None where none is so found.
+
+        Of films that bear tension, and where a journal would run off, none: there may be another.
+        """
+        found = self._newton(known.position, load, speed, known.solution.empty)
+        if found is None or self.cavitation == "none":
+            return None
+        left = float(np.linalg.norm(found.force + load))
+        held = left < _CLOSE * np.linalg.norm(load) and np.linalg.det(found.slow_stiffness) > 0.0
+        return found if held else None
+
+    def _newton(
+        self, start: np.ndarray, load: np.ndarray, speed: float, empty: np.ndarray | None = None
+    ) -> FilmState | None:
         """Return where Newton's method ends; None for a film thinner than the grid resolves."""
-        state, vain, size = self._state(start, np.zeros(2), speed), 0, np.linalg.norm(load)
+        state, vain, size = self._state(start, np.zeros(2), speed, empty), 0, np.linalg.norm(load)
         for _ in range(_STEPS):
             unbalanced = np.linalg.norm(state.force + load)
             if unbalanced < _CLOSE * size or vain == _VAIN:
@@ -185,9 +199,7 @@ class OilFilm(FilmData):
         """Return the state after one step, shortened until the force comes closer to the load."""
         unbalanced = state.force + load
         move = np.linalg.lstsq(state.slow_stiffness, unbalanced, rcond=1e-12)[0]
-        before = self._heights(state.position)
-        closing = before - self._heights(state.position + move)
-        move *= min(1.0, 0.6 / max(float(np.max(closing / before)), 1e-300))
+        move *= min(1.0, 0.6 / state.closing(move))
         for _ in range(12):
             # the cells that are empty now: few steps from those of the next place
             motion = state.position + move, state.velocity, state.speed

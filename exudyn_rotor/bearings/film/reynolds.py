@@ -74,7 +74,7 @@ class Equation:
         heights: np.ndarray,
         rates: np.ndarray,
     ) -> np.ndarray:
-        """Return the flow out of each volume, linear in the three last arguments."""
+        """Return the flow out of each volume, linear in the last three, one each or many."""
         return self._pressed(pressure, cubes) + self._fed(void, heights, rates)
 
     def _pressed(self, pressure: np.ndarray, cubes: np.ndarray) -> np.ndarray:
@@ -88,15 +88,18 @@ class Equation:
         drop_left, drop_right = pressure - left, pressure - right
         step = grid.step[:, None]
         through = (
-            axial.mass / step * (cubes[1, :, None] * drop_left + cubes[2, :, None] * drop_right)
+            axial.mass
+            / step
+            * (cubes[..., 1, :, None] * drop_left + cubes[..., 2, :, None] * drop_right)
         )
-        return through + step * cubes[0, :, None] * (pressure @ axial.stiffness)
+        return through + step * cubes[..., 0, :, None] * (pressure @ axial.stiffness)
 
     def _fed(self, void: np.ndarray, heights: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """Return what the surface carries out of each volume, and what its growth takes in."""
         step, (before, after) = self.grid.step[:, None], self._carried(void)
-        gain = 0.5 * self.speed * (heights[2, :, None] * after - heights[1, :, None] * before)
-        growth = step * (rates[:, None] - self.void_rate * void * heights[0, :, None])
+        ahead, behind = heights[..., 2, :, None] * after, heights[..., 1, :, None] * before
+        gain = 0.5 * self.speed * (ahead - behind)
+        growth = step * (rates[..., None] - self.void_rate * void * heights[..., 0, :, None])
         return self.source * self.grid.axial.weights * (gain + growth)
 
     def _carried(self, void: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -234,9 +237,7 @@ class Solution:
         motion exp(iνt) where the equation's `void_rate` is iν.
         """
         equation = self.equation
-        loads = [
-            -equation.residual(self.pressure, self.fraction, 3.0 * equation.heights**2 * h, h, rate)
-            for h, rate in zip(heights, rates, strict=True)
-        ]
-        changed = equation.direct(self.empty, np.array(loads))
+        cubes = 3.0 * equation.heights**2 * heights
+        loads = -equation.residual(self.pressure, self.fraction, cubes, heights, rates)
+        changed = equation.direct(self.empty, loads)
         return np.where(self.empty | (self.bearing > self.pressure), 0.0, changed)

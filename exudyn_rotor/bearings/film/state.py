@@ -92,9 +92,10 @@ class FilmState:
                 raise ValueError("speed: films that conserve mass have coefficients at speed alone")
             impedance = self._gradient(-u, -1j * whirl * u[:, 0], 1j * whirl)
             return impedance.real, impedance.imag / whirl
-        return self.tangent
+        stiffness, damping = self.tangent
+        return stiffness.copy(), damping.copy()
 
-    @property
+    @cached_property
     def tangent(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness −∂F/∂q [N/m] and damping −∂F/∂q̇ [N s/m] at this instant, each (2, 2).
 
@@ -126,6 +127,8 @@ class FilmState:
     @property
     def slow_stiffness(self) -> np.ndarray:
         """Stiffness of a motion so slow that voids follow at once, (2, 2) [N/m]."""
+        if self.film.cavitation != "mass-conserving":
+            return self.tangent[0]
         u = np.moveaxis(self.film.grid.u, 2, 0)
         return self._gradient(-u, np.zeros_like(u)[:, 0])
 
@@ -157,6 +160,11 @@ class FilmState:
     def heights(self) -> np.ndarray:
         """Thickness at the nodes of the grid, (n,) [m]."""
         return self.solution.equation.heights[0]
+
+    def closing(self, move: np.ndarray) -> float:
+        """Return the largest share of its thickness that a move of the journal (2,) takes [m]."""
+        taken = self.film.grid.u @ move / self.solution.equation.heights
+        return float(np.max(taken, initial=1e-300))
 
     @property
     def minimum_thickness(self) -> float:

@@ -73,6 +73,11 @@ class RotorAlone:
     complete_up_to: float
     spin: Spin | None
 
+    @property
+    def has_halves(self) -> bool:
+        """Whether the number of modes has cut pairs in halves."""
+        return bool(np.isfinite(self.complete_up_to))
+
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
         shares = [self.turning.place_share(self.motion(name)) for name in places]

@@ -233,7 +233,7 @@ def elements_of(
     links: Sequence[Link],
     bases: Mapping[str, End],
     turns: int,
-    undamped: bool,
+    kind: str = "full",
 ) -> tuple[list[Element], list[OwnBody]]:
     """Return the elements of a model, and the coordinates that some of them bring.
 
@@ -247,9 +247,9 @@ def elements_of(
         What carries the support at an interface; the ground where there is nothing.
     turns : int
         Axes of the own coordinates.
-    undamped : bool
-        Whether elements are without damping, without the skew part of their stiffness, and with
-        their static stiffness in the place of own coordinates.
+    kind : {'full', 'static', 'undamped'}
+        'static' elements have their static stiffness in the place of own coordinates; 'undamped'
+        ones are also without damping and the skew part of their stiffness.
 
     Raises
     ------
@@ -259,10 +259,11 @@ def elements_of(
     elements, own = [], []
     for name, given in supports.items():
         plain, controlled = linear_supports(given)
-        if undamped:
-            plain = [s.undamped() for s in plain]
-            plain += [Support(c.interface, c.static_stiffness).undamped() for c in controlled]
+        if kind != "full":
+            plain = [*plain, *(Support(c.interface, c.static_stiffness) for c in controlled)]
             controlled = ()
+        if kind == "undamped":
+            plain = [one.undamped() for one in plain]
         ratio = ratios[name]
         for one in plain:
             base = bases.get(one.interface)
@@ -276,7 +277,7 @@ def elements_of(
         if isinstance(link.connection, GearMesh):
             elements.append(_gear_element(link.connection, (first, second)))
             continue
-        law = link.connection.undamped() if undamped else link.connection
+        law = link.connection.undamped() if kind == "undamped" else link.connection
         rate = ratios[first[0]] - ratios[second[0]]
         elements.append(support_element(law, first, second, rate, ratios[first[0]]))
     return elements, own

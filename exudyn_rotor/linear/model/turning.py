@@ -35,6 +35,7 @@ _POINTS = 800  # of the mesh, at most, by which waves are told
 _GROUP = 5e-2  # frequencies that differ by less may be of one pair, which a mesh splits
 _SEEN = 1e-8  # share of the largest energy below which a motion is not seen
 _TURNS = 0.05  # share of a motion's energy that one lateral wave has more than the opposite one
+_PURE = 0.5  # share of both lateral waves that one of them has more in one motion of a pair
 _HALF = 0.5  # share of lateral waves in a motion that has no partner: half of a pair
 _RIGID_PAIRS = (
     (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
@@ -201,7 +202,9 @@ def _pairs(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return waves as orthonormal columns (g, g), their n, and halves of pairs (g, h), real."""
     more, columns = la.eigh(forward - backward, whole)
-    F = columns[:, more > _TURNS][:, ::-1]
+    both = np.einsum("ij,ik,kj->j", columns.conj(), forward + backward, columns).real
+    # of half a pair together with another motion both waves are strong
+    F = columns[:, (more > _TURNS) & (more > _PURE * both)][:, ::-1]
     F = F / np.linalg.norm(F, axis=0)
     pairs, count = np.hstack([F, F.conj()]), 2 * F.shape[1]
     span, _, turn = np.linalg.svd(pairs, full_matrices=True)

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem, at_angle
+from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
 from exudyn_rotor.linear.solve.state import States
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
@@ -27,8 +28,8 @@ def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 def floquet_motions(
     system: PeriodicSystem, made: States, steps: int = _STEPS
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return 2k exponents, their states (h, 2k, 2k) and the harmonics."""
+) -> Exponents:
+    """Return the motions of a system."""
     period = 2.0 * np.pi / (system.step * abs(system.speed))
     h, turn = period / steps, 2.0 * np.pi / system.step * np.sign(system.speed)
     size = len(made.A[0])
@@ -45,7 +46,7 @@ def floquet_motions(
     spectrum = np.fft.fft(periodic, axis=0) / steps
     top = steps // 4
     spectrum = np.concatenate([spectrum[-top:], spectrum[: top + 1]])
-    orders = system.step * np.arange(-top, top + 1) * int(np.sign(system.speed))
+    orders = system.step * np.arange(-top, top + 1)
     energy = np.sum(np.abs(spectrum) ** 2, axis=1)
     energy = energy / energy.sum(axis=0)
     shift = np.round((np.arange(-top, top + 1) @ energy)).astype(int)
@@ -53,4 +54,7 @@ def floquet_motions(
     for column, by in enumerate(shift):
         states[:, :, column] = np.roll(spectrum[:, :, column], -by, axis=0)
     values = values + 1j * shift * 2.0 * np.pi / period
-    return values, states, np.sort(orders) if system.speed > 0.0 else orders
+    if system.speed < 0.0:
+        states, orders = states[::-1], -orders[::-1]
+    chosen = one_of_each_family(values, states, orders, system, made)
+    return Exponents(values[chosen], states[:, :, chosen], orders)

@@ -15,7 +15,7 @@ import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.solve.floquet import floquet_motions
-from exudyn_rotor.linear.solve.hill import hill_motions
+from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
 METHODS = ("auto", "hill", "floquet")
@@ -110,10 +110,10 @@ def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> lis
             found[i] = Motions(system.speed, none[0, 0], none, np.array([0]), 0.0)
             continue
         if method == "floquet":
-            parts = floquet_motions(system, made[i])
+            exponents = floquet_motions(system, made[i])
         else:
-            *parts, size = hill_motions(system, made[i], tolerance, size)
-        found[i] = _periodic(system.speed, *parts, made[i])
+            exponents, size = hill_motions(system, made[i], tolerance, size)
+        found[i] = _periodic(system.speed, exponents, made[i])
         if np.any(np.isnan(found[i].values)):
             lost.append(system.speed)
     if lost:
@@ -154,47 +154,13 @@ def one_of_each_pair(values: np.ndarray) -> np.ndarray:
     return chosen[np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))]
 
 
-def _periodic(
-    speed: float, values: np.ndarray, states: np.ndarray, orders: np.ndarray, made: States
-) -> Motions:
-    """Return motions from 2k exponents and their states (h, 2k, 2k), one of each pair."""
-    chosen = _paired(values, states, orders, speed)
-    vectors = made.shape @ states[:, :, chosen]
-    sizes = np.linalg.norm(vectors.reshape(-1, len(chosen)), axis=0)
+def _periodic(speed: float, found: Exponents, made: States) -> Motions:
+    """Return motions in ascending order, in the coordinates of the system."""
+    vectors = made.shape @ found.states
+    sizes = np.linalg.norm(vectors.reshape(-1, len(found.values)), axis=0)
     vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
-    order = np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))
-    return Motions(speed, values[chosen][order], vectors[:, :, order], orders, _bound(made))
-
-
-def _paired(
-    values: np.ndarray, states: np.ndarray, orders: np.ndarray, speed: float
-) -> np.ndarray:
-    """Return which of 2k Floquet exponents stand for all, k.
-
-    The conjugate of a motion is found by its exponent; where several have the same, by its shape.
-    """
-    count, left, chosen, real = len(values) // 2, list(range(len(values))), [], []
-    left.sort(key=lambda i: (-np.nan_to_num(values[i].imag, nan=-np.inf)))
-    while left:
-        i = left.pop(0)
-        if np.isnan(values[i]):
-            real.append(i)
-            continue
-        scale = abs(values[i]) + abs(speed)
-        apart = np.array([abs(values[j] - values[i].conj()) for j in left] + [np.inf])
-        if abs(values[i].imag) <= 1e-9 * scale and apart.min() > 1e-6 * scale:
-            real.append(i)
-            continue
-        near = np.flatnonzero(apart[:-1] <= apart.min() + 1e-7 * scale)
-        mirrored = states[::-1, :, i].conj()
-        partner = max(near, key=lambda n: abs(np.vdot(mirrored, states[:, :, left[n]])), default=None)
-        if partner is None:
-            real.append(i)
-            continue
-        left.pop(partner)
-        chosen.append(i)
-    real.sort(key=lambda i: -np.nan_to_num(values[i].real, nan=-np.inf))
-    return np.array([*chosen, *real[: count - len(chosen)]], dtype=int)
+    order = np.lexsort((found.values.real, np.abs(found.values.imag)))
+    return Motions(speed, found.values[order], vectors[:, :, order], found.orders, _bound(made))
 
 
 def _beside(found: Motions, free: np.ndarray, basis: np.ndarray) -> Motions:

@@ -82,8 +82,8 @@ BEARINGS = [
         ),
         (
             "cube of the thickness not differentiated",
-            "3.0 * equation.heights**2 * h, h, rate",
-            "equation.heights**2 * h, h, rate",
+            "3.0 * equation.heights**2 * heights",
+            "equation.heights**2 * heights",
         ),
         ("voids keep their pressure's change", "self.empty | (", "False & ("),
         (

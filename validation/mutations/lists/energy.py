@@ -162,7 +162,7 @@ ENERGY = [
         "bearings/tilting_pad.py",
         "test_tilting_pad.py",
         ("mass of pads as a spring", "- mass * whirl**2", "+ mass * whirl**2"),
-        ("critical speeds of slow pads", "self.bearing.whirl_ratio * abs(speed)", "0.0"),
+        ("critical speeds of slow pads", "self.whirl_ratio * abs(speed), mass", "0.0, mass"),
     ),
     *mutations(
         "multibody/supports/tilting_pads.py",
