@@ -1,0 +1,1 @@
+"""Scenes with a rotor, linearised about their steady motion."""
