@@ -36,7 +36,7 @@ _HELD = 1e-8  # share of a motion of the rotor that is none of the scene
 _WAVE_FREE = 0.99  # share of a held motion that must be no lateral wave
 _DEPENDENT = 1e-3  # of singular values of the motion of interfaces
 _LEAST = 1e-9  # share of harmonics of coefficients that is rounding of differences
-_SKEW = 1e-9  # share of the skew part of stiffness and damping that is
+_SKEW = 1e-9  # share of stiffness and damping that is
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +75,8 @@ class SceneModel(LinearModel):
 
     def _held(self, alone: RotorAlone) -> np.ndarray:
         """Return motions of a rotor that it does not have in the scene, orthonormal (k, f)."""
-        columns = alone.Q.T @ self._columns
-        return la.null_space((columns / np.linalg.norm(columns, axis=0)).T, rcond=_HELD)
+        columns = self._columns / np.linalg.norm(self._columns, axis=0)
+        return la.null_space(columns.T @ alone.Q, rcond=_HELD)
 
     def _alone(self, name: str, whole: bool) -> RotorAlone:
         alone = super()._alone(name, whole)
@@ -117,9 +117,9 @@ class SceneModel(LinearModel):
         alone = super()._alone("", False)
         held = self._held(alone)  # a motion that is held across the axis turns with the rotor
         still = np.linalg.norm(alone.turning.still @ held, axis=0)
-        return {"": alone.unevenness(self._places("")) if np.all(still > _WAVE_FREE) else np.inf}
+        return {"": alone.unevenness(self.places("")) if np.all(still > _WAVE_FREE) else np.inf}
 
-    def _places(self, name: str) -> tuple[str, ...]:
+    def places(self, name: str) -> tuple[str, ...]:
         """Return the interfaces at whose markers anything acts."""
         mbs, used = self.scene.body.mbs, set()
         for number in range(mbs.systemData.NumberOfObjects()):
@@ -132,12 +132,22 @@ class SceneModel(LinearModel):
     @cached_property
     def turns(self) -> int:
         """Whether the axes of the rotor turn with Ω (1) or stand still (0)."""
+        if self.wanted_axes != "auto":
+            return int(self.wanted_axes == "rotor")
         given = [one.support for one in self.scene.body.supports]
-        turning = [s for s in given if isinstance(s, Support) and s.frame == "rotor"]
-        alike = all(is_isotropic_matrix(X) for s in turning for X in s.matrices(1.0))
-        return 1 if self.wanted_axes == "auto" and not alike else super().turns
+        plain = [one for one in given if isinstance(one, Support)]
+        alike = [all(map(is_isotropic_matrix, one.matrices(0.0))) for one in plain]
+        turning = [one.frame == "rotor" for one in plain]
+        if self._own_unevenness[""] > self.largest_unevenness:
+            return 1
+        if any(turns and not same for turns, same in zip(turning, alike, strict=True)):
+            return 1
+        # a basis with halves of pairs is taken whole where that is constant, too
+        constant = 0 < len(plain) == len(given) and all(alike) and not self._standing.size
+        constant = constant and not any(one.varies for one in plain)
+        return int(constant and self._alone("", False).has_halves)
 
-    def _assembled(self, turns: int, at_rest: bool = False) -> Assembly:
+    def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
         alone = self._alone("", self.turns == 1)
         ratio, frame = (0.0, 0) if at_rest else (1.0, turns)
         rotor = rotor_body("", alone, ratio, frame, is_apart=not at_rest)
@@ -181,6 +191,9 @@ class SceneModel(LinearModel):
         own[assembly.slices[1], assembly.slices[1]] = 0.0
         own[:k, :k] += M.mean(axis=0)
         scale = 1.0 / np.sqrt(np.diag(own)[:k])
+        free = _unresisted(K, scale) & _unresisted(D, scale)
+        for X in (D, K):
+            X[:, free], X[:, :, free] = 0.0, 0.0
         # of a round rotor the mean is taken, but for what unbalance moves in each revolution
         for terms, X in ((system.D, D), (system.K, K)):
             found = terms_of(X, scale, _LEAST)
@@ -317,6 +330,12 @@ class _Seen:
         D, K = W[0].T @ D, W[0].T @ K @ W[0]
         mass = Z.T @ rest.mass
         return mass @ Z, 2.0 * mass @ Z1 + D @ W[0], mass @ Z2 + D @ (T.T @ Z1) + K
+
+
+def _unresisted(samples: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Return which coordinates samples (n, k, k) act on by rounding of differences alone, (k,)."""
+    sizes = np.abs(samples * np.outer(scale, scale)).max(axis=0, initial=0.0)
+    return np.maximum(sizes.max(axis=0), sizes.max(axis=1)) <= _SKEW * sizes.max(initial=0.0)
 
 
 def _without_noise(X: np.ndarray) -> np.ndarray:
