@@ -11,8 +11,8 @@ from void_films import SPEED as RIGID_SPEED
 from exudyn_rotor import Foundation, JournalBearing, Mount, Support, bearing_loads, linear_model
 from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.linear.models.scene import remembering_scene
-from exudyn_rotor.linear.periodic.exponents import exponents
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from linear_values import exponents
+from exudyn_rotor.linear.equations import UnconvergedError
 
 SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
 CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]

@@ -20,7 +20,7 @@ from exudyn_rotor import (
 from exudyn_rotor.bearings.held_law import HeldBearing
 from exudyn_rotor.bearings.rolling import contacts
 from exudyn_rotor.linear.model.scene import steady_motion
-from exudyn_rotor.linear.periodic.exponents import exponents
+from linear_values import exponents
 from exudyn_rotor.linear.equations import UnconvergedError
 
 CLEARANCE, MASS, RADIUS = 1e-4, 100.0, 0.1

@@ -44,7 +44,7 @@ from exudyn_rotor import (
     unstable_ranges,
 )
 from exudyn_rotor.bearings.film import void_states
-from exudyn_rotor.linear.periodic.exponents import exponents
+from linear_values import exponents
 
 LOAD = np.array([0.0, -525.0])
 IN_PAD, TO_GROOVE = [1.2, 1.2 + np.pi], [0.0, np.pi]  # where voids end, of two grooves

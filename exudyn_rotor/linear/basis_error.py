@@ -63,6 +63,8 @@ def shifts_over(
         return None
     chosen = [known[i] for i in points(len(known))]
     content, lifted = Content.of(richer), lifting(model, richer)
+    if lifted.shape[0] == lifted.shape[1]:
+        return np.zeros(shape, dtype=complex)
     found = motions_over(richer, speeds[chosen], held=held)
     shifts = np.full((len(chosen), shape[1]), np.nan, dtype=complex)
     for row, (place, motions) in enumerate(zip(chosen, found, strict=True)):

@@ -122,6 +122,7 @@ class Content:
         for body, place in zip(assembly.bodies, assembly.slices, strict=True):
             if not isinstance(body, RotorBody):  # mass for mass as large as the rotor's
                 standing[place, place] = share * body.M
+        found = found or [(0, 0.0, 0.0, np.zeros((k, k)))]  # no point that moves: no whirl
         waves, shifts, spins, forms = zip(*found, strict=True)
         return cls(np.array(waves), np.array(shifts), np.array(spins), np.array(forms), **parts,
                    standing=standing)  # fmt: skip
