@@ -15,7 +15,7 @@ import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.modal.whirl_new import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over

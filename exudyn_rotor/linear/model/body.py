@@ -55,7 +55,8 @@ class RotorAlone:
         Largest share of stiffness and centrifugal matrix that differs around the circumference,
         in slow motions.
     left_out : mapping of str to float
-        Of each interface the share of its lateral flexibility by motions that are half of a pair.
+        Of each interface the share of its lateral flexibility by motions that are half of a pair;
+        of '' their share in all slow lateral motions.
     complete_up_to : float
         Frequency of the lowest of these halves [rad/s].
     spin : Spin or None
@@ -81,7 +82,7 @@ class RotorAlone:
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
         shares = [self._place_share(name) for name in places]
-        lost = [self.left_out.get(name, 0.0) for name in places]
+        lost = [self.left_out.get(name, 0.0) for name in places or ("",)]
         return max([self.uneven, *shares, *lost])
 
     @kept
@@ -110,6 +111,9 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
     if turning.halves.shape[1]:
         squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
         lowest = float(np.sqrt(max(squares[0], 0.0)))
+        halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
+        slow = np.where(halves | (turning.waves != 0), turning.weights**2, 0.0)
+        left_out[""] = float(slow[halves].sum() / slow.sum())
         for name in rotor.interfaces:
             left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:

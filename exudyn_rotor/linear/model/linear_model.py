@@ -425,8 +425,11 @@ class LinearModel:
         """Return the motion of a mesh node of the only rotor, as :meth:`seen` does; no rotation."""
         assembly = self.assembly(speed)
         body = rotors_of(assembly.bodies)[0]
-        rotor = body.alone.rotor
-        rows = rotor.shapes.matrix[3 * number : 3 * number + 3] @ body.alone.Q
+        rotor = self.rotors[body.name]
+        rows = rotor.shapes.matrix[3 * number : 3 * number + 3]
+        if self.is_richer:  # the shapes that are added have no motion of nodes
+            rows = rows @ rotor.in_attached.T
+        rows = rows @ body.alone.Q
         rows = np.column_stack([rotor.axis.plane, rotor.axis.direction]).T @ rows
         if body.is_apart:
             rows = body.spin.about_axis(rows)
@@ -543,12 +546,12 @@ class LinearModel:
     @cached_property
     def held_basis(self) -> np.ndarray | None:
         """Motions without a free spin as orthonormal columns; None where no spin is free."""
-        return _beside(self.free_spins)
+        return beside(self.free_spins)
 
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return _beside(self._neutral[1])
+        return beside(self._neutral[1])
 
     @property
     def for_responses(self) -> LinearModel:
@@ -574,7 +577,7 @@ class LinearModel:
         return "\n".join(lines)
 
 
-def _beside(momenta: np.ndarray) -> np.ndarray | None:
+def beside(momenta: np.ndarray) -> np.ndarray | None:
     """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
     if not momenta.shape[1]:
         return None

@@ -16,9 +16,10 @@ from exudyn_rotor.linear.equations import PeriodicSystem
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
-_FREE = 1e-12  # of matrices with diagonals of one: a motion that nothing resists
+_FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resists
+_NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
-_SINGULAR = 1e-14  # reciprocal condition of equations without a solution
+_SINGULAR = 1e-13  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
 
 
@@ -151,7 +152,7 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
     scaled, b = scale[:, None] * A * scale, scale * load
     U, values, Vh = np.linalg.svd(scaled)
-    free = values <= _FREE * values.max(initial=0.0)
+    free = values <= _NONE * values.max(initial=0.0)
     if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):
         return np.full(len(load), np.nan, dtype=complex)
     kept = ~free
@@ -199,8 +200,25 @@ def _coupled(
 ) -> dict[int, np.ndarray]:
     """Return the harmonics that are coupled, from one matrix."""
     h, k = len(orders), system.size
+    A, nu = coupled_stiffness(system, rate, orders)
+    F = np.array([loads.get(int(m), np.zeros(k)) for m in orders], dtype=complex)
+    constant = 0.0 in nu
+    momenta = None
+    if constant and driven is not None and driven.shape[1]:
+        momenta = np.zeros((h, k, driven.shape[1]))
+        momenta[nu.index(0.0)] = driven
+        momenta = momenta.reshape(h * k, -1)
+    given = A[None], F.reshape(1, -1)
+    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
+    return {int(n): x for n, x in zip(orders, X, strict=True)}
+
+
+def coupled_stiffness(
+    system: PeriodicSystem, rate: float, orders: Sequence[int]
+) -> tuple[np.ndarray, list[float]]:
+    """Return the dynamic stiffness between harmonics, (h k, h k), and their frequencies [rad/s]."""
+    h, k = len(orders), system.size
     A = np.zeros((h, k, h, k), dtype=complex)
-    F = np.zeros((h, k), dtype=complex)
     nu = [_rate(rate, int(n), system.speed) for n in orders]
     for a, m in enumerate(orders):
         for b, n in enumerate(orders):
@@ -210,13 +228,4 @@ def _coupled(
         A[a, :, a] -= nu[a] ** 2 * system.M
         for n, H in system.H:
             A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
-        F[a] = loads.get(int(m), 0.0)
-    constant = 0.0 in nu
-    momenta = None
-    if constant and driven is not None and driven.shape[1]:
-        momenta = np.zeros((h, k, driven.shape[1]))
-        momenta[nu.index(0.0)] = driven
-        momenta = momenta.reshape(h * k, -1)
-    given = A.reshape(1, h * k, h * k), F.reshape(1, -1)
-    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
-    return {int(n): x for n, x in zip(orders, X, strict=True)}
+    return A.reshape(h * k, h * k), nu

@@ -25,7 +25,7 @@ from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms
-from exudyn_rotor.linear.modal.whirl_new import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain

@@ -18,7 +18,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.modal.tracking import track
-from exudyn_rotor.linear.modal.whirl_new import UNKNOWN, Content, Named
+from exudyn_rotor.linear.modal.whirl import UNKNOWN, Content, Named
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,

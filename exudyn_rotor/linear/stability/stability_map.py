@@ -14,7 +14,7 @@ from exudyn_rotor.checks import ascending
 from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.modal.whirl_new import (
+from exudyn_rotor.linear.modal.whirl import (
     UNKNOWN,
     WHIRLS,
     Content,

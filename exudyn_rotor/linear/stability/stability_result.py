@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
-from exudyn_rotor.linear.modal.whirl_new import FAMILIES, WHIRLS, damping_of, families
+from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
 from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS

@@ -21,7 +21,7 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.modal.whirl_new import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
