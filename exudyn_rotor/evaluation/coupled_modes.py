@@ -19,8 +19,8 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling is not changed
 _STILL = 1e-3  # of the speed: a frequency below is that of a motion that does not whirl
 _RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
-# of the anticipated cross-coupling: the first that feeds a mode tells which ones; motions in planes,
-# as in unequal bearings, gain by its square
+# of the anticipated cross-coupling: the first that feeds a mode tells which ones; motions in
+# planes, as in unequal bearings, gain by its square
 _LITTLE = (1e-3, 0.1, 1.0)
 _ALIKE = 0.6  # likeness of two shapes below which a step is taken in halves
 _HALVES = 6
@@ -89,7 +89,9 @@ class Coupled:
             if found:
                 break
         else:
-            raise ValueError(f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling")
+            raise ValueError(
+                f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling"
+            )
         resonant = [
             i
             for i in found

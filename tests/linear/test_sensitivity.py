@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from exudyn_rotor import LinearActuator, MagneticBearing, PIDController, SolidRotor, Support
-from exudyn_rotor import sensitivity
+from exudyn_rotor import (
+    LinearActuator,
+    MagneticBearing,
+    PIDController,
+    SolidRotor,
+    Support,
+    sensitivity,
+)
 
 MASS, GAIN, NEGATIVE = 2.0, 80.0, 3e5
 
@@ -42,5 +48,5 @@ def test_loop_of_one_mass(point, speed, extra):
 
 
 def test_an_unstable_loop_is_refused(point):
-    with pytest.raises(ValueError, match="unstable at 0 rad/s.*controller of 'disc'"):
+    with pytest.raises(ValueError, match=r"unstable at 0 rad/s.*controller of 'disc'"):
         sensitivity(point, [10.0, 20.0], supports=[bearing(1e3)])

@@ -314,7 +314,8 @@ def stability_map(
         inertial[at], codes[at], diameters[at] = (each[which] for each in named[1:2] + named[3:])
         if at in judged and basis_error.is_known(built[0], accuracy):
             errors[at] = _basis_error(*built, named, which)
-            worst = max(worst, (np.nan_to_num(errors[at]), shown, built[0]), key=lambda each: each[0])
+            one = np.nan_to_num(errors[at]), shown, built[0]
+            worst = max(worst, one, key=lambda each: each[0])
     warn_of_refused(refused, growth.size)
     if worst[2] is not None:
         basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)

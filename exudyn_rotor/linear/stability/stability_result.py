@@ -68,7 +68,7 @@ class Stability(Result):
     >>> print(result.table())
     speed [rpm]  lateral [1/s]    torsional        axial  frequency [Hz]  n  whirl      verdict
         477.465             -1            -            -          23.873  1  forward    stable
-    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement 0.0419
+    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement ...
     error of the basis: not known
     """
 
