@@ -19,7 +19,9 @@ from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 ROUNDING = 1e-9  # of log decrements: a mode with its node at the cross-coupling is not changed
 _STILL = 1e-3  # of the speed: a frequency below is that of a motion that does not whirl
 _RESONANT = np.sqrt(0.5)  # damping ratio above which a mode has no resonance
-_LITTLE = 1e-3  # of the anticipated cross-coupling: it tells which modes it feeds
+# of the anticipated cross-coupling: the first that feeds a mode tells which ones; motions in
+# planes, as in unequal bearings, gain by its square
+_LITTLE = (1e-3, 0.1, 1.0)
 _ALIKE = 0.6  # likeness of two shapes below which a step is taken in halves
 _HALVES = 6
 
@@ -75,16 +77,21 @@ class Coupled:
         ValueError
             Where it feeds no lateral mode.
         """
-        start, little = self.modes(0.0), self.modes(_LITTLE)
+        start = self.modes(0.0)
         named, growth = start.named, start.named.motions.values.real
-        found = {}
-        for i in np.flatnonzero(start.lateral & np.isfinite(growth)):
-            mode, _ = start.continued(i, little)
-            gained = little.named.motions.values.real[mode] - growth[i]
-            if gained > ROUNDING * max(named.inertial[i], abs(growth[i])):
-                found[i] = mode
-        if not found:
-            raise ValueError(f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling")
+        for multiple in _LITTLE:
+            little, found = self.modes(multiple), {}
+            for i in np.flatnonzero(start.lateral & np.isfinite(growth)):
+                mode, _ = start.continued(i, little)
+                gained = little.named.motions.values.real[mode] - growth[i]
+                if gained > ROUNDING * max(named.inertial[i], abs(growth[i])):
+                    found[i] = mode
+            if found:
+                break
+        else:
+            raise ValueError(
+                f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling"
+            )
         resonant = [
             i
             for i in found

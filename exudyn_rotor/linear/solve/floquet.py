@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem, at_angle
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
 from exudyn_rotor.linear.solve.state import States
 
@@ -22,7 +22,7 @@ _STEPS = (64, 128, 256, 512, 1024)  # of a period
 _SLOW = 20.0  # |λ| over Ω up to which motions are waited for
 _STILL = 1e-6  # relative change of an exponent by twice the steps
 _LEAST = 1e-10  # of the largest multiplier: one below is rounding
-_FEWEST, _MOST = 16, 256  # steps of a period by which growth is sought
+_FEWEST, _MOST = 16, 64  # steps of a period by which growth is sought
 _ROUNDING = 1e-12  # of a multiplier, by every step
 _SMALL = 1e-2  # share of Ω that a growth counts as at least
 
@@ -36,12 +36,19 @@ def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarray]:
     """Return the matrices that take the state to the ends of so many steps of a period."""
     period = 2.0 * np.pi / (system.step * abs(system.speed))
-    h, turn = period / steps, 2.0 * np.pi / system.step * np.sign(system.speed)
+    turn = 2.0 * np.pi / system.step * np.sign(system.speed)
+    angles = turn * (np.arange(steps)[:, None] + GAUSS_POINTS) / steps
+    first, second = (
+        period / steps
+        * sum(
+            np.real(np.multiply.outer(np.exp(1j * n * at), A)) if n else A
+            for n, A in made.A.items()
+        )
+        for at in angles.T
+    )  # fmt: skip
     followed = [np.eye(len(made.A[0]))]
-    for number in range(steps):
-        angles = turn * (number + GAUSS_POINTS) / steps
-        first, second = (h * at_angle(made.A, angle) for angle in angles)
-        followed.append(la.expm(magnus_exponent(first, second)) @ followed[-1])
+    for step in la.expm(magnus_exponent(first, second)):
+        followed.append(step @ followed[-1])
     return followed
 
 

@@ -50,7 +50,7 @@ class StabilityMap(Result):
     ----------
     x, y : ndarray, shapes (a,), (b,)
     growth : ndarray, shape (a, b)
-        Largest real part of the exponents [1/s].
+        Largest real part of the exponents [1/s], 0 where a free motion is neutral.
     stable : ndarray of bool, shape (a, b)
     labels : tuple of str
         Names of x and y.
@@ -59,7 +59,7 @@ class StabilityMap(Result):
         :attr:`Stability.basis_errors`, at the corners and in the middle; NaN elsewhere, None where
         nothing is known.
     frequencies_inertial : ndarray, shape (a, b), or None
-        Of the least stable motion, seen from outside [rad/s].
+        Of the least stable motion that is not neutral, seen from outside [rad/s].
     whirl_codes, nodal_diameters : ndarray of int, shape (a, b), or None
         Of that motion, as those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
     log_decrement : ndarray, shape (a, b), or None
@@ -285,7 +285,7 @@ def stability_map(
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
     grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
     shape = len(grid[0]), len(grid[1])
-    growth, inertial, errors = (np.full(shape, np.nan) for _ in range(3))
+    growth, least, inertial, errors = (np.full(shape, np.nan) for _ in range(4))
     stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
     diameters = np.full(shape, -1, dtype=np.int64)
     judged = {(a, b) for a in (0, shape[0] - 1) for b in (0, shape[1] - 1)}
@@ -306,7 +306,7 @@ def stability_map(
             refused.append((shown, error))
             continue
         growth[at], which = np.nanmax(motions.values.real), least_stable_of(motions)
-        stable[at] = growth[at] <= motions.bound
+        least[at], stable[at] = motions.values[which].real, growth[at] <= motions.bound
         inertial[at] = abs(motions.values[which].imag)
         if isinstance(built, PeriodicSystem):
             continue
@@ -314,7 +314,8 @@ def stability_map(
         inertial[at], codes[at], diameters[at] = (each[which] for each in named[1:2] + named[3:])
         if at in judged and basis_error.is_known(built[0], accuracy):
             errors[at] = _basis_error(*built, named, which)
-            worst = max(worst, (np.nan_to_num(errors[at]), shown, built[0]), key=lambda each: each[0])
+            one = np.nan_to_num(errors[at]), shown, built[0]
+            worst = max(worst, one, key=lambda each: each[0])
     warn_of_refused(refused, growth.size)
     if worst[2] is not None:
         basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
@@ -327,7 +328,7 @@ def stability_map(
         frequencies_inertial=inertial,
         whirl_codes=codes,
         nodal_diameters=diameters,
-        log_decrement=damping_of(growth, inertial)[1],
+        log_decrement=damping_of(least, inertial)[1],
     )
 
 

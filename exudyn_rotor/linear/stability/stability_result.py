@@ -68,7 +68,7 @@ class Stability(Result):
     >>> print(result.table())
     speed [rpm]  lateral [1/s]    torsional        axial  frequency [Hz]  n  whirl      verdict
         477.465             -1            -            -          23.873  1  forward    stable
-    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement 0.0419
+    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement ...
     error of the basis: not known
     """
 
@@ -117,7 +117,8 @@ class Stability(Result):
             ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
         low, high = ax.get_ylim()
         ax.fill_between(
-            speeds, low, high, where=~self.stable & self.known, color=plotting.COLORS[1], alpha=0.2, lw=0.0
+            speeds, low, high, where=~self.stable & self.known, color=plotting.COLORS[1],
+            alpha=0.2, lw=0.0,
         )
         ax.set_ylim(low, high)
         ax.axhline(0.0, color="0.3", lw=0.8)

@@ -42,7 +42,7 @@ from exudyn_rotor.sweep import ascending_from_zero
 
 Supports = Sequence[Given] | Given
 _ROOT = 1e-8  # of the largest parameter: error of a limit
-_INNER = 3  # parts of the interval between two samples
+_INNER, _PERIODIC = 3, 2  # parts of the interval between two samples; of periodic equations
 _PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
 _ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
 _NONE = NoCoefficientsError, UnconvergedError
@@ -144,7 +144,8 @@ def stability_threshold(
     """Find the limits of stability over the spin speed or another parameter.
 
     Each is found to 1e-8 of the largest parameter, with the motion that grows there. The range is
-    looked at in `samples` intervals with three steps each, and closer where the growth has a peak
+    looked at in `samples` intervals with three steps each (two where equations are periodic, which
+    takes a hundred times longer), and closer where the growth has a peak
     near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
     with little damping: take more `samples` where that matters.
 
@@ -222,7 +223,8 @@ def stability_threshold(
         return linear_model(chosen, supports=held, **made), speed
 
     growth = _Growth(model_at, is_speed, method=method, tolerance=tolerance)
-    points = np.linspace(low, high, _INNER * samples + 1)
+    parts = _INNER if _is_constant(*model_at(0.5 * (low + high))) else _PERIODIC
+    points = np.linspace(low, high, parts * samples + 1)
     growth.at(np.union1d(points, kinks[(kinks > low) & (kinks < high)]))
     growth.look_at_peaks()
     found = growth.changes(_ROOT * max(abs(low), abs(high)))
@@ -292,6 +294,14 @@ def unstable_ranges(
     edges += [value for value, _ in found]
     edges += [points[-1]] if margins[-1] > 0.0 else []
     return np.array(edges, dtype=float).reshape(-1, 2)
+
+
+def _is_constant(model: LinearModel, speed: float) -> bool:
+    """Return whether equations are constant, where they are known."""
+    try:
+        return model.at(speed).is_constant
+    except _NONE:
+        return True
 
 
 def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
