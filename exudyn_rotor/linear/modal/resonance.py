@@ -167,8 +167,7 @@ class Search:
     tolerance : float
         Largest relative change of a speed by further harmonics.
     is_exact : bool
-        Whether films are solved at each critical speed, too; else they are smooth between some 200
-        speeds.
+        Whether films are solved at each critical speed, too, not at some 200 speeds only.
     lost : list of float
         Speeds that did not settle.
     """
@@ -218,7 +217,7 @@ class Search:
                 answers = [one for one in settled if one is not None]
             found += answers
         if stiffness.between is not None and self.is_exact:
-            found = [_polished(exact, one) for one in found]
+            found = [_polished(exact, stiffness, one) for one in found]
         return found
 
     @cached_property
@@ -383,7 +382,10 @@ def _warn_of_refused(wanted: np.ndarray, refused: set[float], error: Exception) 
             if not ranges or ranges[-1][1] != before:
                 ranges.append([before if before == 0.0 else speed, speed])
             ranges[-1][1] = speed
-    shown = " and ".join(f"from {low:.4g} to {high:.4g} rad/s" for low, high in ranges[:3])
+    shown = " and ".join(
+        f"from {low:.4g} to {high:.4g} rad/s" if low else f"up to {high:.4g} rad/s"
+        for low, high in ranges[:3]
+    )
     warnings.warn(
         f"critical speeds: {shown}{' …' * (len(ranges) > 3)} none are looked for: {error}",
         UserWarning,
@@ -524,59 +526,63 @@ def _one_sense(vectors: np.ndarray, seen: np.ndarray, content: Content) -> np.nd
 
 
 def refined(
-    H: Callable[[float], np.ndarray], speed: float, vector: np.ndarray
-) -> tuple[float, np.ndarray]:
-    """Return the zero of H and its vector next to given ones, by inverse iteration.
+    stiffness: Stiffness,
+    found: Resonance,
+    smooth: Stiffness | None = None,
+    tolerance: float = 1e-9,
+) -> Resonance:
+    """Return the critical speed next to one, and its motion, by inverse iteration.
 
-    The speed is NaN where it does not converge.
+    The slope of H may be that of a `smooth` one. The speed is NaN where it does not converge.
     """
+    speed, multiples, smooth = found.speed, found.multiples, smooth or stiffness
+    x = stiffness.coordinates(found.vectors).ravel()
     for _ in range(_ITERATIONS):
-        here = H(speed)
-        slope = (here - H(speed * (1.0 - _STEP))) / (speed * _STEP)
+        H, later, earlier = (
+            one(s, multiples)
+            for one, s in ((stiffness, speed), (smooth, speed), (smooth, speed * (1.0 - _STEP)))
+        )
         try:
-            moved = np.linalg.solve(here, slope @ vector)
+            moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
         except np.linalg.LinAlgError:  # there already
-            return speed, vector
-        change = np.vdot(vector, vector) / np.vdot(vector, moved)
-        vector = moved / np.linalg.norm(moved)
-        speed = speed - change.real
-        if not 0.0 < speed < np.inf:
             break
-        if abs(change.real) <= 1e-9 * speed:
-            return float(speed), vector
-    return np.nan, vector
+        change = (np.vdot(x, x) / np.vdot(x, moved)).real
+        x, speed = moved / np.linalg.norm(moved), speed - change
+        if not 0.0 < speed < np.inf:
+            return found._replace(speed=np.nan)
+        if abs(change) <= tolerance * speed:
+            break
+    else:
+        speed = np.nan
+    return Resonance(float(speed), stiffness.motions(x, multiples), multiples)
 
 
 def _settled(
     stiffness: Stiffness, found: Resonance, step: int, tolerance: float
 ) -> Resonance | None:
     """Add harmonics to a motion until its critical speed does not change; None where it does."""
-    x, last, multiples = stiffness.coordinates(found.vectors), found.speed, found.multiples
     for _ in range(_FEW, _MOST):
+        last, multiples = found.speed, found.multiples
         multiples = np.r_[multiples[0] - step, multiples, multiples[-1] + step]
-        x = np.pad(x, ((1, 1), (0, 0)))
+        wider = Resonance(last, np.pad(found.vectors, ((1, 1), (0, 0))), multiples)
         try:
-            new, vector = refined(lambda s, f=multiples: stiffness(s, f), last, x.ravel())
+            found = refined(stiffness, wider)
         except NO_EQUATIONS:
             return None
-        x, change, last = vector.reshape(x.shape), abs(new - last), new
-        if change <= tolerance * new:
-            return Resonance(new, stiffness.motions(vector, multiples), multiples)
-        if np.isnan(new):
-            return None
-    return None
+        if np.isnan(found.speed) or abs(found.speed - last) <= tolerance * last:
+            break
+    else:
+        return None
+    return None if np.isnan(found.speed) else found
 
 
-def _polished(stiffness: Stiffness, found: Resonance) -> Resonance:
+def _polished(stiffness: Stiffness, smooth: Stiffness, found: Resonance) -> Resonance:
     """Return a critical speed with the films that are there."""
-    x = stiffness.coordinates(found.vectors).ravel()
     try:
-        speed, vector = refined(lambda s: stiffness(s, found.multiples), found.speed, x)
+        better = refined(stiffness, found, smooth, 1e-7)
     except NO_EQUATIONS:
         return found
-    if not abs(speed - found.speed) < _OFF * found.speed:
-        return found
-    return Resonance(speed, stiffness.motions(vector, found.multiples), found.multiples)
+    return better if abs(better.speed - found.speed) < _OFF * found.speed else found
 
 
 def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance], Names]:
