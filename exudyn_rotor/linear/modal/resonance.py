@@ -60,7 +60,7 @@ Pair = tuple[float, np.ndarray]  # a speed [rad/s] and the motion there
 
 
 class Resonance(NamedTuple):
-    """A critical speed [rad/s] and its motion: harmonics (h, k) at `multiples` (h,) of the speed."""
+    """A critical speed [rad/s] and its motion, harmonics (h, k) at `multiples` (h,) of it."""
 
     speed: float
     vectors: np.ndarray
@@ -251,28 +251,29 @@ class Search:
         slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
         wanted = np.unique([*np.linspace(first, self.limit, count), *slow[slow > first], *kinks])
         wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
-        refused, error = self._refused(wanted)
+        refused = self._refused(wanted)
         if len(refused) == len(wanted):
-            raise error
+            raise refused[wanted[0]]
         if refused:
-            _warn_of_refused(wanted, refused, error)
+            _warn(
+                f"none are looked for at {len(refused)} of {len(wanted)} speeds from "
+                f"{min(refused):.4g} to {max(refused):.4g} rad/s: {next(iter(refused.values()))}"
+            )
         else:  # as far down as there are equations
             lower = slow[slow < first]
-            last = max(self._refused(lower)[0], default=0.0)
-            wanted = np.r_[lower[lower > last], wanted]
-        near = [pair for pair in pairwise(wanted.tolist()) if not refused.intersection(pair)]
+            wanted = np.r_[lower[lower > max(self._refused(lower), default=0.0)], wanted]
+        near = [pair for pair in pairwise(wanted.tolist()) if refused.keys().isdisjoint(pair)]
         return [speed for speed in wanted.tolist() if speed not in refused], near
 
-    def _refused(self, speeds: np.ndarray) -> tuple[set[float], Exception | None]:
-        """Return the speeds without equations, and why the first of them has none."""
-        refused, first = set(), None
+    def _refused(self, speeds: np.ndarray) -> dict[float, Exception]:
+        """Return the speeds without equations, and why they have none."""
+        refused = {}
         for speed in speeds.tolist():
             try:
                 self.stiffness.system(speed)
             except NO_EQUATIONS as error:
-                refused.add(speed)
-                first = first or error
-        return refused, first
+                refused[speed] = error
+        return refused
 
     @cached_property
     def _between(self) -> Callable[[float], PeriodicSystem] | None:
@@ -366,31 +367,14 @@ class Search:
         """Warn of critical speeds that are left out."""
         if self.lost:
             shown = ", ".join(f"{speed:.5g}" for speed in sorted(self.lost)[:5])
-            warnings.warn(
-                f"critical speeds near {shown}{' …' * (len(self.lost) > 5)} rad/s still change "
-                f"with harmonics up to the {_MOST * self._step}th, and are left out",
-                UserWarning,
-                stacklevel=user_level(),
+            _warn(
+                f"near {shown}{' …' * (len(self.lost) > 5)} rad/s they still change with harmonics "
+                f"up to the {_MOST * self._step}th, and are left out"
             )
 
 
-def _warn_of_refused(wanted: np.ndarray, refused: set[float], error: Exception) -> None:
-    """Warn of ranges in which no critical speeds are looked for."""
-    ranges: list[list[float]] = []
-    for before, speed in pairwise([0.0, *wanted.tolist()]):
-        if speed in refused:
-            if not ranges or ranges[-1][1] != before:
-                ranges.append([before if before == 0.0 else speed, speed])
-            ranges[-1][1] = speed
-    shown = " and ".join(
-        f"from {low:.4g} to {high:.4g} rad/s" if low else f"up to {high:.4g} rad/s"
-        for low, high in ranges[:3]
-    )
-    warnings.warn(
-        f"critical speeds: {shown}{' …' * (len(ranges) > 3)} none are looked for: {error}",
-        UserWarning,
-        stacklevel=user_level(),
-    )
+def _warn(what: str) -> None:
+    warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
 
 
 def same_speed(speeds: Sequence[float]) -> list[list[int]]:
@@ -474,9 +458,7 @@ class Excitation:
         mean = np.einsum("hw,hwn->n", self.seen, energy)
         return turning / total, mean / (total * (p or 1.0))
 
-    def answering(
-        self, pairs: list[tuple[float, np.ndarray]]
-    ) -> list[tuple[float, np.ndarray]]:
+    def answering(self, pairs: list[tuple[float, np.ndarray]]) -> list[tuple[float, np.ndarray]]:
         """Return those of speeds and harmonics (h, k) whose motions turn with the excitation.
 
         Of a motion and its conjugate, one.
