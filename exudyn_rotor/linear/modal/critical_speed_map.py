@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
 _CURVE = 200  # speeds of a bearing's own curve
 _UNIT = 1e15  # N/m, beside which all others are rounding
-_OFF = 0.02  # by which a line may leave where a critical speed can lie next, relative
 
 
 @storable
@@ -175,9 +174,9 @@ class CriticalSpeedMap(Result):
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
             color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
-            for line in self._lines(int(code)):
-                drawn = shown.speeds(line)
-                handles = ax.loglog(self.stiffnesses, drawn, marker + "-", color=color, ms=3.5, lw=0.9)
+            # the first, second, … of a whirl at each stiffness make a line; NaN are sorted last
+            drawn = np.sort(np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan))
+            handles = ax.loglog(self.stiffnesses, drawn, marker + "-", color=color, ms=3.5, lw=0.9)
             handles[0].set_label(WHIRLS[code])
         if self.bearing_speeds is not None:
             for column, style in enumerate(("--", ":")):
@@ -196,28 +195,6 @@ class CriticalSpeedMap(Result):
         ax.grid(alpha=0.3, which="both")
         plotting.legend_above(ax, 4)
         return ax
-
-
-    def _lines(self, code: int) -> list[np.ndarray]:
-        """Return speeds (s,) that belong together, of one whirl; NaN at other stiffnesses.
-
-        A critical speed grows with the stiffness, by its root at most.
-        """
-        lines: list[np.ndarray] = []
-        order = np.argsort(self.stiffnesses, kind="stable")
-        for last, row in zip([None, *order[:-1]], order, strict=True):
-            room = 0.0 if last is None else np.log(self.stiffnesses[row] / self.stiffnesses[last])
-            left = [line for line in lines if last is not None and np.isfinite(line[last])]
-            for speed in self.speeds[row, self.whirl_codes[row] == code]:
-                steps = [np.log(speed / line[last]) for line in left]
-                fitting = [i for i, d in enumerate(steps) if -_OFF <= d <= 0.5 * room + _OFF]
-                if fitting:
-                    line = left.pop(fitting[0])
-                else:
-                    line = np.full(len(self.stiffnesses), np.nan)
-                    lines.append(line)
-                line[row] = speed
-        return lines
 
 
 def critical_speed_map(
@@ -319,9 +296,9 @@ def critical_speed_map(
     if len(failed) == len(values):
         raise next(iter(failed.values()))
     if failed:
+        shown = ", ".join(f"{stiffness:.4g}" for stiffness in failed)
         warnings.warn(
-            f"critical speed map: no values at {', '.join(f'{k:.4g}' for k in failed)} N/m, which "
-            f"are NaN: {next(iter(failed.values()))}",
+            f"no values at {shown} N/m, which are NaN: {next(iter(failed.values()))}",
             UserWarning,
             stacklevel=user_level(),
         )
@@ -339,13 +316,16 @@ def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -
 
 
 def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
-    """Return the Fourier terms of what supports of a large stiffness add, without motions that
-    nothing holds."""
+    """Return the Fourier terms of what supports of a large stiffness add, as H has them."""
     stiff, none = (
         replace(
-            model, supports={"": _with((), names, _UNIT)[:count]}, wanted_axes=model.axes,
+            model,
+            supports={"": _with((), names, _UNIT)[:count]},
+            wanted_axes=model.axes,
             largest_unevenness=np.inf,
-        ).at(1.0).K  # fmt: skip
+        )
+        .at(1.0)
+        .K
         for count in (None, 0)
     )
     basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
@@ -360,33 +340,29 @@ def _collected(
     has_errors: bool,
 ) -> CriticalSpeedMap:
     """Return the result of all stiffnesses, NaN where there is none."""
-    known = [entry for entry in solved if entry is not None]
-    shape = len(values), max(len(entry.speeds) for entry in known)
+    first = next(entry for entry in solved if entry is not None)
+    shape = len(values), max(len(entry.speeds) for entry in solved if entry is not None)
     speeds, codes, errors = np.full(shape, np.nan), np.full(shape, -1), np.full(shape, np.nan)
     for row, entry in enumerate(solved):
-        if entry is None:
-            continue
-        count = len(entry.speeds)
-        speeds[row, :count] = entry.speeds
-        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-        if entry.basis_errors is not None:
-            errors[row, :count] = entry.basis_errors
-    own = {}
+        if entry is not None:
+            count = len(entry.speeds)
+            speeds[row, :count] = entry.speeds
+            codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
+            if entry.basis_errors is not None:
+                errors[row, :count] = entry.basis_errors
+    own = (None, None)
     if curve is not None:
-        top = max_speed or float(np.nanmax(speeds, initial=1.0))
-        own["bearing_speeds"], own["bearing_stiffnesses"] = _curve(curve, top)
+        own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
     return CriticalSpeedMap(
-        values, speeds, codes.astype(np.int64), known[0].order, known[0].stiffening,
-        basis_errors=errors if has_errors else None, axes=known[0].axes,
-        unevenness=known[0].unevenness, **own,
+        values, speeds, codes.astype(np.int64), first.order, first.stiffening,
+        basis_errors=errors if has_errors else None, bearing_speeds=own[0],
+        bearing_stiffnesses=own[1], axes=first.axes, unevenness=first.unevenness,
     )  # fmt: skip
 
 
 def _made_once(given: Given) -> Given:
     """Return a bearing as the support that it is for all stiffnesses, if it is one."""
-    if isinstance(given, MagneticBearing | Support):
-        return given
-    made = given.linearised()
+    made = given if isinstance(given, MagneticBearing | Support) else given.linearised()
     return made if isinstance(made, Support) else given
 
 

@@ -284,15 +284,16 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         return errors
     richer = model.richer
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
-    for i, (speed, vectors, multiples) in enumerate(found[:count]):
-        x = stiffness.coordinates(vectors @ lifted.T).ravel()
+    for i, one in enumerate(found[:count]):
+        lift = one._replace(vectors=one.vectors @ lifted.T)
         try:
-            new, y = refined(lambda s, f=multiples: stiffness(s, f), speed, x)
+            better = refined(stiffness, lift)
         except NO_EQUATIONS:
             continue
+        x, y = lift.vectors, better.vectors
         likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
-        if likeness > _ALIKE and abs(new - speed) < _NEAR * speed:
-            errors[i] = abs(new / speed - 1.0)
+        if likeness > _ALIKE and abs(better.speed - one.speed) < _NEAR * one.speed:
+            errors[i] = abs(better.speed / one.speed - 1.0)
     return errors
 
 

@@ -60,7 +60,7 @@ Pair = tuple[float, np.ndarray]  # a speed [rad/s] and the motion there
 
 
 class Resonance(NamedTuple):
-    """A critical speed [rad/s] and its motion: harmonics (h, k) at `multiples` (h,) of the speed."""
+    """A critical speed [rad/s] and its motion, harmonics (h, k) at `multiples` (h,) of it."""
 
     speed: float
     vectors: np.ndarray
@@ -167,8 +167,7 @@ class Search:
     tolerance : float
         Largest relative change of a speed by further harmonics.
     is_exact : bool
-        Whether films are solved at each critical speed, too; else they are smooth between some 200
-        speeds.
+        Whether films are solved at each critical speed, too, not at some 200 speeds only.
     lost : list of float
         Speeds that did not settle.
     """
@@ -218,7 +217,7 @@ class Search:
                 answers = [one for one in settled if one is not None]
             found += answers
         if stiffness.between is not None and self.is_exact:
-            found = [_polished(exact, one) for one in found]
+            found = [_polished(exact, stiffness, one) for one in found]
         return found
 
     @cached_property
@@ -252,28 +251,29 @@ class Search:
         slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
         wanted = np.unique([*np.linspace(first, self.limit, count), *slow[slow > first], *kinks])
         wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
-        refused, error = self._refused(wanted)
+        refused = self._refused(wanted)
         if len(refused) == len(wanted):
-            raise error
+            raise refused[wanted[0]]
         if refused:
-            _warn_of_refused(wanted, refused, error)
+            _warn(
+                f"none are looked for at {len(refused)} of {len(wanted)} speeds from "
+                f"{min(refused):.4g} to {max(refused):.4g} rad/s: {next(iter(refused.values()))}"
+            )
         else:  # as far down as there are equations
             lower = slow[slow < first]
-            last = max(self._refused(lower)[0], default=0.0)
-            wanted = np.r_[lower[lower > last], wanted]
-        near = [pair for pair in pairwise(wanted.tolist()) if not refused.intersection(pair)]
+            wanted = np.r_[lower[lower > max(self._refused(lower), default=0.0)], wanted]
+        near = [pair for pair in pairwise(wanted.tolist()) if refused.keys().isdisjoint(pair)]
         return [speed for speed in wanted.tolist() if speed not in refused], near
 
-    def _refused(self, speeds: np.ndarray) -> tuple[set[float], Exception | None]:
-        """Return the speeds without equations, and why the first of them has none."""
-        refused, first = set(), None
+    def _refused(self, speeds: np.ndarray) -> dict[float, Exception]:
+        """Return the speeds without equations, and why they have none."""
+        refused = {}
         for speed in speeds.tolist():
             try:
                 self.stiffness.system(speed)
             except NO_EQUATIONS as error:
-                refused.add(speed)
-                first = first or error
-        return refused, first
+                refused[speed] = error
+        return refused
 
     @cached_property
     def _between(self) -> Callable[[float], PeriodicSystem] | None:
@@ -367,28 +367,14 @@ class Search:
         """Warn of critical speeds that are left out."""
         if self.lost:
             shown = ", ".join(f"{speed:.5g}" for speed in sorted(self.lost)[:5])
-            warnings.warn(
-                f"critical speeds near {shown}{' …' * (len(self.lost) > 5)} rad/s still change "
-                f"with harmonics up to the {_MOST * self._step}th, and are left out",
-                UserWarning,
-                stacklevel=user_level(),
+            _warn(
+                f"near {shown}{' …' * (len(self.lost) > 5)} rad/s they still change with harmonics "
+                f"up to the {_MOST * self._step}th, and are left out"
             )
 
 
-def _warn_of_refused(wanted: np.ndarray, refused: set[float], error: Exception) -> None:
-    """Warn of ranges in which no critical speeds are looked for."""
-    ranges: list[list[float]] = []
-    for before, speed in pairwise([0.0, *wanted.tolist()]):
-        if speed in refused:
-            if not ranges or ranges[-1][1] != before:
-                ranges.append([before if before == 0.0 else speed, speed])
-            ranges[-1][1] = speed
-    shown = " and ".join(f"from {low:.4g} to {high:.4g} rad/s" for low, high in ranges[:3])
-    warnings.warn(
-        f"critical speeds: {shown}{' …' * (len(ranges) > 3)} none are looked for: {error}",
-        UserWarning,
-        stacklevel=user_level(),
-    )
+def _warn(what: str) -> None:
+    warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
 
 
 def same_speed(speeds: Sequence[float]) -> list[list[int]]:
@@ -472,9 +458,7 @@ class Excitation:
         mean = np.einsum("hw,hwn->n", self.seen, energy)
         return turning / total, mean / (total * (p or 1.0))
 
-    def answering(
-        self, pairs: list[tuple[float, np.ndarray]]
-    ) -> list[tuple[float, np.ndarray]]:
+    def answering(self, pairs: list[tuple[float, np.ndarray]]) -> list[tuple[float, np.ndarray]]:
         """Return those of speeds and harmonics (h, k) whose motions turn with the excitation.
 
         Of a motion and its conjugate, one.
@@ -524,59 +508,63 @@ def _one_sense(vectors: np.ndarray, seen: np.ndarray, content: Content) -> np.nd
 
 
 def refined(
-    H: Callable[[float], np.ndarray], speed: float, vector: np.ndarray
-) -> tuple[float, np.ndarray]:
-    """Return the zero of H and its vector next to given ones, by inverse iteration.
+    stiffness: Stiffness,
+    found: Resonance,
+    smooth: Stiffness | None = None,
+    tolerance: float = 1e-9,
+) -> Resonance:
+    """Return the critical speed next to one, and its motion, by inverse iteration.
 
-    The speed is NaN where it does not converge.
+    The slope of H may be that of a `smooth` one. The speed is NaN where it does not converge.
     """
+    speed, multiples, smooth = found.speed, found.multiples, smooth or stiffness
+    x = stiffness.coordinates(found.vectors).ravel()
     for _ in range(_ITERATIONS):
-        here = H(speed)
-        slope = (here - H(speed * (1.0 - _STEP))) / (speed * _STEP)
+        H, later, earlier = (
+            one(s, multiples)
+            for one, s in ((stiffness, speed), (smooth, speed), (smooth, speed * (1.0 - _STEP)))
+        )
         try:
-            moved = np.linalg.solve(here, slope @ vector)
+            moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
         except np.linalg.LinAlgError:  # there already
-            return speed, vector
-        change = np.vdot(vector, vector) / np.vdot(vector, moved)
-        vector = moved / np.linalg.norm(moved)
-        speed = speed - change.real
-        if not 0.0 < speed < np.inf:
             break
-        if abs(change.real) <= 1e-9 * speed:
-            return float(speed), vector
-    return np.nan, vector
+        change = (np.vdot(x, x) / np.vdot(x, moved)).real
+        x, speed = moved / np.linalg.norm(moved), speed - change
+        if not 0.0 < speed < np.inf:
+            return found._replace(speed=np.nan)
+        if abs(change) <= tolerance * speed:
+            break
+    else:
+        speed = np.nan
+    return Resonance(float(speed), stiffness.motions(x, multiples), multiples)
 
 
 def _settled(
     stiffness: Stiffness, found: Resonance, step: int, tolerance: float
 ) -> Resonance | None:
     """Add harmonics to a motion until its critical speed does not change; None where it does."""
-    x, last, multiples = stiffness.coordinates(found.vectors), found.speed, found.multiples
     for _ in range(_FEW, _MOST):
+        last, multiples = found.speed, found.multiples
         multiples = np.r_[multiples[0] - step, multiples, multiples[-1] + step]
-        x = np.pad(x, ((1, 1), (0, 0)))
+        wider = Resonance(last, np.pad(found.vectors, ((1, 1), (0, 0))), multiples)
         try:
-            new, vector = refined(lambda s, f=multiples: stiffness(s, f), last, x.ravel())
+            found = refined(stiffness, wider)
         except NO_EQUATIONS:
             return None
-        x, change, last = vector.reshape(x.shape), abs(new - last), new
-        if change <= tolerance * new:
-            return Resonance(new, stiffness.motions(vector, multiples), multiples)
-        if np.isnan(new):
-            return None
-    return None
+        if np.isnan(found.speed) or abs(found.speed - last) <= tolerance * last:
+            break
+    else:
+        return None
+    return None if np.isnan(found.speed) else found
 
 
-def _polished(stiffness: Stiffness, found: Resonance) -> Resonance:
+def _polished(stiffness: Stiffness, smooth: Stiffness, found: Resonance) -> Resonance:
     """Return a critical speed with the films that are there."""
-    x = stiffness.coordinates(found.vectors).ravel()
     try:
-        speed, vector = refined(lambda s: stiffness(s, found.multiples), found.speed, x)
+        better = refined(stiffness, found, smooth, 1e-7)
     except NO_EQUATIONS:
         return found
-    if not abs(speed - found.speed) < _OFF * found.speed:
-        return found
-    return Resonance(speed, stiffness.motions(vector, found.multiples), found.multiples)
+    return better if abs(better.speed - found.speed) < _OFF * found.speed else found
 
 
 def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance], Names]:
