@@ -155,8 +155,8 @@ def base_response(
         [s]; the end of the record by default.
     stiffening : {'auto', 'none', 'tilt', 'full'}
     tolerance : float, optional
-        Largest change of a motion by halved steps, relative to the largest motion. Constant
-        equations are followed exactly with any step.
+        Largest error by the length of steps, relative to the largest motion, estimated by halved
+        steps. Constant equations are followed exactly with any step.
     axes : {'auto', 'inertial', 'rotor'}
         Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
         nothing is averaged.

@@ -32,7 +32,9 @@ from exudyn_rotor.threads import one_thread
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
 _ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
-_TAIL, _ROUNDING = 1e-10, 1e-14  # shares of a step by Fourier terms that are left out
+_KEPT = 512  # steps in a revolution that are kept as matrices
+_HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
+_TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
 _S = np.sqrt(6.0)
 _STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
@@ -104,7 +106,8 @@ class ShakenRotor:
                 )
             moved = motion[..., :3]
             size = np.abs(moved).max()
-            if last is not None and np.abs(moved[::2] - last).max() <= tolerance * size:
+            change = np.inf if last is None else np.abs(moved[::2] - last).max()
+            if change <= _HALVED * tolerance * size:
                 strides = [every >> fewer for fewer in range(every.bit_length() - 1)]
                 kept = next((n for n in strides if _follow(moved[:: n // 2], size)), None)
                 if kept is not None:
@@ -134,18 +137,23 @@ class ShakenRotor:
         lines = self._lines(times, step)
         waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
         given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
-        # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix and its weights
-        later = [n for n in by_state if n > 0]
-        pairs = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
-        tall = np.vstack([by_state[0].real, *pairs])
-        pairs = (w for n in later for w in (waves[n].real, waves[n].imag))
-        weights = np.array([np.ones(count + 1), *pairs])
-        size = len(self.A[0])
-        states, weights = np.zeros((count + 1, size)), weights.reshape(-1, count + 1).T.copy()
+        states = np.zeros((count + 1, len(self.A[0])))
+        turn = 1 if self.is_constant else round(2.0 * np.pi / abs(self.speed) / step)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            for n in range(count):
-                stepped = weights[n] @ (tall @ states[n]).reshape(-1, size)
-                states[n + 1] = stepped + given[n]
+            if turn <= _KEPT:
+                each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
+                for n in range(count):
+                    states[n + 1] = each[n % turn] @ states[n] + given[n]
+            else:
+                # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
+                later = [n for n in by_state if n > 0]
+                parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
+                tall = np.vstack([by_state[0].real, *parts])
+                parts = (w for n in later for w in (waves[n].real, waves[n].imag))
+                weights = np.column_stack([np.ones(count + 1), *parts])
+                for n in range(count):
+                    stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
+                    states[n + 1] = weights[n] @ stepped + given[n]
             motion = np.zeros((count + 1, len(self.seen), 6))
             for place, seen in enumerate(self.seen):
                 for n, U in seen.items():
