@@ -27,7 +27,7 @@ from exudyn_rotor import (
     linear_model,
     stability,
 )
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.response.run_start import _in_body
 from exudyn_rotor.multibody.evaluation import evaluating
 from exudyn_rotor.reduction.driven import _others
