@@ -22,7 +22,7 @@ def apart(first, second, speed, held=True):
     turns = 1j * speed * np.arange(-2, 3)[:, None]
     both = np.r_[found, found.conj()]
     distances = [np.abs(both - s + turns).min() for s in expected[slow]]
-    assert len(distances) > 1
+    assert distances
     return max(distances) / abs(speed)
 
 

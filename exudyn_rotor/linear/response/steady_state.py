@@ -225,17 +225,19 @@ def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndar
     how = "steady_state(body) makes one, and its state()"
     checks.instance(start, "start", (SteadyState, StartState), how)
     if isinstance(start, SteadyState):
-        if start.harmonics.shape[1] != scene.size:
-            raise ValueError(
-                f"start: has {start.harmonics.shape[1]} coordinates, this scene {scene.size}; it "
-                "is of another scene"
-            )
+        given = start.scene.size, start.scene.count
+        _check_same(given, (scene.size, scene.count))
         return start.orders, start.harmonics
-    if len(start.q) != len(scene.rest):
-        raise ValueError(
-            f"start: has {len(start.q)} coordinates, this scene {len(scene.rest)}; it is of "
-            "another scene"
-        )
+    _check_same((len(start.q), scene.count), (len(scene.rest), scene.count))
     T = scene.turn(start.angle)[0]
     y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
     return np.array([0]), y[None].astype(complex)
+
+
+def _check_same(given: tuple[int, int], wanted: tuple[int, int]) -> None:
+    """Compare the numbers of coordinates and of translations of two scenes."""
+    if given != wanted:
+        raise ValueError(
+            f"start: has {given[0]} coordinates with {given[1]} translations of the rotor, this "
+            f"scene {wanted[0]} with {wanted[1]}; it is of another scene"
+        )

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor.linear.model.scene.equilibrium import UNHELD
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates, nullspace
+from exudyn_rotor.linear.model.scene.scene_coordinates import (
+    UNHELD,
+    SceneCoordinates,
+    nullspace,
+)
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.reduction.mode_kind import ModeKind
 

@@ -1,4 +1,4 @@
-"""Equilibria of a scene at rest, in contact with stops and elements of bearings, too.
+"""Equilibria of a scene at rest, at all angles of the rotor, in contact with stops and elements of bearings, too.
 
 By Newton's method with a line search. What nothing holds yet is pressed by its load against a
 softness that lets it go farther in every step, until something holds it. Friction follows the
@@ -10,19 +10,51 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.linear.model.scene.along_axis import held_along_axis
+from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.solvers.line_search import step_share
 
 NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
-UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 FAR = 10.0  # lengths of the rotor that only round-off keeps it from leaving
 SMALLEST = 1e-5  # m: the tolerance of smaller motions, for Exudyn rounds positions of order 1 m
 _ROUNDING = 1e-13  # of the largest stiffness: what turning by a skew axis leaves of none
 BALANCED = 1e-8  # m/s² that may be left where a contact resists with the square of its depth,
 _FEW_ITERATIONS, _MOST_ITERATIONS = 10, 60  # after these
+_SAMPLES = 7  # angles of the rotor, an odd number: the harmonics are exact at all of them
 _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in every step
+
+
+def motion_at_rest(
+    scene: SceneCoordinates, probe: Probe, tolerance: float, angle: float, begin: Motion | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
+
+    Exact at the start's angle [rad] and those of the same distance from it. A search begins with
+    the motion `begin` where one is given.
+
+    Raises
+    ------
+    UnconvergedError
+        Where there is no equilibrium.
+    """
+    kept = held_along_axis(scene, probe)
+    first, start = begin or (np.arange(-1, 2), journal_start(scene, 0.0, np.arange(-1, 2)))
+    count = _SAMPLES
+    while True:
+        angles = angle + 2.0 * np.pi * np.arange(count) / count
+        orders = np.arange(-(count // 2), count // 2 + 1)
+        values = []
+        for theta in angles:
+            near = values[-1] if values else (np.exp(1j * theta * first) @ start).real
+            values.append(equilibrium(scene, probe, theta, near, tolerance, kept))
+        harmonics = np.exp(-1j * np.outer(orders, angles)) @ values / count
+        sizes = np.abs(harmonics).max(axis=1)
+        if sizes[[0, -1]].max() <= tolerance * sizes.max() or count > 2 * _SAMPLES:
+            return orders, harmonics
+        count = 2 * count + 1
 
 
 def equilibrium(

@@ -20,17 +20,15 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.model.scene.motion_at_rest import motion_at_rest
+from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
 from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates, nullspace
 from exudyn_rotor.linear.model.scene.steady_motion import points_about, steady_motion
-from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start
 from exudyn_rotor.multibody.supports.add_supports import SceneSupport
 from exudyn_rotor.reduction.mode_kind import ModeKind
-from exudyn_rotor.theory.nodal import skew
 
 Journal = Sequence[tuple[np.ndarray, np.ndarray] | None]
 _ANGLES = 12  # of a revolution, for the mean mass
@@ -43,13 +41,9 @@ class LinearScene(SceneCoordinates):
 
     Attributes
     ----------
-    body, free, N, rest
+    body, free, N, rest, about
         See :class:`SceneCoordinates`.
-    about : {'steady', 'equilibrium', 'given'}
-        Motion about which the scene is linearised, see :func:`linear_model`.
     """
-
-    about: str = "steady"
 
     @classmethod
     def of(cls, mbs: exudyn.MainSystem, body: RotorBody, *, about: str = "steady") -> LinearScene:
@@ -78,45 +72,11 @@ class LinearScene(SceneCoordinates):
             )
         return cls(body, free, nullspace(C[0]), rest, about)
 
-    @property
-    def interfaces(self) -> tuple[str, ...]:
-        """Names of the interfaces that have a marker."""
-        return tuple(self.body.markers)
-
     @cached_property
     def mass_matrix(self) -> np.ndarray:
         """Mean mass matrix of the given state, shape (k, k); films need no equilibrium for it."""
         with self._probing(0.0) as probe:
             return probe.mean_mass(_ANGLES)
-
-    @cached_property
-    def unit_unbalance(self) -> np.ndarray:
-        """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
-
-        A moving frame has its origin in the centre of mass, which then carries the unbalance.
-        """
-        inv, body = self.body.motion.invariants, self.body
-        load = np.zeros(len(self.free))
-        across = body.axis.radial(body.frame.origin)
-        load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
-        load[self.modal] = inv.h
-        return self.N.T @ load
-
-    def interface_motion(self, name: str) -> np.ndarray:
-        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
-
-        In the rotor frame, as its marker moves, the marker's offset included.
-
-        Raises
-        ------
-        KeyError
-            For an interface without a marker.
-        """
-        motion = np.zeros((6, len(self.free)))
-        motion[: self.count, : self.count] = np.eye(self.count)
-        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
-        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
-        return motion @ self.N
 
     def points(self, speed: float) -> tuple[list[LinearPoint], list[Journal]]:
         """Return the scene linearised at the angles of its steady motion, and journals of films.
@@ -184,16 +144,3 @@ class LinearScene(SceneCoordinates):
         """Open the scene for probing, its cages as they are when the rotor starts."""
         with probing(self, speed, cage=spin_at_start(self.body)[0]) as probe:
             yield probe
-
-
-def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
-    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
-    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
-    marker_body = body.mbs.GetObject(body.objects["marker_body"])
-    columns = np.asarray(marker_body["modeBasis"])
-    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
-    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
-    mean = columns.mean(axis=0)
-    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
-    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
-    return np.vstack([mean, rotation])

@@ -11,6 +11,7 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.cached import cached_property
+from exudyn_rotor.multibody.rotor.marker_body import around
 from exudyn_rotor.multibody.rotor.plan import turned_origin
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
@@ -18,6 +19,9 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
 from exudyn_rotor.theory.stiffening import Stiffening, stiffening
+
+Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
+UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +40,15 @@ class SceneCoordinates:
         Motions that the scene's constraints allow.
     rest : ndarray
         All coordinates of the given state.
+    about : {'steady', 'equilibrium', 'given'}
+        Motion about which the scene is linearised, see :func:`linear_model`.
     """
 
     body: RotorBody
     free: np.ndarray
     N: np.ndarray
     rest: np.ndarray
+    about: str = "steady"
 
     @classmethod
     def of(cls, body: RotorBody) -> SceneCoordinates:
@@ -147,6 +154,40 @@ class SceneCoordinates:
         """
         return np.minimum(np.sqrt(self.mass / np.maximum(mass, 1e-300)), self._most)
 
+    @property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the interfaces that have a marker."""
+        return tuple(self.body.markers)
+
+    @cached_property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
+
+        A moving frame has its origin in the centre of mass, which then carries the unbalance.
+        """
+        inv, body = self.body.motion.invariants, self.body
+        load = np.zeros(len(self.free))
+        across = body.axis.radial(body.frame.origin)
+        load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
+        load[self.modal] = inv.h
+        return self.N.T @ load
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
+
+        In the rotor frame, as its marker moves, the marker's offset included.
+
+        Raises
+        ------
+        KeyError
+            For an interface without a marker.
+        """
+        motion = np.zeros((6, len(self.free)))
+        motion[: self.count, : self.count] = np.eye(self.count)
+        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
+        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
+        return motion @ self.N
+
     def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
         motion, c = self.body.motion, self.count
@@ -204,3 +245,16 @@ def nullspace(C: np.ndarray) -> np.ndarray:
     N[untouched, np.arange(len(untouched))] = 1.0
     N[touched, len(untouched) :] = kernel
     return N
+
+
+def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
+    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
+    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
+    marker_body = body.mbs.GetObject(body.objects["marker_body"])
+    columns = np.asarray(marker_body["modeBasis"])
+    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
+    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
+    mean = columns.mean(axis=0)
+    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
+    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
+    return np.vstack([mean, rotation])

@@ -20,12 +20,10 @@ from exudyn_rotor.linear.model.scene.equilibrium import (
     BALANCED,
     FAR,
     SMALLEST,
-    UNHELD,
+    motion_at_rest,
     solved_in,
 )
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
-from exudyn_rotor.linear.model.scene.mean_inertia import mean_inertia
-from exudyn_rotor.linear.model.scene.motion_at_rest import motion_at_rest
 from exudyn_rotor.linear.model.scene.own_spin import OwnSpin
 from exudyn_rotor.linear.model.scene.probe import (
     LinearPoint,
@@ -34,8 +32,8 @@ from exudyn_rotor.linear.model.scene.probe import (
     unbalanced,
 )
 from exudyn_rotor.linear.model.scene.sampled_terms import hill_stiffness, is_resolved
-from exudyn_rotor.linear.model.scene.searched_scene import Motion, Scene
-from exudyn_rotor.linear.model.scene.unloaded import check_elements, check_films, free_in_elements
+from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
+from exudyn_rotor.linear.model.scene.unloaded import check_elements, check_films, loose_bearing
 
 _FIRST_SAMPLES, _MOST_SAMPLES = 12, 192
 _LEFT_OUT = 3  # harmonics fewer than samples
@@ -56,7 +54,7 @@ _BESIDE_REST = 1e-5  # one of which the mean force alone counts
 _AT_REST = 1e-4  # share of a motion, or of a difference step, that does not matter
 
 
-def points_about(scene: Scene, probe: Probe) -> list[LinearPoint]:
+def points_about(scene: SceneCoordinates, probe: Probe) -> list[LinearPoint]:
     """Return the scene linearised at the angles of its steady motion, as many as resolve it.
 
     Without the rotor's own unbalance films are those of journals at rest, as in lists of supports.
@@ -69,7 +67,7 @@ def points_about(scene: Scene, probe: Probe) -> list[LinearPoint]:
         return _points_about(scene, probe, rest)
 
 
-def _points_about(scene: Scene, probe: Probe, rest: bool) -> list[LinearPoint]:
+def _points_about(scene: SceneCoordinates, probe: Probe, rest: bool) -> list[LinearPoint]:
     tolerance = None
     if probe.remembering:
         tolerance = _MOTION
@@ -98,7 +96,7 @@ def _points_about(scene: Scene, probe: Probe, rest: bool) -> list[LinearPoint]:
 
 
 def steady_motion(
-    scene: Scene, probe: Probe, tolerance: float | None, begin: Motion | None = None
+    scene: SceneCoordinates, probe: Probe, tolerance: float | None, begin: Motion | None = None
 ) -> tuple[list[LinearPoint], np.ndarray, np.ndarray]:
     """Return the linearised scene, orders (h,) and harmonics (h, k), at as many angles as needed.
 
@@ -180,7 +178,7 @@ class _Search:
     are the motions (k, r) whose mean is looked for.
     """
 
-    scene: Scene
+    scene: SceneCoordinates
     probe: Probe
     samples: int
     tolerance: float
@@ -207,11 +205,6 @@ class _Search:
         return scipy.linalg.block_diag(*(every if n else self.mean for n in self.orders))
 
     @cached_property
-    def left_out(self) -> np.ndarray:
-        """Loads (h k, h k) by the harmonics that are left out with the rotor's own unbalance."""
-        return mean_inertia(self.scene, self.probe, self.orders)
-
-    @cached_property
     def spin(self) -> OwnSpin | None:
         names = self.scene.interfaces
         return OwnSpin.of(self.scene, [self.scene.interface_motion(name) for name in names])
@@ -219,7 +212,7 @@ class _Search:
     @cached_property
     def is_free(self) -> bool:
         """Whether nothing presses the elements of a rolling bearing."""
-        return free_in_elements(self.scene, self.probe) is not None
+        return loose_bearing(self.scene, self.probe) is not None
 
     def found(self, start: np.ndarray | None) -> tuple[list[LinearPoint] | None, np.ndarray]:
         """Return the linearised scene, None where more samples are needed, and the harmonics.
@@ -286,7 +279,7 @@ class _Search:
                 iteration, shortened = iteration + (halvings - 1) * self.is_free, True
                 continue
             before, shortened = size, False
-            K = hill_stiffness(points, self.orders, self.probe.speed) - self.left_out
+            K = hill_stiffness(points, self.orders, self.probe.speed)
             change, left = (X.reshape(Y.shape) for X in solved_in(self.kept, K, -residual.ravel()))
             # there are no forces before the first step
             torque, twist = self._own_spin(points if iteration else None, K, Y + change)
@@ -347,7 +340,7 @@ class _Search:
         found = self.waves.conj().T @ np.array(left) / self.samples
         if self.scene.about == "equilibrium":
             found[self.orders == 0] += self.probe.speed**2 * self.scene.unit_unbalance
-        return found - (self.left_out @ Y.ravel()).reshape(Y.shape)
+        return found
 
     def _start(self, found: np.ndarray | None) -> np.ndarray:
         if found is None:
