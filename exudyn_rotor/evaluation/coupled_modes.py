@@ -9,7 +9,7 @@ import numpy as np
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.modal.whirl import Content, Named, damping_of
+from exudyn_rotor.linear.modal.whirl import FORWARD, Content, Named, damping_of
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
@@ -89,9 +89,7 @@ class Coupled:
             if found:
                 break
         else:
-            raise ValueError(
-                f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling"
-            )
+            return self._forward_of_overdamped(start, little)
         resonant = [
             i
             for i in found
@@ -101,6 +99,24 @@ class Coupled:
         if first is None:
             first = max(found, key=lambda i: growth[i])
         return (start, first), (little, found[first])
+
+    def _forward_of_overdamped(
+        self, start: Modes, coupled: Modes
+    ) -> tuple[tuple[Modes, int], tuple[Modes, int]]:
+        """Return the motion that begins to whirl forward under cross-coupling, and what it was.
+
+        Overdamped motions of both directions are one λ, whose shapes are arbitrary.
+        """
+        growth = coupled.named.motions.values.real
+        forward = np.flatnonzero(coupled.lateral & (coupled.named.codes == FORWARD))
+        before = np.flatnonzero(start.lateral & ~np.isfinite(start.decrements))
+        if not forward.size or not before.size:
+            raise ValueError(
+                f"supports: no mode at {self.speed:g} rad/s is fed by the cross-coupling"
+            )
+        mode = max(forward, key=lambda i: growth[i])
+        away = np.abs(start.named.motions.values.real[before] - growth[mode])
+        return (start, before[np.argmin(away)]), (coupled, mode)
 
     def followed(self, start: Modes, mode: int, multiple: float) -> tuple[Modes, int]:
         """Return the modes under another multiple, and which of them continues a mode.

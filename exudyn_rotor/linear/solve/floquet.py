@@ -47,28 +47,34 @@ def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarr
         for at in angles.T
     )  # fmt: skip
     followed = [np.eye(len(made.A[0]))]
-    for step in la.expm(magnus_exponent(first, second)):
+    exponents = magnus_exponent(first, second)
+    for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
         followed.append(step @ followed[-1])
     return followed
 
 
 def floquet_growth(
-    system: PeriodicSystem, made: States, tolerance: float, last: int = 0
+    system: PeriodicSystem, made: States, tolerance: float, begin: int = 0
 ) -> tuple[np.ndarray, float, int]:
     """Return the growth of all motions, what rounding can change of it, and how many steps it took.
 
-    It begins with half of the steps that were needed `last`.
+    It begins with half of the steps that were needed last, `begin`.
 
     The growth of those that matter: NaN where the largest one, of motions that are not neutral,
     changes by more than the `tolerance` of its own, or of a hundredth of Ω, with twice the steps.
     """
     period = 2.0 * np.pi / (system.step * abs(system.speed))
-    before, steps = np.nan, max(_FEWEST, last // 2)
+    before, steps = np.nan, max(_FEWEST, begin // 2)
     while True:
-        multipliers = np.linalg.eigvals(_followed(system, made, steps)[-1])
+        with np.errstate(all="ignore"):  # too few steps of a stiff film overflow
+            last = _followed(system, made, steps)[-1]
+        multipliers = np.full(len(last), np.nan)
+        if np.all(np.isfinite(last)):
+            multipliers = np.linalg.eigvals(last)
         growth = np.log(np.maximum(np.abs(multipliers), 1e-300)) / period
         bound = _ROUNDING * steps / period
         largest = growth[np.abs(growth) > bound].max(initial=-np.inf)
+        largest = np.nan if np.any(np.isnan(growth)) else largest
         if largest == before or abs(largest - before) <= tolerance * max(
             abs(largest), _SMALL * abs(system.speed)
         ):
