@@ -335,6 +335,7 @@ class _Seen:
         D = W[0].T @ D @ W[0]
         if undamped:
             K = K - speed * D @ self.N  # by rates alone
+            D = _without_noise(D)
             D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
         mass = Z.T @ rest.mass
         return mass @ Z, 2.0 * mass @ Z1 + D, mass @ Z2 + K
