@@ -102,10 +102,11 @@ def test_estimates_are_the_errors_against_more_modes(name):
         given, shifts = given[looked_at], found.basis_shifts[row, looked_at]
         errors = nearest(true, given + shifts, speed) - given
         known = np.isfinite(shifts)  # motions that err too much are not found again
-        assert known.sum() >= 0.7 * len(known)
-        shifts, errors = shifts[known], errors[known]
-        assert np.abs(errors).max() > 20.0
-        assert np.all(np.abs(shifts - errors) < 0.2 * np.abs(errors) + 0.02)
+        assert known.sum() >= 0.8 * len(known)
+        # frequencies fall in the frame of one rotor where they rise in that of another
+        shifts, errors = (np.abs(x[known].view(float)) for x in (shifts, errors))
+        assert errors.max() > 20.0
+        assert np.all(np.abs(shifts - errors) < 0.05 * errors + 0.02)
 
 
 @pytest.mark.parametrize("order", [1.0, 1.5])
