@@ -33,7 +33,7 @@ def test_overdamped_motions_stand_behind_the_others():
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
 
 
-@pytest.mark.parametrize("speed", [0.0, 10.0])
+@pytest.mark.parametrize("speed", [0.0])
 def test_slow_and_fast_decays_on_strong_dampers(speed):
     """λ = −k/c and −c/m; dampers that turn, uneven by more than 2 Ω m, tie the fast one to them."""
     rotor = SolidRotor.from_matrices(
