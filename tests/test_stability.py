@@ -16,7 +16,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.periodic.exponents import exponents, motions
 from exudyn_rotor.linear.periodic.fundamental import _magnus, monodromy
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError, fold
+from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError, fold
 from exudyn_rotor.linear.stability.stability import stability
 from exudyn_rotor.linear.stability.stability_map import StabilityMap, stability_map
 from exudyn_rotor.linear.stability.stability_result import Stability

@@ -11,7 +11,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import UnconvergedError
-from exudyn_rotor.linear.modal.whirl_new import WHIRLS, Content
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over

@@ -61,6 +61,8 @@ class Element:
         Ω at the points of its tables [rad/s], where coefficients have kinks.
     holding : callable, optional
         Gives a stiffness that tells which motions it holds, where it may have none at rest.
+    law : ControlledSupport or another with coordinates of its own, optional
+        What it was made from.
     """
 
     ends: tuple[End, ...]
@@ -71,6 +73,7 @@ class Element:
     stiffness_varies: bool = False
     table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     holding: Callable[[], np.ndarray] | None = None
+    law: Controlled | None = None
 
     @property
     def what(self) -> str:
@@ -206,7 +209,7 @@ def with_own(
 
     ends = (end, (end[0], one.sensor))
     if isinstance(one, ControlledSupport):
-        return [Element(ends, matrices, motion)]
+        return [Element(ends, matrices, motion, law=one)]
     return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
 
 

@@ -155,10 +155,11 @@ def base_response(
         [s]; the end of the record by default.
     stiffening : {'auto', 'none', 'tilt', 'full'}
     tolerance : float, optional
-        Largest change of a motion by halved steps, relative to the largest motion. Constant
-        equations are followed exactly with any step.
+        Largest error by the length of steps, relative to the largest motion, estimated by halved
+        steps. Constant equations are followed exactly with any step.
     axes : {'auto', 'inertial', 'rotor'}
-        Axes of the equations, see :func:`linear_model`.
+        Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
+        nothing is averaged.
 
     Raises
     ------
@@ -198,6 +199,7 @@ def base_response(
         raise ValueError(refusal)
     warn_of_structural_damping(model, "base_response computes motion over time")
     warn_of_left_out_stiffening(model, speed)
+    model = model.for_responses
     observed = places(model, at, speed)
     time, motion = ShakenRotor.of(model, speed, record, observed).converged(end, tolerance)
     motion[:, [one.is_node for one in observed], 3:] = np.nan

@@ -76,14 +76,15 @@ def looked_at(sizes: np.ndarray) -> np.ndarray:
 def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray]) -> np.ndarray:
     """Return relative errors (p,) of displacements (p, 6) in the largest harmonic across the axis.
 
-    Relative to the motion with the richer basis at the place, or to a tenth of the largest at any.
+    Relative to the larger one of the two motions at the place, or to a tenth of the largest at any.
     """
     across = {n: np.linalg.norm(each[:, :2]) for n, each in finer.items()}
     largest = {n: _size(each).max() for n, each in finer.items()}
     sizes = across if max(across.values()) > _AXIAL * max(largest.values()) else largest
     order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
-    size = _size(finer[order])
-    away = _size(finer[order] - given.get(order, 0.0))
+    other = given.get(order, np.zeros_like(finer[order]))
+    size = np.maximum(_size(finer[order]), _size(other))  # beside a sharp peak either is larger
+    away = _size(finer[order] - other)
     least = np.maximum(size, _LEAST * size.max())
     return np.divide(away, least, out=np.zeros_like(away), where=least > 0.0)
 

@@ -7,7 +7,7 @@ phase lies one, or a place without motion, and halving such intervals finds it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -31,7 +31,8 @@ def refined(
 ) -> tuple[np.ndarray, Solved]:
     """Add points until the phase of every motion turns little between neighbours.
 
-    No point is added beside a value without a steady motion.
+    No point is added where there is no steady motion, as at a resonance without damping, nor
+    beside such a value.
 
     Parameters
     ----------
@@ -50,6 +51,7 @@ def refined(
         All speeds or frequencies, and their solutions.
     """
     narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
+    given = values
     for _ in range(_MOST_ROUNDS):
         wide = (np.diff(values) > narrowest) & (_turns(phasors(solved)) > _MOST_TURN)
         between = np.flatnonzero(wide)[: most - len(values)]
@@ -59,7 +61,8 @@ def refined(
         order = np.argsort(np.r_[values, added], kind="stable")
         solved = solved + solve(added)
         values, solved = np.r_[values, added][order], [solved[i] for i in order]
-    return values, solved
+    known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
+    return values[known], [one for one, is_known in zip(solved, known, strict=True) if is_known]
 
 
 def _turns(phasors: np.ndarray) -> np.ndarray:
@@ -79,25 +82,32 @@ def _turns(phasors: np.ndarray) -> np.ndarray:
 
 
 def resolved_peak(
-    at: np.ndarray, size: np.ndarray, index: int, name: str, was_refined: bool
-) -> tuple[float, float]:
-    """Return place and size of the maximum at a point, by its neighbours.
+    at: np.ndarray, size: np.ndarray, index: int
+) -> tuple[float, float, bool]:
+    """Return place and size of the maximum at a point by its neighbours, and if they are near.
 
-    A warning with the `name` tells where these are beyond half of the power of the maximum, and
-    what to do where points were added already.
+    They are not where one of them is below half of the power of the maximum.
     """
     near = slice(index - 1, index + 2)
-    if size[near].min() < HALF_POWER * size[index]:
-        advice = "compute the response with refine=True"
-        if was_refined:
-            advice = "refine=True adds no more: give more of them there, or add damping"
-        warnings.warn(
-            f"{name}: the points around the peak at {at[index]:g} rad/s are too far apart to give "
-            f"its size and width; {advice}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    return peak_between(at[near], size[near])
+    is_near = bool(size[near].min() >= HALF_POWER * size[index])
+    return *peak_between(at[near], size[near]), is_near
+
+
+def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool) -> None:
+    """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
+    if not coarse:
+        return
+    advice = "compute the response with refine=True"
+    if was_refined:
+        advice = "refine=True adds no more: give more of them there, or add damping"
+    name, at = coarse[0]
+    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
+    warnings.warn(
+        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
+        f"size and width; {advice}",
+        UserWarning,
+        stacklevel=user_level(),
+    )
 
 
 def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:

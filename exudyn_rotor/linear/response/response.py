@@ -13,7 +13,7 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.linear.response import bode
 from exudyn_rotor.linear.response.basis_check import NOT_KNOWN, in_table
-from exudyn_rotor.linear.response.refinement import resolved_peak
+from exudyn_rotor.linear.response.refinement import resolved_peak, warn_of_coarse_peaks
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
@@ -151,7 +151,11 @@ class Response(RunStart, ABC):
                 f"{self.abscissa[-1]:g} rad/s; extend the range{more}"
             )
         index = int(inner[major[inner].argmax()])
-        return resolved_peak(self.abscissa, major, index, self._place(place), self.refined)
+        at, size, is_near = resolved_peak(self.abscissa, major, index)
+        if not is_near:
+            coarse = [(self._place(place), float(self.abscissa[index]))]
+            warn_of_coarse_peaks(coarse, self.refined)
+        return at, size
 
     def orbit(
         self, value: float, place: str | None = None, order: int | None = None, points: int = 181

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
@@ -16,6 +16,9 @@ from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _POINTS = 64  # over a ball pass and over a revolution, where the largest motion is looked for
 

@@ -5,9 +5,9 @@ step the record is the straight line with its mean and first moment, both exact.
 
 - Constant equations are followed exactly, whatever decays or swings fast: one matrix exponential of
   the state beside the line of the load, which turns with exp(inθ).
-- Periodic equations take steps of Radau's method with three stages, one for each part of a
-  revolution. It is of fifth order, and what decays within a step decays. Source: Hairer, Wanner,
-  Solving Ordinary Differential Equations II, Sect. IV.5.
+- Periodic equations take steps of Radau's method with three stages. It is of fifth order, and what
+  decays within a step decays. What a step does is periodic in its first angle, and so known by a
+  few Fourier terms. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, Sect. IV.5.
 
 Steps are halved until the motion no longer changes, and straight lines between them follow it: a
 rotor may swing faster than its record.
@@ -31,6 +31,10 @@ from exudyn_rotor.threads import one_thread
 
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
+_ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
+_KEPT = 512  # steps in a revolution that are kept as matrices
+_HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
+_TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
 _S = np.sqrt(6.0)
 _STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
@@ -102,7 +106,8 @@ class ShakenRotor:
                 )
             moved = motion[..., :3]
             size = np.abs(moved).max()
-            if last is not None and np.abs(moved[::2] - last).max() <= tolerance * size:
+            change = np.inf if last is None else np.abs(moved[::2] - last).max()
+            if change <= _HALVED * tolerance * size:
                 strides = [every >> fewer for fewer in range(every.bit_length() - 1)]
                 kept = next((n for n in strides if _follow(moved[:: n // 2], size)), None)
                 if kept is not None:
@@ -115,12 +120,11 @@ class ShakenRotor:
 
     def _first_step(self, length: float) -> float:
         """Return the largest step: a whole part of a step of the record, or of a revolution."""
-        given = self.record.step
-        largest = min(given, length / _IN_ALL)
-        if self.is_constant:
-            return given / np.ceil(given / largest - 1e-9)
-        turn = 2.0 * np.pi / abs(self.speed)
-        return turn / max(_PER_TURN, int(np.ceil(turn / largest)))
+        largest = min(self.record.step, length / _IN_ALL)
+        whole, least = self.record.step, 1.0
+        if not self.is_constant:
+            whole, least = 2.0 * np.pi / abs(self.speed), _PER_TURN
+        return whole / max(least, np.ceil(whole / largest - 1e-9))
 
     def _motion(
         self, start: float, end: float, step: float, every: int
@@ -128,72 +132,84 @@ class ShakenRotor:
         """Return times and motions of all steps, a multiple of `every`."""
         count = every * max(1, int(np.floor((end - start) / (every * step) + 1e-9)))
         times = start + step * np.arange(count + 1)
-        mean, slope = self._lines(times, step)
-        lines = np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
         angles = self.speed * (times - start)
-        if self.is_constant:
-            by_state, given = self._exact(step, angles[:-1], lines)
-        else:
-            by_state, given = self._radau(step, angles[:-1], lines)
-        states, turn = np.zeros((count + 1, len(self.A[0]))), len(by_state)
+        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
+        lines = self._lines(times, step)
+        waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
+        given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
+        states = np.zeros((count + 1, len(self.A[0])))
+        turn = 1 if self.is_constant else round(2.0 * np.pi / abs(self.speed) / step)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            for n in range(count):
-                states[n + 1] = by_state[n % turn] @ states[n] + given[n]
-        motion = np.zeros((count + 1, len(self.seen), 6))
-        for place, seen in enumerate(self.seen):
-            for n, U in seen.items():
-                motion[:, place] += (np.exp(1j * n * angles)[:, None] * (states @ U.T)).real
+            if turn <= _KEPT:
+                each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
+                for n in range(count):
+                    states[n + 1] = each[n % turn] @ states[n] + given[n]
+            else:
+                # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
+                later = [n for n in by_state if n > 0]
+                parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
+                tall = np.vstack([by_state[0].real, *parts])
+                parts = (w for n in later for w in (waves[n].real, waves[n].imag))
+                weights = np.column_stack([np.ones(count + 1), *parts])
+                for n in range(count):
+                    stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
+                    states[n + 1] = weights[n] @ stepped + given[n]
+            motion = np.zeros((count + 1, len(self.seen), 6))
+            for place, seen in enumerate(self.seen):
+                for n, U in seen.items():
+                    motion[:, place] += (waves[n][:, None] * (states @ U.T)).real
         return times, motion
 
-    def _lines(self, times: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the line of every step that has the record's mean and first moment."""
+    def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
+        """Return first value and slope (t, 6) of the line in every step.
+
+        It has the mean and the first moment of the record.
+        """
         velocity, place = self.record.integrals(times)
         mean = np.diff(velocity, axis=0) / step
         moment = 0.5 * step * (velocity[1:] + velocity[:-1]) - np.diff(place, axis=0)
-        return mean, 12.0 * moment / step**3
+        slope = 12.0 * moment / step**3
+        return np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
 
-    def _exact(
-        self, step: float, angles: np.ndarray, lines: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the step of the state (1, 2k, 2k), and what each line (t, 6) adds, (t, 2k)."""
+    def _exact(self, step: float) -> tuple[dict, dict]:
+        """Return Fourier terms of what a step does with the state (2k, 2k) and a line (2k, 6)."""
         A = at_angle(self.A, 0.0)
-        size, given = len(A), np.zeros((len(angles), len(A)))
+        size, by_line = len(A), {}
         for n, load in self.loads.items():
             generator = np.zeros((size + 6, size + 6), dtype=complex)
             generator[:size, :size], generator[:size, size : size + 3] = A, load
             generator[size : size + 3, size + 3 :] = np.eye(3)
             generator[size:, size:] += 1j * n * self.speed * np.eye(6)
-            stepped = scipy.linalg.expm(step * generator)
-            turned = np.exp(1j * n * angles)[:, None] * lines
-            given += (turned @ stepped[:size, size:].T).real
-        return scipy.linalg.expm(step * A)[None], given
+            by_line[n] = scipy.linalg.expm(step * generator)[:size, size:]
+        return {0: scipy.linalg.expm(step * A)}, by_line
 
-    def _radau(
-        self, step: float, angles: np.ndarray, lines: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the steps of the state in a revolution, and what each line adds, (t, 2k)."""
+    def _radau(self, step: float) -> tuple[dict, dict]:
+        """Return what :meth:`_exact` does, of periodic equations."""
+        size, count = len(self.A[0]), _ANGLES
+        while True:
+            angles = 2.0 * np.pi * np.arange(count) / count
+            spectrum = np.fft.fft([self._stepped(step, angle) for angle in angles], axis=0) / count
+            sizes = np.abs(spectrum).max(axis=1)  # the lines act on states of another size
+            sizes = (sizes / np.maximum(sizes.max(axis=0), 1e-300)).max(axis=1)
+            if sizes[count // 4 : -count // 4].max() <= _TAIL or count >= _MOST_ANGLES:
+                break
+            count *= 2
+        terms = {n: spectrum[n] for n in range(-count // 4, count // 4 + 1) if sizes[n] > _ROUNDING}
+        return tuple({n: X[:, part] for n, X in terms.items()}
+                     for part in (slice(size), slice(size, None)))  # fmt: skip
+
+    def _stepped(self, step: float, angle: float) -> np.ndarray:
+        """Return what a step from a spin angle [rad] does with state and line, (2k, 2k + 6)."""
         size = len(self.A[0])
-        turn = min(len(angles), round(2.0 * np.pi / abs(self.speed) / step))
-        by_state = np.zeros((turn, size, size))
-        by_line = np.zeros((turn, size, 6))
-        ones = np.tile(np.eye(size), (3, 1))
-        for number in range(turn):
-            stages = angles[number] + self.speed * step * _STAGES
-            rates = np.stack([at_angle(self.A, angle) for angle in stages])
-            left = np.eye(3 * size).reshape(3, size, 3, size)
-            left -= step * np.einsum("ij,jab->iajb", _RADAU, rates)
-            loads = [
-                np.hstack([load, share * step * load])
-                for load, share in zip((self._load(angle) for angle in stages), _STAGES, strict=True)
-            ]
-            right = step * np.einsum("ij,jab->iab", _RADAU, np.array(loads))
-            right = np.hstack([ones, right.reshape(3 * size, 6)])
-            stepped = np.linalg.solve(left.reshape(3 * size, 3 * size), right)[2 * size :]
-            by_state[number], by_line[number] = stepped[:, :size], stepped[:, size:]
-        given = np.zeros((len(angles), size))
-        for number in range(turn):
-            given[number::turn] = lines[number::turn] @ by_line[number].T
-        return by_state, given
+        stages = angle + self.speed * step * _STAGES
+        rates = np.stack([at_angle(self.A, each) for each in stages])
+        loads = np.stack([np.hstack([self._load(each), share * step * self._load(each)])
+                          for each, share in zip(stages, _STAGES, strict=True)])  # fmt: skip
+        left = np.eye(3 * size).reshape(3, size, 3, size)
+        left -= step * np.einsum("ij,jab->iajb", _RADAU, rates)
+        right = step * np.einsum("ij,jab->iab", _RADAU, loads).reshape(3 * size, 6)
+        right = np.hstack([np.tile(np.eye(size), (3, 1)), right])
+        return np.linalg.solve(left.reshape(3 * size, 3 * size), right)[2 * size :]
 
     def _load(self, angle: float) -> np.ndarray:
         """Return the rates per acceleration of the ground at a spin angle [rad], (2k, 3)."""
@@ -204,3 +220,8 @@ def _follow(moved: np.ndarray, size: float) -> bool:
     """Return whether straight lines between every second of the displacements follow the others."""
     between = 0.5 * (moved[:-1:2] + moved[2::2])
     return bool(np.abs(moved[1::2] - between).max() <= _BETWEEN * size)
+
+
+def _orders(seen: Sequence[Terms]) -> set[int]:
+    return {n for each in seen for n in each}
+

@@ -189,8 +189,9 @@ def harmonic_response(
 
     A free spin follows the moments of the loads about the axis; a drive keeps its mean where the
     load is constant. Amplitudes are peak values, half of peak to peak. Harmonics ω + nΩ that meet
-    at one frequency are one motion: they are added, to the harmonic whose rate is positive. A
-    frequency without a steady motion is NaN, with one warning.
+    at one frequency are one motion: they are added, to the harmonic whose rate is positive. Of a
+    constant load and motion the real part counts. A frequency without a steady motion is NaN, with
+    one warning.
 
     Parameters
     ----------
@@ -411,19 +412,15 @@ def _warn_of_missing(
     """
     if not np.any(missing):
         return
-    why = (
-        str(refused[0])
-        if refused
-        else "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
-    )
-    if np.all(missing):
-        raise ValueError(f"there is no steady motion: {why}")
+    why = "a constant load acts on a motion that nothing holds, or nothing damps a resonance"
+    if refused:
+        why = str(refused[0])
     shown = ", ".join(f"{value:.5g}" for value in values[missing][:5])
-    more = " …" if missing.sum() > 5 else ""
+    shown += " …" if missing.sum() > 5 else ""
+    if np.all(missing):
+        raise ValueError(f"no steady motion at {shown} rad/s: {why}")
     warnings.warn(
-        f"no steady motion at {shown}{more} rad/s, NaN there: {why}",
-        UserWarning,
-        stacklevel=user_level(),
+        f"no steady motion at {shown} rad/s, NaN there: {why}", UserWarning, stacklevel=user_level()
     )
 
 

@@ -142,14 +142,14 @@ def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray,
             if m - n in made.A:
                 matrix[a, :, b] = made.A[m - n]
         matrix[a, np.arange(size), a, np.arange(size)] -= 1j * m * speed
-    turn = _real_waves(h)  # exp(imΩt) from 1, cosines and sines
+    turn = real_waves(h)  # exp(imΩt) from 1, cosines and sines
     real = np.einsum("ap,aibj,bq->piqj", turn.conj(), matrix, turn, optimize=True).real
     values, vectors = np.linalg.eig(real.reshape(h * size, h * size))
     states = np.tensordot(turn, vectors.reshape(h, size, -1), (1, 0))
     return values, states
 
 
-def _real_waves(h: int) -> np.ndarray:
+def real_waves(h: int) -> np.ndarray:
     """Return the unitary matrix (h, h) from 1, √2 cos and √2 sin to exponentials."""
     top = h // 2
     turn = np.zeros((h, h), dtype=complex)

@@ -1,1 +1,0 @@
-"""Scenes with a rotor, linearised about their steady motion."""
