@@ -15,6 +15,11 @@ from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import (
+    BACKWARD,
+    FORWARD,
+    MIXED,
+    OVERDAMPED,
+    STATIC,
     UNKNOWN,
     Content,
     Named,
@@ -127,7 +132,7 @@ def campbell(
     >>> result.frequencies_inertial[1, 1:5].round(2)
     array([99.97, 99.97, 99.97, 99.97])
     >>> result.whirl[1, 1:5].tolist()
-    ['backward', 'backward', 'forward', 'forward']
+    ['forward', 'forward', 'backward', 'backward']
     """
     values = checked_speeds(speeds, allow_negative)
     if modes is not None:
@@ -170,15 +175,20 @@ def _resting(found: Named) -> Named:
     """Return motions of which free ones, double zeros that rounding splits, do not grow."""
     values = found.motions.values
     split = _SPLIT * np.nanmax(np.abs(values), initial=0.0)
-    rests = (found.inertial == 0.0) & (np.abs(values.real) <= split)
-    values = np.where(rests, 1j * values.imag, values)
-    return found._replace(motions=replace(found.motions, values=values))
+    rests = np.hypot(found.inertial, values.real) <= split
+    motions = replace(found.motions, values=np.where(rests, 1j * values.imag, values))
+    lateral = rests & np.isin(found.codes, (FORWARD, BACKWARD, MIXED, OVERDAMPED))
+    return found._replace(
+        motions=motions,
+        inertial=np.where(rests, 0.0, found.inertial),
+        codes=np.where(lateral, STATIC, found.codes),
+    )
 
 
 def _ascending(found: Named, frame: str) -> np.ndarray:
     """Return the order of motions: ascending in a frame, overdamped ones and lost ones last.
 
-    Where frequencies are one but for rounding, from backward to forward waves, and by their decay.
+    Equal frequencies ascend in the other frame, then from backward to forward waves.
     """
     main, other = found.inertial, found.rotor
     if frame == "rotor":

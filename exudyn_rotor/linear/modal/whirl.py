@@ -220,7 +220,7 @@ class Content:
         _, turn = la.eigh(
             0.5 * (form + form.conj().T), 0.5 * (whole + whole.conj().T) + floor * np.eye(len(form))
         )
-        turned = span @ turn
+        turned = span @ (turn / np.abs(turn).max(axis=0))
         return turned / np.linalg.norm(turned.reshape(-1, turned.shape[2]), axis=0)
 
 
