@@ -1,47 +1,62 @@
-"""Pictures of results: one style, figures of pyplot, axes given or new."""
+"""Pictures of results: one style, figures of pyplot, axes given or new.
+
+Matplotlib takes most of a second: functions import it where they draw.
+"""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
 from os import PathLike
+from typing import TYPE_CHECKING
+from weakref import WeakSet
 
 import numpy as np
-from matplotlib import pyplot
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.figure import Figure
-from matplotlib.legend import Legend
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-from matplotlib.text import Annotation
-from matplotlib.ticker import MaxNLocator, NullLocator
-from mpl_toolkits.mplot3d import Axes3D
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from mpl_toolkits.mplot3d.proj3d import proj_transform
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.storage import write_bytes
 
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+    from matplotlib.text import Annotation
+    from mpl_toolkits.mplot3d import Axes3D
+
+
 # colours that stay apart in grey and for colour-blind readers (Okabe and Ito)
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", ":", "-.", (0, (1, 1)))
+
+_made: WeakSet[Figure] = WeakSet()  # figures of this package that are alive
 
 _WIDEST = 1.1  # a legend, in widths of its axes
 _LINE = 1.2  # from a line of text to the next, in sizes of its letters
 
 
 def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (7.0, 4.5), **options):
-    """Return a new figure of pyplot, and its axes; `options` go to ``pyplot.subplots``."""
-    return pyplot.subplots(rows, columns, figsize=size, layout="constrained", **options)
+    """Return a new figure of pyplot, and its axes; `options` go to ``pyplot.subplots``.
+
+    As all figures of pyplot it is shown by ``pyplot.show()`` and at the end of a notebook's cell,
+    and stays open until it is closed; see :func:`save`.
+    """
+    from matplotlib import pyplot
+
+    made, axes = pyplot.subplots(rows, columns, figsize=size, layout="constrained", **options)
+    _made.add(made)
+    return made, axes
 
 
 def axes_or_new(ax: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes:
     """Return the given axes, or those of a new figure of pyplot for None."""
     if ax is None:
         return figure(size=size)[1]
+    from matplotlib.axes import Axes
+
     return checks.instance(ax, "ax", Axes, "make some with matplotlib.pyplot.subplots()")
 
 
@@ -54,7 +69,12 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
     """Write the figure of axes, or of an array of them, or a figure.
 
     A name without an ending gets '.png'. A file of that name is replaced only by a complete one.
+    Where no window and no notebook can show it, a figure that this package has made is closed
+    afterwards, so that a script that saves many keeps none in memory.
     """
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     one = drawn.flat[0] if isinstance(drawn, np.ndarray) and drawn.size else drawn
     checks.instance(one, "drawn", (Axes, Figure))
     made = whole_figure(one)
@@ -63,6 +83,17 @@ def save(drawn: Axes | Figure | np.ndarray, path: str | PathLike) -> None:
         target = target.with_suffix(".png")
     made.savefig(content, format=target.suffix[1:], dpi=140)
     write_bytes(target, content.getvalue())
+    _close_unseen(made)
+
+
+def _close_unseen(made: Figure) -> None:
+    """Take a figure of this package from those of pyplot, where the backend only writes files."""
+    from matplotlib import get_backend, pyplot
+    from matplotlib.backends import BackendFilter, backend_registry
+
+    files_only = backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)
+    if made in _made and get_backend().lower() in files_only:
+        pyplot.close(made)
 
 
 def plot_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> Axes:
@@ -147,6 +178,11 @@ def draw_surface(
     'temperature [K]'
     >>> pyplot.close(ax.figure)
     """
+    from matplotlib import pyplot
+    from matplotlib.cm import ScalarMappable
+    from mpl_toolkits.mplot3d import Axes3D
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
     positions, triangles, values = _checked_surface(positions, triangles, values)
     checks.label(label, "label")
     corners = triangles
@@ -175,6 +211,7 @@ def draw_surface(
         ax.figure.colorbar(mapped, ax=ax, label=label, pad=0.15, shrink=0.8)
         return ax
     made = pyplot.figure()
+    _made.add(made)
     ax = made.add_subplot(projection="3d")
     ax.add_collection3d(faces)
     place = _fit(ax, *_frame(ax, points))
@@ -215,6 +252,8 @@ _ACROSS = ((20.0, -75.0, 0.0), (20.0, 15.0, 0.0), (20.0, -160.0, -90.0))
 
 def _frame(ax: Axes3D, points: np.ndarray) -> tuple[np.ndarray, float]:
     """Set limits, view and axes for a body; return the points to fit in and the margin [inch]."""
+    from matplotlib.ticker import MaxNLocator, NullLocator
+
     low, high = points.min(axis=0), points.max(axis=0)
     size = high - low
     longest, share = int(np.argmax(size)), size / size.max()
@@ -251,6 +290,8 @@ def _extents(body: np.ndarray, points: np.ndarray) -> str:
 
 def _fit(ax: Axes3D, points: np.ndarray, margin: float) -> tuple[float, float, float, float]:
     """Let a body between `points` fill the figure; return the place of the colour bar."""
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
     bar = 1.35  # inch
     flat = np.stack(proj_transform(*points.T, ax.get_proj())[:2], axis=1)
     flat = (ax.transData - ax.transAxes).transform(flat)
@@ -303,6 +344,9 @@ def legend_of_seen(ax: Axes, columns: int, handles: list[Artist]) -> None:
 
 
 def _is_seen(ax: Axes, artist: Line2D | Patch) -> bool:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
     if isinstance(artist, Line2D) and artist.get_linestyle() == "None":  # markers alone
         places = artist.get_transform().transform(artist.get_xydata())
         return ax.bbox.count_contains(places) > 0

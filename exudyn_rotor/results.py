@@ -8,6 +8,7 @@ and only registered classes are made from it, so loading never executes code fro
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, field, fields, is_dataclass
 from functools import cache
@@ -330,6 +331,7 @@ def load_result(path: str | PathLike) -> Result:
     """
     data = read_arrays(path, _KIND)
     name = data.pop("class", None)
+    _import_public(str(name))
     cls = _REGISTERED.get(str(name))
     if cls is None:
         raise ValueError(f"{path}: holds a {name}; results that can be: {_known()}")
@@ -375,5 +377,14 @@ def _decoded(array: np.ndarray, hint: Any, item: Field) -> object:
     return array.item()
 
 
+def _import_public(*names: str) -> None:
+    """Import public names of the package, as far as there are such: their modules register them."""
+    package = sys.modules[__package__]
+    for name in names:
+        if name in package.__all__:
+            getattr(package, name)
+
+
 def _known() -> str:
+    _import_public(*sys.modules[__package__].__all__)
     return ", ".join(sorted(_REGISTERED)) or "none"

@@ -5,9 +5,11 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib import pyplot
+from models import disc_with_craig_bampton_modes
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
+    BaseAcceleration,
     SeparationMargins,
     SolidRotor,
     StabilityLevelOne,
@@ -15,9 +17,11 @@ from exudyn_rotor import (
     Unbalance,
     UnbalanceResponse,
     anticipated_cross_coupling,
+    bearing_loads,
     bearing_masses,
     campbell,
     critical_speed_map,
+    harmonic_response,
     plotting,
     separation_margins,
     stability,
@@ -228,6 +232,19 @@ def test_bearings_share_the_mass_by_their_levers(axis):
 
 
 # ------------------------------------------------------------------ stability of level I
+
+
+def test_the_ground_that_rises_by_g_loads_bearings_as_their_weight():
+    """The journals go down, by the load of each bearing over its stiffness."""
+    rotor = disc_with_craig_bampton_modes()
+    stiffness = {"left": 1e6, "right": 2e6}
+    supports = [Support(name, k, damping=10.0) for name, k in stiffness.items()]
+    weight = BaseAcceleration([0.0, 9.81])
+    response = harmonic_response(rotor, [0.0], weight, supports=supports, speed=50.0)
+    loads = bearing_loads(rotor, list(stiffness), -9.81 * rotor.axis.plane[:, 1])
+    for (name, k), load in zip(stiffness.items(), loads, strict=True):
+        moved = [response.phasor(name, n)[0].real for n in ("n1", "n2")]
+        np.testing.assert_allclose(moved, load / k, atol=1e-8 * abs(load[1]) / k)
 
 
 def test_anticipated_cross_coupling_of_the_printed_formula():

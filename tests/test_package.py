@@ -1,7 +1,13 @@
 """What the package says about itself agrees."""
 
+import ast
+import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
+
+import pytest
 
 import exudyn_rotor
 
@@ -45,6 +51,80 @@ def test_public_names_are_there_sorted_and_with_an_example():
     assert exudyn_rotor.__all__ == sorted(exudyn_rotor.__all__)
     for name in exudyn_rotor.__all__:
         assert ">>> " in getattr(exudyn_rotor, name).__doc__, f"{name} lacks an example"
+
+
+def told_to_type_checkers() -> dict[str, str]:
+    """Return public names by module, as they stand in the block for type checkers."""
+    tree = ast.parse(read("exudyn_rotor/__init__.py"))
+    [block] = (part for part in tree.body if isinstance(part, ast.If))
+    assert ast.unparse(block.test) == "TYPE_CHECKING"
+    pairs = [(line.module, alias) for line in block.body for alias in line.names]
+    assert all(alias.name == alias.asname for _, alias in pairs)  # which makes it public
+    return {alias.name: module.removeprefix("exudyn_rotor.") for module, alias in pairs}
+
+
+def test_type_checkers_see_what_is_imported_when_it_is_used():
+    assert told_to_type_checkers() == exudyn_rotor._MODULES
+    assert set(exudyn_rotor.__all__) <= set(dir(exudyn_rotor))
+    for name, module in exudyn_rotor._MODULES.items():
+        home = importlib.import_module(f"exudyn_rotor.{module}")
+        assert getattr(exudyn_rotor, name) is getattr(home, name)
+
+
+def test_modules_are_there_and_other_names_are_not():
+    """Of the package alone: a name that is misspelt is an AttributeError."""
+    fresh = "import exudyn_rotor as er; print(er.plotting.save.__name__, er.linear.__name__)"
+    assert run(fresh) == "save exudyn_rotor.linear"
+    for name in ("Rotor", "linear.modal", "_plotting", "__wrapped__"):
+        with pytest.raises(AttributeError, match=f"exudyn_rotor' has no attribute '{name}'"):
+            getattr(exudyn_rotor, name)
+
+
+def run(script: str) -> str:
+    """Return what a script prints in a process of its own."""
+    command = [sys.executable, "-c", script]
+    return subprocess.run(
+        command, check=True, capture_output=True, text=True, cwd=ROOT
+    ).stdout.strip()
+
+
+def test_importing_the_package_takes_little_more_than_exudyn():
+    """Neither libraries nor modules of rotors, and Exudyn has the new method all the same."""
+    script = """
+import exudyn, numpy.typing, sys
+before = set(sys.modules)
+import exudyn_rotor
+standard = sys.stdlib_module_names
+others = {name for name in set(sys.modules) - before if name.split(".")[0] not in standard}
+print(exudyn.MainSystem.CreateFixedAxisFFRFReducedOrderObject.__module__)
+print(*sorted(others))
+"""
+    new_method, loaded = run(script).splitlines()
+    assert new_method == "exudyn_rotor.multibody.twins.exudyn_call"
+    assert loaded.split() == [
+        "exudyn_rotor",
+        "exudyn_rotor.multibody",
+        "exudyn_rotor.multibody.twins",
+        "exudyn_rotor.multibody.twins.exudyn_call",
+        "exudyn_rotor.multibody.wrapping",
+    ]
+
+
+def test_scenes_without_rotors_load_no_modules_of_rotors():
+    script = """
+import exudyn, sys, exudyn_rotor
+mbs = exudyn.SystemContainer().AddSystem()
+ground = mbs.CreateGround()
+mbs.AddMarker(exudyn.itemInterface.MarkerBodyPosition(bodyNumber=ground))
+mbs.Assemble()
+print(mbs.SolveStatic.__wrapped__.__module__, "exudyn_rotor.solid_rotor" in sys.modules)
+"""
+    assert run(script) == "exudyn.solver False"
+
+
+def test_models_need_no_matplotlib():
+    script = "import sys, exudyn_rotor as er; er.SolidRotor, er.add_rotor, er.craig_bampton_modes"
+    assert run(script + "; print('matplotlib' in sys.modules)") == "False"
 
 
 def test_contributing_names_files_that_exist():

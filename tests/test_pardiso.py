@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -151,3 +152,28 @@ def test_threads_share_a_factor():
     assert np.column_stack([found[column] for column in range(6)]) == pytest.approx(
         known, abs=1e-11
     )
+
+
+def test_mkl_is_named_once_where_a_model_is_large(shaft, monkeypatch):
+    """Not where it is installed, or where there is none for the machine."""
+
+    def messages() -> list[str]:
+        pardiso.tell_of_mkl.cache_clear()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            for _ in range(2):
+                stiffness = shaft.stiffness.copy()  # whose factor is not known yet
+                free_modes(SolidRotor.from_matrices(shaft.mass, stiffness, shaft.nodes, "x"), 1)
+        return [str(one.message) for one in caught if "mkl" in str(one.message)]
+
+    monkeypatch.setattr(pardiso, "find_spec", lambda name: None)
+    monkeypatch.setattr("platform.machine", lambda: "AMD64")
+    monkeypatch.setattr("sys.platform", "linux")
+    assert not messages()
+    monkeypatch.setattr(pardiso, "_LARGE", 100)
+    assert len(messages()) == 1
+    monkeypatch.setattr("platform.machine", lambda: "arm64")
+    assert not messages()
+    monkeypatch.setattr("platform.machine", lambda: "AMD64")
+    monkeypatch.setattr(pardiso, "find_spec", lambda name: "installed")
+    assert not messages()

@@ -138,6 +138,23 @@ def test_pictures_of_several_axes(tmp_path):
             plotting.save(wrong, tmp_path / "a")
 
 
+def test_a_script_that_saves_pictures_keeps_none(tmp_path, monkeypatch):
+    """Its backend writes files only; figures that are not saved stay, and those of the script."""
+    maps = STORED["StabilityMap"]
+    unsaved, (own, given) = maps.plot().figure, pyplot.subplots()
+    plotting.save(maps.plot(given), tmp_path / "own.png")
+    response, stress = STORED["UnbalanceResponse"], STORED["StressHistory"]
+    for draw in (maps.plot, response.plot, stress.plot_peak):
+        drawn = draw()
+        plotting.save(drawn, tmp_path / "a.png")
+        assert pyplot.get_fignums() == [unsaved.number, own.number]
+        plotting.save(drawn, tmp_path / "b.png")  # it can be saved again
+    monkeypatch.setattr("matplotlib.get_backend", lambda: "QtAgg")
+    shown = maps.plot()
+    plotting.save(shown, tmp_path / "a.png")
+    assert shown.figure.number in pyplot.get_fignums()
+
+
 def test_killed_savers_and_a_reader_lose_nothing(tmp_path):
     pairs = savers.killed_pairs(tmp_path, 2)
     assert (pairs.lost, pairs.unreadable) == (0, 0)

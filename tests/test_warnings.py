@@ -49,6 +49,7 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.linear.response import rolling_motion
 from exudyn_rotor.linear.stability.threshold_search import Search
+from exudyn_rotor.solvers import pardiso
 
 PACKAGE = Path(exudyn_rotor.__file__).parent
 
@@ -275,6 +276,8 @@ def curved_elements(_):
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
 PLACES = {
+    "solvers/pardiso.py:tell_of_mkl": (
+        lambda _: pardiso.tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **(SIZE | WATER | {"viscosity": 0.1})),
         UserWarning, "may be laminar"),

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
 from exudyn_rotor.advice.run_loads import external_load
@@ -27,6 +27,10 @@ from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.energy import energy_of
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 _LEAST = 3  # instants: the first has no accelerations
 # error by the spacing of the instants that is told: of what goes from one share to another, and of

@@ -9,18 +9,27 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.modal.excitation import checked_range, shade_range
-from exudyn_rotor.linear.response.refinement import HALF_POWER, STILL, resolved_peak
+from exudyn_rotor.linear.response.refinement import (
+    HALF_POWER,
+    STILL,
+    resolved_peak,
+    warn_of_coarse_peaks,
+)
 from exudyn_rotor.linear.response.responses import UnbalanceResponse
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 _CRITICALLY_DAMPED = 2.5  # amplification factor below which no margin is asked for
 _ONE_LABEL = 0.01  # of the range of speeds: peaks so near each other have one label
@@ -40,8 +49,9 @@ class SeparationMargins(Result):
     peaks, sizes : ndarray, shape (p,)
         Critical speed N_c [rad/s] and major semi-axis of the orbit there [m].
     half_power : ndarray, shape (p, 2)
-        Speeds N₁ and N₂ beside the peak where the size is 0.707 of it [rad/s]; NaN where the
-        response does not fall so far before it ends or rises again.
+        Speeds N₁ and N₂ beside the peak where the size is 0.707 of it [rad/s], on the peak's own
+        flanks: NaN where the response does not fall so far before the valley to the next peak, or
+        before it ends. The table remarks these peaks.
     amplification : ndarray, shape (p,)
         ``AF = N_c / (N₂ − N₁)``; by one side alone, twice its distance, where the other is NaN;
         NaN where both are.
@@ -128,6 +138,11 @@ class SeparationMargins(Result):
             )
         if not self.places:
             lines.append("  no peak")
+        if np.any(np.isnan(self.half_power)):
+            lines.append(
+                "nan: the size does not fall to 0.707 of the peak before the valley to the next peak "
+                "or the end; AF is by the other side, or not known"
+            )
         return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
@@ -230,12 +245,18 @@ def separation_margins(
     names = response.places
     if places is not None:
         names = checks.different(checks.labels(places, "places", response.places), "places")
-    speeds, entries = response.speeds, []
+    speeds, entries, coarse = response.speeds, [], []
     _warn_of_speeds_left_out(speeds, limits)
     curves = np.array([response.semi_axes(name)[0] for name in names]).reshape(-1, len(speeds))
     for name, curve in zip(names, curves, strict=True):
+        curve = np.nan_to_num(curve)
         rows, _ = find_peaks(curve, prominence=_RIPPLE * curve.max(initial=0.0))
-        entries += [(name, *_peak(response, curve, int(row), name)) for row in rows]
+        for row, section in zip(rows, _flanks(curve, rows), strict=True):
+            place, size, is_near = resolved_peak(speeds, curve, row)
+            entries.append((name, place, size, _half_powers(speeds, curve, row, size, section)))
+            if not is_near:
+                coarse.append((name, float(speeds[row])))
+    warn_of_coarse_peaks(coarse, response.refined)
     entries.sort(key=lambda entry: entry[1])
     peaks = np.array([entry[1] for entry in entries])
     factors = np.array([_amplification(entry[1], entry[3]) for entry in entries])
@@ -289,36 +310,45 @@ def _margins(
     return required, actual
 
 
-def _peak(
-    response: UnbalanceResponse, curve: np.ndarray, row: int, name: str
-) -> tuple[float, float, tuple[float, float]]:
-    """Return place, size and half-power speeds of the maximum at a row."""
-    speeds = response.speeds
-    place, size = resolved_peak(speeds, curve, row, name, response.refined)
-    lower = _half_power(speeds[: row + 2][::-1], curve[: row + 2][::-1], size)
-    upper = _half_power(speeds[row - 1 :], curve[row - 1 :], size)
-    return place, size, (lower, upper)
+def _flanks(curve: np.ndarray, rows: np.ndarray) -> list[slice]:
+    """Return the section of a curve that belongs to each peak: from valley to valley."""
+    if not len(rows):
+        return []
+    valleys = [
+        first + int(np.argmin(curve[first:last]))
+        for first, last in zip(rows[:-1], rows[1:], strict=True)
+    ]
+    return [slice(a, b + 1) for a, b in zip([0, *valleys], [*valleys, len(curve) - 1], strict=True)]
+
+
+def _half_powers(
+    speeds: np.ndarray, curve: np.ndarray, row: int, size: float, section: slice
+) -> tuple[float, float]:
+    """Return the half-power speeds of the maximum at a row on its own flanks."""
+    lower, upper = slice(section.start, row + 2), slice(row - 1, section.stop)
+    return (
+        _half_power(speeds[lower][::-1], curve[lower][::-1], size),
+        _half_power(speeds[upper], curve[upper], size),
+    )
 
 
 def _half_power(speeds: np.ndarray, curve: np.ndarray, size: float) -> float:
-    """Return where a curve falls below 0.707 of a peak; NaN where it rises or ends before.
+    """Return where a curve falls below 0.707 of a peak; NaN where it does not.
 
     The second point is the peak, from which speeds go away to one side. 1/size² is taken for a
     parabola, as it is near a resonance; beside rest the size for a line.
     """
-    for end in range(2, len(curve)):
-        if curve[end] > curve[end - 1]:
-            return np.nan
-        if curve[end] < HALF_POWER * size:
-            at, seen = speeds[end - 2 : end + 1], curve[end - 2 : end + 1]
-            if seen.min() < STILL * size:  # at rest, without a load
-                return float(np.interp(HALF_POWER * size, seen[:0:-1], at[:0:-1]))
-            levels = (size / seen) ** 2
-            roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
-            between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]
-            line = at[1] + (at[2] - at[1]) * (2.0 - levels[1]) / (levels[2] - levels[1])
-            return float(min(between, key=lambda x: abs(x - line), default=line))
-    return np.nan
+    below = np.flatnonzero(curve[2:] < HALF_POWER * size) + 2
+    if not below.size:
+        return np.nan
+    at, seen = (each[below[0] - 2 : below[0] + 1] for each in (speeds, curve))
+    if seen.min() < STILL * size:  # at rest, without a load
+        return float(np.interp(HALF_POWER * size, seen[:0:-1], at[:0:-1]))
+    levels = (size / seen) ** 2
+    roots = np.roots(np.polyfit(at - at[1], levels - 2.0, 2)) + at[1]
+    between = [x.real for x in roots if abs(x.real - at[1:].mean()) <= abs(at[2] - at[1])]
+    line = at[1] + (at[2] - at[1]) * (2.0 - levels[1]) / (levels[2] - levels[1])
+    return float(min(between, key=lambda x: abs(x - line), default=line))
 
 
 def _amplification(peak: float, sides: tuple[float, float]) -> float:

@@ -10,6 +10,8 @@ import exudyn
 import numpy as np
 from numpy.typing import ArrayLike
 
+import exudyn_rotor.multibody.calls.clearances
+import exudyn_rotor.multibody.calls.copying  # noqa: F401 (both answer methods of MainSystem)
 from exudyn_rotor import checks
 from exudyn_rotor.multibody.calls.assembly import check_at_assembly
 from exudyn_rotor.multibody.calls.sparse_solver import needs_sparse_solver

@@ -8,7 +8,6 @@ from os import PathLike
 
 import exudyn
 from exudyn import interactive
-from matplotlib import pyplot
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
@@ -48,6 +47,8 @@ def draw_scene(
         For bad input.
     """
     checks.instance(SC, "SC", exudyn.SystemContainer)
+    from matplotlib import pyplot
+
     target = checks.path(path)
     checks.number(deformation_scale, "deformation_scale")
     if contour is not None:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib import pyplot
-from matplotlib.lines import Line2D
-from mpl_toolkits.mplot3d import Axes3D
-from PIL import Image
 
 from exudyn_rotor.plotting import COLORS, draw_surface
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
+
 
 _ALPHA = 0.3  # of the surface, through which the orbits are seen
 SENSES = {"forward": COLORS[0], "backward": COLORS[1], "straight": COLORS[2]}
@@ -48,6 +48,8 @@ def draw_motion(
     The centre line joins the first points of the orbits. Parameters as of
     :func:`exudyn_rotor.plotting.draw_surface`.
     """
+    from matplotlib.lines import Line2D
+
     new = ax is None
     given = {"room": room, "undeformed": undeformed}
     ax = draw_surface(positions, triangles, sizes, "displacement / largest", ax, **given)
@@ -89,6 +91,9 @@ def animated(
     seconds : float
         How long the film lasts.
     """
+    from matplotlib import pyplot
+    from PIL import Image
+
     figure, faces, line = ax.figure, ax.collections[-1], ax.lines[-1]
     pictures = []
     for time in times:

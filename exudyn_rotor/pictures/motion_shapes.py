@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 from os import PathLike
+from typing import TYPE_CHECKING
 
 import numpy as np
-from mpl_toolkits.mplot3d import Axes3D
 
 from exudyn_rotor import checks
 from exudyn_rotor.cached import cached_property
@@ -19,6 +19,10 @@ from exudyn_rotor.theory.axis import SpinAxis
 from exudyn_rotor.theory.rotating_axes import FRAMES, axes_of
 from exudyn_rotor.units import Units
 from exudyn_rotor.vtk import write_surface
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
+
 
 _STATIONS = 15  # along the axis
 # of the larger amplitude: an orbit with less of the smaller one is neither forward nor backward

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 # of the largest amplitude: what a spectrogram shows [dB]
 _RANGE = 60.0
@@ -74,6 +77,8 @@ class Spectra(Result):
         units : {'Hz', 'rpm', 'SI'}, optional
             'rpm' has the spin speed in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
+        from matplotlib.collections import PolyCollection
+
         shown = Units.of(units)
         orders = checks.array(orders, "orders", shape=(None,))
         inside, most = self._inside(highest, _LEAST, np.abs(orders).max(initial=0.0))

@@ -28,7 +28,7 @@ from exudyn_rotor.solvers.inertia_relief import (
     relative_rounding,
 )
 from exudyn_rotor.solvers.modes import Inverse, lowest_modes
-from exudyn_rotor.solvers.rounding import rounding
+from exudyn_rotor.solvers.rounding import rounding, rounding_unit
 from exudyn_rotor.theory.nodal import rotations, translations
 
 # static modes, eigenvalues and eigenmodes
@@ -177,12 +177,18 @@ def _mean_coupling(
     available = mass.shape[0] - constraints.shape[0]
     check_count(count, available, smallest=0)
     rigid = free_rigid_motions(rotor.nodes, mass, stiffness, rotor.rigid_motions)
-    inverse = ConstrainedInverse(inertia_relief(rotor), constraints)
-    static = inverse.prescribe(np.eye(constraints.shape[0]))
+    relief = inertia_relief(rotor)
+    try:
+        inverse = ConstrainedInverse(relief, constraints)
+    except ValueError as error:
+        raise ValueError(f"{error}{_held_in_part(rotor)}") from error
+    motions = np.eye(constraints.shape[0])
+    static = inverse.prescribe(motions)
     _check_mean_motion(rotor, constraints, static)
     precision = relative_rounding(stiffness, rigid)
     force = lanczos.without_reactions(stiffness @ static, constraints)
-    _check_equilibrium(rotor, force, rounding(stiffness, static, precision))
+    unit = rounding_unit(stiffness, precision)
+    _check_equilibrium(rotor, force, unit * inverse.prescribed_terms(motions))
     held = {"tolerance": tolerance, "constraints": constraints}
     solve = partial(_eigenmodes, stiffness, mass, inverse, **held)
     values, modes = lowest_with_pairs(rotor, solve, count, available)
@@ -246,7 +252,7 @@ def _refuse_shared_nodes(chosen: list[Interface]) -> None:
 
 
 def _check_equilibrium(rotor: FiniteElementRotor, force: np.ndarray, allowed: np.ndarray) -> None:
-    """Check that static modes need no `force` but at the interfaces, up to rounding of ``K u``."""
+    """Check that static modes need no `force` but at the interfaces, up to the rounding allowed."""
     if np.any(np.linalg.norm(force, axis=0) > allowed):
         raise ValueError(
             "a static interface mode is not in equilibrium; the stiffness may not be symmetric "

@@ -72,7 +72,20 @@ class ConstrainedInverse:
 
     def prescribe(self, values: np.ndarray) -> np.ndarray:
         """Return the unloaded displacement (3n, k) with ``C u = d`` for `values` (c, k)."""
-        return self._correction(-values, np.zeros((self._held.shape[1], values.shape[1])))
+        return self._correction(-values, self._no_resultant(values))
+
+    def prescribed_terms(self, values: np.ndarray) -> np.ndarray:
+        """Return the sum (k,) of the norms of the terms that :meth:`prescribe` adds.
+
+        The displacements of close constraints are small differences of such terms, each of which
+        has its own rounding error. Their sum over the norm of the displacement is the condition.
+        """
+        rigid, reaction = self._balance(-values, self._no_resultant(values))
+        elastic = np.linalg.norm(self._flexibility, axis=0) @ np.abs(reaction)
+        return np.linalg.norm(self._relief.rigid, axis=0) @ np.abs(rigid) + elastic
+
+    def _no_resultant(self, values: np.ndarray) -> np.ndarray:
+        return np.zeros((self._held.shape[1], values.shape[1]))
 
     def _correction(self, gap: np.ndarray, resultant: np.ndarray) -> np.ndarray:
         """Return ``R q − G Cᵀ λ`` that closes the gap and balances the resultant."""

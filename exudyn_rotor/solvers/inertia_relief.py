@@ -139,6 +139,8 @@ class InertiaRelief:
         held, ordered = _held(stiffness, rigid), None
         if way.solver != "iterative" and pardiso.is_used(stiffness.shape[0]):
             ordered = pardiso.Ordered(held)
+        elif way.solver != "iterative" and pardiso.would_help(stiffness.shape[0]):
+            pardiso.tell_of_mkl()
         self.iterative = is_iterative(way, stiffness, ordered)
         try:
             if self.iterative:

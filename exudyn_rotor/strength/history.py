@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
@@ -16,6 +15,11 @@ from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid.tensor import principal, von_mises
 from exudyn_rotor.strength.field import StressField, check_triangles, warn_without_static
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d import Axes3D
+
 
 _CHUNK = 2_000_000  # values of a stress history held at a time
 

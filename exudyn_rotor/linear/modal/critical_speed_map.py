@@ -28,7 +28,7 @@ from exudyn_rotor.linear.modal.critical_speeds import (
     warn_of_critical,
 )
 from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
-from exudyn_rotor.linear.modal.whirl_new import BACKWARD, FORWARD, WHIRLS, Content
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
 from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

@@ -20,7 +20,7 @@ from exudyn_rotor.linear.modal.resonance import (
     named,
     refined,
 )
-from exudyn_rotor.linear.modal.whirl_new import WHIRLS, Content
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody

@@ -33,7 +33,7 @@ from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
-from exudyn_rotor.linear.modal.whirl_new import Content, signed_diameters
+from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.hill import real_waves

@@ -74,12 +74,27 @@ class RotorAlone:
     complete_up_to: float
     spin: Spin | None
 
+    @property
+    def has_halves(self) -> bool:
+        """Whether the number of modes has cut pairs in halves."""
+        return bool(np.isfinite(self.complete_up_to))
+
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
-        shares = [self.turning.place_share(self.motion(name)) for name in places]
+        shares = [self._place_share(name) for name in places]
         lost = [self.left_out.get(name, 0.0) for name in places or ("",)]
         return max([self.uneven, *shares, *lost])
 
+    @kept
+    def _place_share(self, name: str) -> float:
+        return self.turning.place_share(self.motion(name))
+
+    @cached_property
+    def bodies(self) -> dict[tuple, RotorBody]:
+        """What :func:`rotor_body` has made of it: maps and searches make many models of a rotor."""
+        return {}
+
+    @kept
     def motion(self, name: str) -> np.ndarray:
         """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
         return interface_motion(self.rotor, name) @ self.Q
@@ -100,9 +115,7 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
         slow = np.where(halves | (turning.waves != 0), turning.weights**2, 0.0)
         left_out[""] = float(slow[halves].sum() / slow.sum())
         for name in rotor.interfaces:
-            U = interface_motion(rotor, name)[:2] @ (turning.T * np.sqrt(turning.weights))
-            whole_size = np.linalg.norm(U) ** 2
-            left_out[name] = float(np.linalg.norm(U[:, halves]) ** 2 / (whole_size or 1.0))
+            left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
             Q = _beside(turning.halves)
             turning = turning.within(Q)
@@ -231,6 +244,7 @@ class RotorBody(Body):
             terms = {0: terms[0]}
         return turned(terms, self.turns)
 
+    @kept
     def supported(self, name: str) -> dict[int, np.ndarray]:
         """Return the motion of an interface that a support acts on, seen from outside, (6, k)."""
         U = self.motion(name)
@@ -252,6 +266,15 @@ def rotor_body(
     name: str, alone: RotorAlone, ratio: float, turns: int, *, is_apart: bool = True
 ) -> RotorBody:
     """Return a rotor in axes that turn with `turns` times Ω."""
+    key = name, ratio, turns, is_apart
+    if key not in alone.bodies:
+        alone.bodies[key] = _rotor_body(name, alone, ratio, turns, is_apart)
+    return alone.bodies[key]
+
+
+def _rotor_body(
+    name: str, alone: RotorAlone, ratio: float, turns: int, is_apart: bool
+) -> RotorBody:
     inv, terms, w = alone.invariants, alone.terms, ratio - turns
     spin = alone.spin
     if spin is not None and w != 0.0:

@@ -112,7 +112,7 @@ class LinearModel:
     rotor: 6 coordinates, interfaces left, right
     supports: left, right
     free motions: translation along axis
-    stiffening: tilt, unevenness 0
+    stiffening: tilt, unevenness ...e-16
     """
 
     rotors: Mapping[str, ReducedRotor]
@@ -142,12 +142,11 @@ class LinearModel:
         """Elements and own coordinates, as for axes that stand still."""
         return self._elements_for(0)
 
-    def _elements_for(self, turns: int) -> tuple[list[Element], list]:
+    def _elements_for(self, turns: int, kind: str = "") -> tuple[list[Element], list]:
         carried = self.foundation is not None
         bases = {name: ("foundation", name) for name in self.foundation.points} if carried else {}
-        return elements_of(
-            self.supports, self.ratios, self.links, bases, turns, self.is_undamped
-        )
+        kind = kind or ("undamped" if self.is_undamped else "full")
+        return elements_of(self.supports, self.ratios, self.links, bases, turns, kind)
 
     def places(self, name: str) -> tuple[str, ...]:
         """Return the interfaces of a rotor that elements act on."""
@@ -169,17 +168,25 @@ class LinearModel:
         """Whether the axes of the rotors turn with Ω (1) or stand still (0)."""
         if self.wanted_axes != "auto":
             return int(self.wanted_axes == "rotor")
-        round_ones = all(u <= self.largest_unevenness for u in self._own_unevenness.values())
-        turning = [element for element in self._elements[0] if element.turns]
-        return int(not (round_ones and all(each.is_isotropic(1.0) for each in turning)))
+        elements = self._elements[0]
+        turning = [element for element in elements if element.turns]
+        if any(u > self.largest_unevenness for u in self._own_unevenness.values()):
+            return 1
+        if not all(each.is_isotropic(0.0) for each in turning):
+            return 1
+        # a basis with halves of pairs is taken whole where that is constant, too
+        constant = self.foundation is None and not self._elements[1] and len(self._used) == 1
+        constant = constant and not any(e.varies or not e.is_isotropic(0.0) for e in elements)
+        halves = any(self._alone(name, False).has_halves for name in self._used)
+        return int(constant and halves)
 
     @property
     def axes(self) -> str:
         """Axes in which the equations are: 'inertial' or 'rotor'."""
         return AXES[1 + self.turns]
 
-    def _assembled(self, turns: int, at_rest: bool = False) -> Assembly:
-        elements, own = self._elements_for(turns)
+    def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
+        elements, own = self._elements_for(turns, kind)
         bodies = []
         for name in self._used:
             ratio = self.ratios[name]
@@ -418,8 +425,11 @@ class LinearModel:
         """Return the motion of a mesh node of the only rotor, as :meth:`seen` does; no rotation."""
         assembly = self.assembly(speed)
         body = rotors_of(assembly.bodies)[0]
-        rotor = body.alone.rotor
-        rows = rotor.shapes.matrix[3 * number : 3 * number + 3] @ body.alone.Q
+        rotor = self.rotors[body.name]
+        rows = rotor.shapes.matrix[3 * number : 3 * number + 3]
+        if self.is_richer:  # the shapes that are added have no motion of nodes
+            rows = rows @ rotor.in_attached.T
+        rows = rows @ body.alone.Q
         rows = np.column_stack([rotor.axis.plane, rotor.axis.direction]).T @ rows
         if body.is_apart:
             rows = body.spin.about_axis(rows)
@@ -462,8 +472,7 @@ class LinearModel:
     @cached_property
     def _held_at_rest(self) -> tuple[Assembly, np.ndarray]:
         """Bodies at rest without own coordinates, and the stiffness of what holds them."""
-        held = self if self.is_undamped else self.undamped()
-        assembly = held._assembled(held.turns, at_rest=True)
+        assembly = self._assembled(self.turns, at_rest=True, kind="static")
         K = np.zeros((assembly.size, assembly.size))
         for element, U in zip(assembly.elements, assembly.motions, strict=True):
             U = sum(U.values()).real
@@ -515,8 +524,8 @@ class LinearModel:
         for kind in (True, False):  # spins are coupled by gears, shifts by thrust bearings
             chosen = np.flatnonzero(np.array(spins, dtype=bool) == kind)
             S = motions[: assembly.size, chosen]
-            values, combined = np.linalg.eigh(S.T @ K @ S)
-            free = combined[:, values <= _HELD * most]
+            _, values, combined = np.linalg.svd(S.T @ K @ S)
+            free = combined[values <= _HELD * most].T
             found[0][0] = np.hstack([found[0][0], motions[:, chosen] @ free])
             found[0][1] = np.hstack([found[0][1], momenta[:, chosen] @ free])
             found[1].extend([kind] * free.shape[1])
@@ -537,12 +546,12 @@ class LinearModel:
     @cached_property
     def held_basis(self) -> np.ndarray | None:
         """Motions without a free spin as orthonormal columns; None where no spin is free."""
-        return _beside(self.free_spins)
+        return beside(self.free_spins)
 
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return _beside(self._neutral[1])
+        return beside(self._neutral[1])
 
     @property
     def for_responses(self) -> LinearModel:
@@ -564,11 +573,11 @@ class LinearModel:
         acted = ", ".join(dict.fromkeys(element.what for element in self._elements[0])) or "none"
         lines.append(f"supports{standing}: {acted}")
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
-        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.2g}")
+        lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
 
 
-def _beside(momenta: np.ndarray) -> np.ndarray | None:
+def beside(momenta: np.ndarray) -> np.ndarray | None:
     """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
     if not momenta.shape[1]:
         return None
@@ -583,9 +592,8 @@ def _beside(momenta: np.ndarray) -> np.ndarray | None:
 
 def _named_free(names: Sequence[str], columns: np.ndarray, K: np.ndarray) -> tuple[str, ...]:
     """Name the rigid motions that a stiffness leaves free; columns have unit mass."""
-    rigid = columns.T @ K @ columns
-    values, vectors = np.linalg.eigh(0.5 * (rigid + rigid.T))
-    free = vectors[:, values <= _HELD * max(values.max(initial=0.0), 0.0)]
+    _, values, vectors = np.linalg.svd(columns.T @ K @ columns)
+    free = vectors[values <= _HELD * values.max(initial=0.0)].T
     share = np.sum(free**2, axis=1)
     alone = [name for name, s in zip(names, share, strict=True) if s > _ALONE]
     partly = [name for name, s in zip(names, share, strict=True) if 1.0 - _ALONE < s <= _ALONE]

@@ -35,6 +35,7 @@ _POINTS = 800  # of the mesh, at most, by which waves are told
 _GROUP = 5e-2  # frequencies that differ by less may be of one pair, which a mesh splits
 _SEEN = 1e-8  # share of the largest energy below which a motion is not seen
 _TURNS = 0.05  # share of a motion's energy that one lateral wave has more than the opposite one
+_PURE = 0.5  # share of both lateral waves that one of them has more in one motion of a pair
 _HALF = 0.5  # share of lateral waves in a motion that has no partner: half of a pair
 _RIGID_PAIRS = (
     (ModeKind.TRANSLATION_1, ModeKind.TRANSLATION_2),
@@ -56,6 +57,8 @@ class Turning:
     weights : ndarray, shape (k,)
         ``1/(1 + ω²/ω₁²)`` of the frequencies at rest and the lowest flexible one: how much a wave
         counts in slow motions.
+    flexibility : ndarray, shape (k,)
+        ``1/ω²`` of elastic motions, 0 of rigid ones [s²].
     halves : ndarray, shape (k, h)
         Motions that are half of a pair, whose other half the number of modes has cut off.
     """
@@ -63,6 +66,7 @@ class Turning:
     T: np.ndarray
     waves: np.ndarray
     weights: np.ndarray
+    flexibility: np.ndarray
     halves: np.ndarray
 
     @property
@@ -77,7 +81,8 @@ class Turning:
         """
         T = basis.T @ self.T
         kept = np.linalg.norm(T, axis=0) > 0.5
-        return Turning(T[:, kept], self.waves[kept], self.weights[kept], np.zeros((len(T), 0)))
+        given = self.waves[kept], self.weights[kept], self.flexibility[kept]
+        return Turning(T[:, kept], *given, np.zeros((len(T), 0)))
 
     @property
     def still(self) -> np.ndarray:
@@ -121,17 +126,17 @@ class Turning:
         return float(size(X - self.mean(X)) / whole) if whole else 0.0
 
     def place_share(self, U: np.ndarray) -> float:
-        """Return the share of the lateral flexibility of a place (6, k) that is not round.
+        """Return the share of the lateral flexibility of a place (6, k) that is not round."""
+        V = U[:2] - self.motion(U[:3])[0][:2]
+        return self._flexible(V) / (self._flexible(U[:2]) or 1.0)
 
-        It is that of squared motions.
-        """
+    def halves_share(self, U: np.ndarray) -> float:
+        """Return the share of the lateral flexibility of a place (6, k) by halves of pairs."""
+        halves = np.linalg.norm(self.halves.T @ self.T, axis=0) > 0.5
+        return self._flexible(U[:2], halves) / (self._flexible(U[:2]) or 1.0)
 
-        def size(V: np.ndarray) -> float:
-            return float(np.linalg.norm(V @ self.T * np.sqrt(self.weights)) ** 2)
-
-        U = U * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])[:, None]
-        whole = size(U)
-        return size(U - self.motion(U)[0]) / whole if whole else 0.0
+    def _flexible(self, U: np.ndarray, chosen: np.ndarray | slice = slice(None)) -> float:
+        return float(np.linalg.norm((U @ self.T * np.sqrt(self.flexibility))[:, chosen]) ** 2)
 
 
 @kept
@@ -146,6 +151,7 @@ def turning_of(rotor: ReducedRotor) -> Turning:
     omega[:rigid] = 0.0
     first = omega[omega > 0.0].min(initial=np.inf)
     weights = 1.0 / (1.0 + (omega / first) ** 2)
+    flexibility = np.divide(1.0, omega**2, out=np.zeros(size), where=omega > 0.0)
     T, waves, halves = np.eye(size, dtype=complex), np.zeros(size, dtype=int), []
     for pair in _RIGID_PAIRS:
         if set(pair) <= set(kinds):
@@ -162,7 +168,8 @@ def turning_of(rotor: ReducedRotor) -> Turning:
         halves.append(np.zeros((size, half.shape[1])))
         halves[-1][group] = half
     order = np.argsort(np.abs(T).argmax(axis=0), kind="stable")
-    return Turning(T[:, order], waves[order], weights[order], np.hstack([np.zeros((size, 0)), *halves]))
+    found = np.hstack([np.zeros((size, 0)), *halves])
+    return Turning(T[:, order], waves[order], weights[order], flexibility[order], found)
 
 
 def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
@@ -195,7 +202,9 @@ def _pairs(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return waves as orthonormal columns (g, g), their n, and halves of pairs (g, h), real."""
     more, columns = la.eigh(forward - backward, whole)
-    F = columns[:, more > _TURNS][:, ::-1]
+    both = np.einsum("ij,ik,kj->j", columns.conj(), forward + backward, columns).real
+    # of half a pair together with another motion both waves are strong
+    F = columns[:, (more > _TURNS) & (more > _PURE * both)][:, ::-1]
     F = F / np.linalg.norm(F, axis=0)
     pairs, count = np.hstack([F, F.conj()]), 2 * F.shape[1]
     span, _, turn = np.linalg.svd(pairs, full_matrices=True)

@@ -5,25 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from typing import TYPE_CHECKING
+
+import exudyn
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.record import BaseRecord
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.linear_model import (
+from exudyn_rotor.linear.model.build import (
     Target,
     linear_model,
     warn_of_left_out_stiffening,
     warn_of_structural_damping,
 )
-from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 from exudyn_rotor.linear.response.places import At, checked_places, places
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.shaken_rotor import ShakenRotor
 from exudyn_rotor.results import Result, numbers, storable, words
+from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @storable
@@ -48,7 +52,7 @@ class BaseResponse(Result):
     >>> motion = np.zeros((3, 1, 6))
     >>> motion[1, 0, :2] = 3e-6, 4e-6
     >>> print(BaseResponse(("left",), [0.0, 0.1, 0.2], motion, 50.0).table())
-    largest motion against the ground at 50 rad/s
+    largest motion against the ground at 477.465 rpm
     place                     n1 [m]      n2 [m]       e [m]  across [m]  at [s]
     left                   3.000e-06   4.000e-06   0.000e+00   5.000e-06  0.1
     """
@@ -78,10 +82,11 @@ class BaseResponse(Result):
         across = np.hypot(moved[:, 0], moved[:, 1])
         return float(across.max()), float(self.time[np.argmax(across)])
 
-    def table(self) -> str:
-        """Return the largest values of every place as text."""
+    def table(self, *, units: str = "rpm") -> str:
+        """Return the largest values of every place as text; `units` are 'rpm', 'Hz' or 'SI'."""
+        shown = Units.of(units)
         lines = [
-            f"largest motion against the ground at {self.speed:g} rad/s",
+            f"largest motion against the ground at {shown.speeds(self.speed):g} {shown.speed}",
             "place                     n1 [m]      n2 [m]       e [m]  across [m]  at [s]",
         ]
         for place in self.places:
@@ -91,7 +96,7 @@ class BaseResponse(Result):
             lines.append(f"{place:20}{values}  {time:.6g}")
         return "\n".join(lines)
 
-    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
         """Return time and displacements as columns."""
         checks.choice(units, "units", ("SI", "Hz", "rpm"))
         moved = {
@@ -122,11 +127,12 @@ def base_response(
     record: BaseRecord,
     *,
     speed: float = 0.0,
-    supports: Sequence[Support] = (),
+    supports: Sequence[Given] | Given = (),
     at: Sequence[At] | At | None = None,
     end_time: float | None = None,
     stiffening: str = "auto",
     tolerance: float = 1e-5,
+    axes: str = "auto",
 ) -> BaseResponse:
     """Compute the motion of a rotor at constant speed while a record shakes the ground.
 
@@ -135,9 +141,8 @@ def base_response(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor or linear model
-        See :func:`linear_model`; a large SolidRotor must be reduced, and a foundation is that of a
-        model.
+    target : ReducedRotor, SolidRotor, RotorTrain or LinearModel
+        See :func:`linear_model`; a foundation is that of a model.
     record : BaseRecord
         Its axes are those of the rotor's mesh at the spin angle 0.
     speed : float, optional
@@ -150,7 +155,11 @@ def base_response(
         [s]; the end of the record by default.
     stiffening : {'auto', 'none', 'tilt', 'full'}
     tolerance : float, optional
-        Largest change of a motion by halved steps, relative to the largest motion.
+        Largest error by the length of steps, relative to the largest motion, estimated by halved
+        steps. Constant equations are followed exactly with any step.
+    axes : {'auto', 'inertial', 'rotor'}
+        Axes of the equations, see :func:`linear_model`; by default the axes of the rotor, in which
+        nothing is averaged.
 
     Raises
     ------
@@ -179,17 +188,19 @@ def base_response(
     if end_time is not None:
         end = checks.number(end_time, "end_time", "s", above=start)
     at = checked_places(at)
-    model = linear_model(target, supports=supports, stiffening=stiffening)
-    known = isinstance(model, LinearRotor | ExtendedRotor)
-    if not known or model.base_loads is None:
-        raise ValueError(
-            "target: a motion of the ground needs a reduced rotor on supports, and a foundation "
-            "with its participation; in a scene, use add_base_motion"
-        )
+    refusal = (
+        "target: a motion of the ground needs a reduced rotor on supports, and a foundation with "
+        "its participation; in a scene, use add_base_motion"
+    )
+    if isinstance(target, exudyn.MainSystem):
+        raise ValueError(refusal)
+    model = linear_model(target, supports=supports, stiffening=stiffening, axes=axes)
+    if model.base_loads(speed) is None:
+        raise ValueError(refusal)
     warn_of_structural_damping(model, "base_response computes motion over time")
     warn_of_left_out_stiffening(model, speed)
-    observed = places(model, at)
-    problem = ShakenRotor.of(model, speed, record, observed)
-    time, motion = problem.converged(float(start), float(end), tolerance)
+    model = model.for_responses
+    observed = places(model, at, speed)
+    time, motion = ShakenRotor.of(model, speed, record, observed).converged(end, tolerance)
     motion[:, [one.is_node for one in observed], 3:] = np.nan
     return BaseResponse(tuple(one.label for one in observed), time, motion, speed)

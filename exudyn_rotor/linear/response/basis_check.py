@@ -1,71 +1,117 @@
-"""Error of a response by the basis of a reduced rotor: the difference to that of a finer one.
+"""Error of a response by the basis of reduced rotors: the difference to the richer basis's response.
 
-The finer rotor has the shapes that the basis lacks first (:class:`LeftOut`); its response is solved
+The reduced rotor carries the shapes that its basis lacks first. Its response with these is solved
 for, not estimated from the other, because near a resonance the difference is not small. Mesh nodes
 move in it as far as the reduced rotor knows; interfaces move with all shapes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TypeVar
+import warnings
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from exudyn_rotor.linear.models.basis.basis_error import BasisError
-from exudyn_rotor.linear.response.response import Response
-from exudyn_rotor.units import Units
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.model.linear_model import LinearModel
 
-# of the largest motion at the same speed or frequency: smaller ones count as that
-_LEAST = 0.1
+NOT_KNOWN = "error of the basis: not known"
+_LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
 _AXIAL = 1e-6  # share of a motion across the axis that is rounding
-HARMONICS = 1e-4  # largest relative change of the finer motion by further harmonics
 _FEW = 3  # speeds or frequencies that are looked at beside the peaks
 
-Motion = Mapping[int, np.ndarray]
-Kind = TypeVar("Kind", bound=Response)
+Motions = Mapping[int, np.ndarray]  # harmonics (s, p, 6) over speeds or frequencies
 
 
-def looked_at(motions: Sequence[Motion], constant: bool) -> np.ndarray:
-    """Return at which speeds or frequencies errors are estimated.
+def basis_errors(
+    model: LinearModel,
+    accuracy: float | None,
+    values: np.ndarray,
+    motions: Motions,
+    solve: Callable[[LinearModel, np.ndarray], Motions],
+) -> np.ndarray | None:
+    """Return relative errors (s, p) by the basis, NaN where none is looked at.
 
-    At all where the equations are constant; solved in harmonics, the finer rotor would take ten
-    times as long as the other: there at all peaks, the largest motion and some others.
+    None where they are not known.
+
+    Parameters
+    ----------
+    model : LinearModel
+    accuracy : float or None
+        None for no estimate.
+    values : ndarray, shape (s,)
+        Speeds or frequencies [rad/s].
+    motions : mapping of int to ndarray, shape (s, p, 6)
+        Harmonics there.
+    solve : callable
+        Takes a model, and speeds or frequencies; gives the motions.
     """
-    if constant:
-        return np.arange(len(motions))
-    sizes = np.array([sum(_size(each) ** 2 for each in motion.values()) for motion in motions])
+    if accuracy is None or (model.richer is None and not model.is_full):
+        return None
+    sizes = np.sqrt(sum(_size(each) ** 2 for each in motions.values()))
+    if model.is_full:
+        return np.zeros(sizes.shape)
+    errors = np.full(sizes.shape, np.nan)
+    at = looked_at(sizes)
+    better = solve(model.richer, values[at])
+    for row, index in enumerate(at):
+        given, finer = ({n: a[i] for n, a in m.items()} for m, i in ((motions, index), (better, row)))
+        errors[index] = motion_error(given, finer)
+    return errors
+
+
+def looked_at(sizes: np.ndarray) -> np.ndarray:
+    """Return where errors are estimated, given sizes (s, p) of motions.
+
+    At all peaks, and at the first, middle and last value.
+    """
+    known = np.flatnonzero(np.all(np.isfinite(sizes), axis=1))
+    sizes = np.nan_to_num(sizes)
     inner = np.any((sizes[1:-1] > sizes[:-2]) & (sizes[1:-1] >= sizes[2:]), axis=1)
-    even = np.linspace(0, len(motions) - 1, min(_FEW, len(motions))).astype(int)
-    return np.unique(np.r_[even, np.flatnonzero(inner) + 1, np.argmax(sizes.max(axis=1))])
+    even = np.linspace(0, len(sizes) - 1, min(_FEW, len(sizes))).astype(int)
+    chosen = np.r_[even, np.flatnonzero(inner) + 1, np.argmax(sizes.max(axis=1))]
+    return np.intersect1d(chosen, known)
 
 
-def motion_error(given: Motion, finer: Motion) -> np.ndarray:
+def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray]) -> np.ndarray:
     """Return relative errors (p,) of displacements (p, 6) in the largest harmonic across the axis.
 
-    Relative to the motion of the finer rotor at the place, or to a tenth of the largest at any.
+    Relative to the larger one of the two motions at the place, or to a tenth of the largest at any.
     """
     across = {n: np.linalg.norm(each[:, :2]) for n, each in finer.items()}
     largest = {n: _size(each).max() for n, each in finer.items()}
     sizes = across if max(across.values()) > _AXIAL * max(largest.values()) else largest
     order = max(sizes, key=sizes.get)  # not the static stretch by the rotation
-    size = _size(finer[order])
-    away = _size(finer[order] - given.get(order, 0.0))
+    other = given.get(order, np.zeros_like(finer[order]))
+    size = np.maximum(_size(finer[order]), _size(other))  # beside a sharp peak either is larger
+    away = _size(finer[order] - other)
     least = np.maximum(size, _LEAST * size.max())
     return np.divide(away, least, out=np.zeros_like(away), where=least > 0.0)
 
 
 def _size(amplitudes: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(amplitudes[:, :3], axis=1)
+    """Return sizes (…) of displacements, of motions (…, 6)."""
+    return np.linalg.norm(amplitudes[..., :3], axis=-1)
 
 
-def with_warning(basis: BasisError, response: Kind, unit: str) -> Kind:
-    """Return the response; warn where the basis leaves out too much, in `unit`, Hz or rpm."""
-    errors = response.basis_errors
-    if errors is None or not errors.size:
-        return response
-    at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
-    value = Units.of(unit).speeds(response.abscissa[at])
-    what = f"the motion of {response.places[place]!r} at {value:.5g} {unit}"
-    basis.warn(np.nan_to_num(errors), what)
-    return response
+def warn_of_basis(model: LinearModel, error: float, accuracy: float, what: str) -> None:
+    """Warn where an error by the basis exceeds the accuracy; `what` names the value."""
+    if not error > accuracy:
+        return
+    bases = " and ".join(
+        f"{rotor.size - len(rotor.rigid_kinds)}" + (f" of rotor {name!r}" if name else "")
+        for name, rotor in model.rotors.items()
+    )
+    warnings.warn(
+        f"{what} errs by about {error:.2g} of its value: the flexible modes ({bases}) are too few "
+        f"for the accuracy of {accuracy:g}; reduce the rotor with more, with "
+        "craig_bampton_modes(rotor, …) where they lack flexibility at the interfaces, give "
+        "another accuracy=…, or None for no check",
+        UserWarning,
+        stacklevel=user_level(),
+    )
+
+
+def in_table(error: float, digits: int = 1) -> str:
+    """Return an error as tables show it: '-' where it was not estimated."""
+    return "-" if np.isnan(error) else f"{error:.{digits}e}"

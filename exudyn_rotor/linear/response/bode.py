@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.ticker import MultipleLocator
 from numpy.typing import ArrayLike
 
 from exudyn_rotor.plotting import COLORS, LINES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _NO_MOTION = 1e-12  # of the largest amplitude
 _ROUNDING = 1e-9  # of an angle [rad]
@@ -19,12 +21,14 @@ def draw_bode(
     size: Axes, phase: Axes, over: np.ndarray, curves: Mapping[str, np.ndarray], log: bool
 ) -> None:
     """Draw amplitudes [m], complex, as sizes [µm] and phases over a speed or frequency."""
+    from matplotlib.ticker import MultipleLocator
+
     marker = "." if len(over) == 1 else None  # a line of one point is not seen
     for (name, values), color, line in zip(curves.items(), COLORS, LINES, strict=False):
         style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
         size.plot(over, 1e6 * np.abs(values), label=name, **style)
         phase.plot(over, _phase(values), **style)
-    moves = any(np.any(values) for values in curves.values())  # nothing is nowhere on a log scale
+    moves = any(np.any(np.nan_to_num(values)) for values in curves.values())  # nothing is nowhere on a log scale
     size.set_yscale("log" if log and moves else "linear")
     size.set_ylabel("amplitude [µm]")
     phase.set_ylabel("phase [deg]")
@@ -36,7 +40,8 @@ def draw_bode(
 
 def draw_polar(ax: Axes, at: np.ndarray, unit: str, amplitudes: np.ndarray, marks: int) -> None:
     """Draw complex amplitudes [m] in their plane [µm]; some points carry where they are."""
-    values = 1e6 * amplitudes
+    known = np.isfinite(amplitudes)
+    at, values = at[known], 1e6 * amplitudes[known]
     ax.plot(values.real, values.imag, color=COLORS[0], lw=1.4)
     for index in _spread(values, marks):
         ax.plot(values.real[index], values.imag[index], "o", color=COLORS[1], ms=4)
@@ -67,7 +72,8 @@ def draw_orbits(ax: Axes, orbits: Mapping[str, np.ndarray]) -> None:
 def _phase(values: np.ndarray) -> np.ndarray:
     """Return phases [deg] without jumps; none where there is no motion."""
     phase = np.full(len(values), np.nan)
-    moving = np.abs(values) > _NO_MOTION * np.abs(values).max(initial=0.0)
+    sizes_of = np.nan_to_num(np.abs(values))
+    moving = sizes_of > _NO_MOTION * sizes_of.max(initial=0.0)
     phase[moving] = np.degrees(np.unwrap(_angles(values[moving])))
     return phase
 

@@ -1,8 +1,8 @@
-"""Loads of forced responses, as harmonics in the rotor frame."""
+"""Loads of forced responses, as harmonics of the speed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +10,13 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.places import At, Place, place
 from exudyn_rotor.linear.response.unbalance import Unbalance
-from exudyn_rotor.theory.rotating_axes import FRAMES, into_rotor_frame
+from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
+from exudyn_rotor.theory.rotating_axes import FRAMES, turning_harmonics
+
+_BALANCED = 1e-13  # rounding leaves this much of the unbalance of a perfectly balanced mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,21 +63,19 @@ class HarmonicForce:
             vector = _vector(getattr(self, name), f"{name} at {self.at!r}", unit)
             object.__setattr__(self, name, vector)
 
-    def _harmonics(self, model: LinearModel) -> dict[int, np.ndarray]:
-        """Return the harmonics (k,) of the load in the rotor frame."""
-        point = place(model, self.at)
-        if self.frame == "rotor" and isinstance(model, LinearTrain):
-            model.check_turning(point.label)
+    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load."""
+        point = place(model, self.at, speed)
         if point.is_node and np.any(self.moment):
             raise ValueError(
                 f"moment at {self.at!r}: a mesh node has no rotation; use an interface"
             )
-        wrench = np.concatenate([self.force, self.moment])
-        stays = self.frame == ("inertial" if point.stands else "rotor")
-        parts = {0: wrench} if stays else into_rotor_frame(wrench)
-        if point.stands and not stays:  # seen from outside it turns the other way
-            parts = {-n: amplitude for n, amplitude in parts.items()}
-        return {n: _pulled(point, amplitude) for n, amplitude in parts.items()}
+        parts = {0: np.concatenate([self.force, self.moment])}
+        if self.frame == "rotor":
+            _check_turning(model, point)
+            if speed and point.ratio:
+                parts = {n: R @ parts[0] for n, R in turning_harmonics(6).items()}
+        return _pulled(point, parts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,13 +83,13 @@ class BaseAcceleration:
     """An acceleration ``Re(a exp(iωt))`` of the ground under all supports, fixed in space.
 
     The response is the motion relative to the ground: ``f = −Sᵀ Aᵀ τ̈`` (109). The ground's own
-    displacement is ``−a/ω²``.
+    displacement is ``−a/ω²``. Gravity g acts as the acceleration −g of the ground does, at
+    frequency zero: ground that accelerates upward presses as weight does.
 
     Parameters
     ----------
     acceleration : array_like, shape (2,) or (3,)
-        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [m/s²]. Weight in steady
-        rotation is the acceleration −g at frequency zero.
+        Complex amplitude along (n1, n2[, e]) of :attr:`SpinAxis.plane` [m/s²].
 
     Raises
     ------
@@ -98,9 +98,19 @@ class BaseAcceleration:
 
     Examples
     --------
-    >>> from exudyn_rotor import BaseAcceleration
-    >>> BaseAcceleration((0.0, -9.81)).acceleration
-    array([ 0.  +0.j, -9.81+0.j,  0.  +0.j])
+    Weight in the direction −n2 makes a rotor of 4 kg sag by m g/k:
+
+    >>> import numpy as np
+    >>> from exudyn_rotor import BaseAcceleration, SolidRotor, Support, harmonic_response
+    >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
+    >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> supports = [Support(name, 2e4) for name in ("left", "right")]
+    >>> weight = BaseAcceleration((0.0, +9.81))
+    >>> response = harmonic_response(rotor, [0.0], weight, supports=supports)
+    >>> response.phasor("left", "n2").real
+    array([-0.000981])
     """
 
     acceleration: ArrayLike
@@ -109,47 +119,78 @@ class BaseAcceleration:
         vector = _vector(self.acceleration, "acceleration", "m/s²")
         object.__setattr__(self, "acceleration", vector)
 
-    def _harmonics(self, model: LinearModel) -> dict[int, np.ndarray]:
-        """Return the harmonics (k,) of the load in the rotor frame."""
-        if model.base_loads is None:
+    def _harmonics(self, model: LinearModel, speed: float) -> dict[int, np.ndarray]:
+        """Return the harmonics (k,) of the load."""
+        loads = model.base_loads(speed)
+        if loads is None:
             raise ValueError(
                 "base acceleration needs a rotor with supports, and a foundation with its "
                 "participation; in a scene, put a force on the moving parts"
             )
-        loads, standing = model.base_loads.T, np.isin(np.arange(model.size), model.standing)
-        parts = into_rotor_frame(self.acceleration)
-        harmonics = {n: np.where(standing, 0.0, loads @ a) for n, a in parts.items()}
-        if np.any(standing):
-            still = np.where(standing, loads @ self.acceleration, 0.0)
-            harmonics[0] = harmonics.get(0, 0.0) + still
-        return harmonics
+        return {n: each.T @ self.acceleration for n, each in loads.items()}
 
 
-def unbalance_load(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> np.ndarray:
-    """Return the load (k,) per Ω² of all unbalances, constant in the rotor frame.
+def unbalance_load(
+    model: LinearModel, unbalances: Sequence[Unbalance], own: bool
+) -> dict[int, np.ndarray]:
+    """Return the load per Ω² of all unbalances, as harmonics (k,).
 
     Raises
     ------
     ValueError
         If there is no unbalance at all.
     """
-    if not unbalances and (model.is_balanced or not own):
+    turning = [rotor for name, rotor in model.rotors.items() if model.ratios[name] == 1.0]
+    balanced = all(map(_is_balanced, turning))
+    if not unbalances and (balanced or not own):
         reason = "the rotor itself is balanced" if own else "own=False leaves out the rotor's own"
         raise ValueError(f"no unbalance, so no response: {reason}; give unbalances=[Unbalance(…)]")
-    load = np.array(model.unit_unbalance, dtype=float) if own else np.zeros(model.size)
+    load = dict(model.unbalance()) if own else {0: np.zeros(model.size)}
     for unbalance in unbalances:
-        wrench = np.concatenate([unbalance.vector, np.zeros(3)])
         point = place(model, unbalance.at)
-        if point.stands:
+        if point.ratio == 0.0:
             raise ValueError(f"unbalance at {unbalance.at!r}: a foundation does not turn")
-        if isinstance(model, LinearTrain):
-            model.check_turning(point.label)
-        load += _pulled(point, wrench)
+        _check_turning(model, point)
+        for n, force in model.unbalance_at(point.seen, unbalance.vector).items():
+            load[n] = load.get(n, 0.0) + force
     return load
 
 
-def total(loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel) -> Mapping:
-    """Return the harmonics of the sum of all loads.
+def in_words(model: LinearModel, unbalances: Sequence[Unbalance], own: bool) -> tuple[str, ...]:
+    """Return the unbalances as text, the own one with its amount beside those that are given."""
+    found = tuple(map(str, unbalances))
+    if not own:
+        return found
+    given = sum(unbalance.amount for unbalance in unbalances)
+    for name, rotor in model.rotors.items():
+        if model.ratios[name] == 1.0:
+            amount = float(np.linalg.norm(_static_unbalance(rotor)))
+            share = f", {amount / given:.2g} of the amount given" if given else ""
+            whose = f"rotor {name!r}" if name else "the rotor"
+            found += (f"eccentricity of {whose}, with its mesh: {1e6 * amount:.4g} g mm{share}",)
+    return found
+
+
+def _static_unbalance(rotor: ReducedRotor) -> np.ndarray:
+    """Return mass times eccentricity (3,) [kg m]."""
+    off = rotor.center_of_mass - rotor.axis.project(rotor.center_of_mass)
+    return rotor.invariants.mass * off
+
+
+def _is_balanced(rotor: ReducedRotor) -> bool:
+    """Return whether centre of mass and principal axis are on the spin axis but for rounding."""
+    inv, e = rotor.invariants, rotor.axis.direction
+    static, couple = _static_unbalance(rotor), inv.J @ e
+    couple = couple - e * (e @ couple)
+    second = np.trace(inv.J)
+    arm = np.sqrt(second / inv.mass)
+    return bool(np.linalg.norm(static) * arm + np.linalg.norm(couple) <= _BALANCED * second)
+
+
+def total(
+    loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel, speed: float
+) -> dict[int, np.ndarray]:
+    """Return the harmonics (k,) of the sum of all loads at a spin speed [rad/s].
 
     Raises
     ------
@@ -158,7 +199,7 @@ def total(loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel)
     """
     harmonics: dict[int, np.ndarray] = {}
     for load in loads:
-        for n, force in load._harmonics(model).items():
+        for n, force in load._harmonics(model, speed).items():
             harmonics[n] = harmonics.get(n, 0.0) + force
     if not any(np.any(force) for force in harmonics.values()):
         raise ValueError(
@@ -167,9 +208,23 @@ def total(loads: Sequence[HarmonicForce | BaseAcceleration], model: LinearModel)
     return harmonics
 
 
-def _pulled(point: Place, wrench: np.ndarray) -> np.ndarray:
-    """Return the generalised force (k,) of a force and moment (6,) along (n1, n2, e)."""
-    return point.motion.T @ wrench
+def _check_turning(model: LinearModel, point: Place) -> None:
+    """Refuse what turns with a rotor of another speed than that of the analysis."""
+    if point.ratio not in (0.0, 1.0):
+        owner, _, _ = point.label.partition(":")
+        raise ValueError(
+            f"at: {point.label!r}: turns with {point.ratio:g} times the speed of the analysis; give "
+            f"train.relative_to({owner!r}), over the speed of that rotor"
+        )
+
+
+def _pulled(point: Place, wrench: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
+    """Return the generalised force (k,) of harmonics of a force and moment that stand still."""
+    load: dict[int, np.ndarray] = {}
+    for n, force in wrench.items():
+        for m, U in point.seen.items():
+            load[m + n] = load.get(m + n, 0.0) + U.T @ force
+    return load
 
 
 def _vector(value: ArrayLike, name: str, unit: str) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Where a rotor is loaded and looked at: interfaces and mesh nodes."""
+"""Where rotors are loaded and looked at: interfaces, mesh nodes, points of a foundation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.equations import Terms, turned
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.theory.rotating_axes import into_inertial_frame, out_of_inertial_frame
 
 At = str | int | Sequence[float]
@@ -18,28 +19,43 @@ Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A point of the rotor.
+    """A point of a model.
 
     Attributes
     ----------
     label : str
         Name of the interface, or 'node 12'.
-    motion : ndarray, shape (6, k)
-        Displacement and rotation along (n1, n2, e) per coordinate.
+    seen : mapping of int to ndarray, shape (6, k)
+        Fourier terms of displacement and rotation along (n1, n2, e) per coordinate, in axes that
+        stand still.
     is_node : bool
         True for a mesh node, which has no rotation: those rows are zero.
-    stands : bool
-        True where the motion is that of a foundation, in inertial axes; else it is in the rotor's.
+    ratio : float
+        Speed of the body over the speed of the analysis; 0 of a foundation.
     """
 
     label: str
-    motion: np.ndarray
+    seen: Terms
     is_node: bool
-    stands: bool = False
+    ratio: float = 1.0
+
+    def motion(self, coordinates: Mapping[int, np.ndarray], frame: str) -> dict[int, np.ndarray]:
+        """Return the harmonics (…, 6) of the motion, given the harmonics (…, k) of coordinates.
+
+        In axes that stand still, or in axes that turn with the speed of the analysis.
+        """
+        seen = self.seen if frame == "inertial" else turned(self.seen, -1)
+        motion: dict[int, np.ndarray] = {}
+        for m, U in seen.items():
+            for n, x in coordinates.items():
+                motion[m + n] = motion.get(m + n, 0.0) + x @ U.T
+        return motion
 
 
-def place(model: LinearModel, at: At) -> Place:
+def place(model: LinearModel, at: At, speed: float = 1.0) -> Place:
     """Find an interface by its name, a mesh node by its number or by a position [m].
+
+    The motion is seen at a speed [rad/s]: at rest, or at any other.
 
     Raises
     ------
@@ -47,15 +63,23 @@ def place(model: LinearModel, at: At) -> Place:
         If there is no such interface or node, or the rotor was stored without mode shapes.
     """
     if isinstance(at, str):
-        return _interface(model, at)
-    mesh = model.mesh
-    if mesh is None:
+        known = model.interfaces
+        if at not in known:
+            raise ValueError(
+                f"at: {at!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
+            )
+        body, _ = model.owner(at)
+        return Place(at, model.seen(at, speed), False, getattr(body, "ratio", 0.0))
+    [first, *others] = model.rotors.values()
+    if others:
+        raise ValueError(f"at: {at!r}: of several rotors, name an interface")
+    if first.shapes is None:
         raise ValueError(
             f"at: {at!r}: mesh nodes need a rotor with mode shapes; reduce with "
             "keep_shapes=True, or name an interface"
         )
-    number = _node_number(at, mesh.nodes)
-    return Place(f"node {number}", mesh.motion(number), is_node=True)
+    number = _node_number(at, first.shapes.nodes)
+    return Place(f"node {number}", model.seen_at_node(number, speed), is_node=True)
 
 
 def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
@@ -74,25 +98,15 @@ def checked_places(at: Sequence[At] | At | None) -> tuple[At, ...] | None:
     return tuple(options.place(one, f"at[{index}]") for index, one in enumerate(listed))
 
 
-def places(model: LinearModel, at: Sequence[At] | None) -> list[Place]:
+def places(model: LinearModel, at: Sequence[At] | None, speed: float = 1.0) -> list[Place]:
     """Return the places asked for; by default all interfaces."""
-    observed = [place(model, one) for one in (model.interfaces if at is None else at)]
+    observed = [place(model, one, speed) for one in (model.interfaces if at is None else at)]
     if not observed:
         raise ValueError("at: the rotor has no interfaces; name mesh nodes or positions to look at")
     labels = [one.label for one in observed]
     if len(set(labels)) < len(labels):
         raise ValueError(f"at: a place is named twice: {', '.join(labels)}")
     return observed
-
-
-def _interface(model: LinearModel, name: str) -> Place:
-    known = model.interfaces
-    if name not in known:
-        raise ValueError(
-            f"at: {name!r}: no such interface; the rotor has: {', '.join(known) or 'none'}"
-        )
-    stands = name in model.standing_interfaces
-    return Place(name, np.asarray(model.interface_motion(name)), is_node=False, stands=stands)
 
 
 def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
@@ -111,28 +125,8 @@ def in_frame(motion: Motion, stands: np.ndarray, frame: str) -> Motion:
         turn, turns = out_of_inertial_frame, stands
     if not np.any(turns):
         return motion
-    turned = turn({n: a * turns[:, None] for n, a in motion.items()})
+    turned_ones = turn({n: a * turns[:, None] for n, a in motion.items()})
     if not np.all(turns):
         for n, a in motion.items():
-            turned[n] = turned.get(n, 0.0) + a * ~turns[:, None]
-    return turned
-
-
-def collected(
-    motions: Sequence[Motion], observed: Sequence[Place], tolerance: float, length: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the orders (h,) that matter anywhere, and all motions (s, p, h, 6)."""
-    orders = sorted({n for motion in motions for n in motion})
-    full = np.zeros((len(motions), len(observed), len(orders), 6), dtype=complex)
-    for row, motion in zip(full, motions, strict=True):
-        for n, amplitudes in motion.items():
-            row[:, orders.index(n)] = amplitudes
-    if not np.all(np.isfinite(full)):
-        raise ValueError("the response left the range of floats; check speeds and loads (SI units)")
-    # a rotation counts as the displacement that it makes at the rotor's radius of gyration
-    sizes = np.abs(full * np.repeat([1.0, length], 3)).max(axis=(0, 1, 3))
-    keep = sizes > tolerance * sizes.max()
-    if not np.any(keep):
-        keep[np.argmin(np.abs(orders))] = True
-    full[:, [one.is_node for one in observed], :, 3:] = np.nan
-    return np.array(orders)[keep], full[:, :, keep]
+            turned_ones[n] = turned_ones.get(n, 0.0) + a * ~turns[:, None]
+    return turned_ones

@@ -7,28 +7,16 @@ phase lies one, or a place without motion, and halving such intervals finds it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from exudyn_rotor.callers import user_level
 
-Motion = Mapping[int, np.ndarray]
-
-
-class Seen(Protocol):
-    """A solution, its motion harmonics (p, 6) of what is looked at."""
-
-    motion: Motion
-
-
-# phase between neighbours [rad]; at the peak of one mode 0.3 rad leave 1 − cos(0.15), 1 %, between
-_MOST_TURN = 0.3
-# a motion that is smaller than this share of the largest does not count
-_SMALL = 1e-3
-# of the range: without damping a resonance has no width
-_NARROWEST = 1e-7
+Solved = list[Mapping[int, np.ndarray]]
+_MOST_TURN = 0.3  # phase [rad] between neighbours: 1 − cos(0.15) = 1 % of a peak lies between
+_SMALL = 1e-3  # share of the largest motion below which a motion does not count
+_NARROWEST = 1e-7  # of the range: without damping a resonance has no width
 _MOST_ROUNDS = 30
 _MOST_ADDED = 4000
 HALF_POWER = np.sqrt(0.5)  # of the size at a peak
@@ -36,97 +24,90 @@ STILL = 1e-6  # share of a peak below which a neighbour stands still, as at rest
 
 
 def refined(
-    solve: Callable[[np.ndarray], list[Seen]], values: np.ndarray, solutions: list[Seen]
-) -> tuple[np.ndarray, list[Seen]]:
+    solve: Callable[[np.ndarray], Solved],
+    phasors: Callable[[Solved], np.ndarray],
+    values: np.ndarray,
+    solved: Solved,
+) -> tuple[np.ndarray, Solved]:
     """Add points until the phase of every motion turns little between neighbours.
 
-    No point is added where there is no steady motion, as at a resonance without damping.
+    No point is added where there is no steady motion, as at a resonance without damping, nor
+    beside such a value.
 
     Parameters
     ----------
     solve : callable
         Gives the solutions at an array of speeds or frequencies.
+    phasors : callable
+        Gives the complex amplitudes (s, c) of solutions.
     values : ndarray, shape (s,)
         Ascending speeds or frequencies [rad/s].
-    solutions : list of s solutions
-        Those there.
+    solved : list of s solutions
+        There.
 
     Returns
     -------
     ndarray, list
         All speeds or frequencies, and their solutions.
     """
-    narrowest, start, without = _NARROWEST * np.ptp(values), len(values), []
+    narrowest, most = _NARROWEST * np.ptp(values), len(values) + _MOST_ADDED
+    given = values
     for _ in range(_MOST_ROUNDS):
-        wide = np.diff(values) > narrowest
-        wide &= ~np.isin(_middles(values), without)
-        between = np.flatnonzero(wide & (_turns([one.motion for one in solutions]) > _MOST_TURN))
-        if between.size == 0 or len(values) - start > _MOST_ADDED:
+        wide = (np.diff(values) > narrowest) & (_turns(phasors(solved)) > _MOST_TURN)
+        between = np.flatnonzero(wide)[: most - len(values)]
+        if between.size == 0:
             break
-        added = _middles(values)[between]
-        solved = _solved(solve, added)
-        missing = np.array([one is None for one in solved])
-        without += added[missing].tolist()
-        between, added = between[~missing], added[~missing]
-        solved = [one for one in solved if one is not None]
-        values = np.insert(values, between + 1, added)
-        for count, (place, one) in enumerate(zip(between, solved, strict=True)):
-            solutions.insert(place + 1 + count, one)
-    return values, solutions
+        added = 0.5 * (values[between] + values[between + 1])
+        order = np.argsort(np.r_[values, added], kind="stable")
+        solved = solved + solve(added)
+        values, solved = np.r_[values, added][order], [solved[i] for i in order]
+    known = np.all(np.isfinite(phasors(solved)), axis=1) | np.isin(values, given)
+    return values[known], [one for one, is_known in zip(solved, known, strict=True) if is_known]
 
 
-def _middles(values: np.ndarray) -> np.ndarray:
-    return 0.5 * (values[:-1] + values[1:])
-
-
-def _solved(solve: Callable[[np.ndarray], list[Seen]], values: np.ndarray) -> list[Seen | None]:
-    """Return the solutions, None where there is none; one by one if not all can be solved."""
-    try:
-        return solve(values)
-    except ValueError:
-        if len(values) == 1:
-            return [None]
-        return [one for value in values for one in _solved(solve, np.array([value]))]
-
-
-def _turns(motions: list[Motion]) -> np.ndarray:
+def _turns(phasors: np.ndarray) -> np.ndarray:
     """Return the largest change of phase between neighbours, shape (s − 1,) [rad]."""
-    orders = sorted({n for motion in motions for n in motion})
-    still = np.zeros_like(next(iter(motions[0].values())))
-    table = np.array([[motion.get(n, still) for n in orders] for motion in motions])
-    phasors = table[..., :3].reshape(len(motions), -1)
-    size = np.abs(phasors)
-    matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max()
+    known = np.all(np.isfinite(phasors), axis=1)
+    size = np.abs(np.where(known[:, None], phasors, 0.0))
+    matters = np.maximum(size[1:], size[:-1]) > _SMALL * size.max(initial=0.0)
     matters &= np.minimum(size[1:], size[:-1]) > 0.0
-    turned = np.abs(np.angle(phasors[1:] * phasors[:-1].conj()))
+    turned = np.abs(np.angle(np.where(matters, phasors[1:] * phasors[:-1].conj(), 1.0)))
     # at rest without a load there is no phase, and beside it may be a resonance
     sizes = size.max(axis=1, initial=0.0)
     beside_rest = (np.minimum(sizes[1:], sizes[:-1]) == 0.0) & (
         np.maximum(sizes[1:], sizes[:-1]) > _SMALL * sizes.max(initial=0.0)
     )
-    return np.where(beside_rest, np.pi, np.where(matters, turned, 0.0).max(axis=1, initial=0.0))
+    turned = np.where(beside_rest, np.pi, turned.max(axis=1, initial=0.0))
+    return np.where(known[1:] & known[:-1], turned, 0.0)
 
 
 def resolved_peak(
-    at: np.ndarray, size: np.ndarray, index: int, name: str, was_refined: bool
-) -> tuple[float, float]:
-    """Return place and size of the maximum at a point, by its neighbours.
+    at: np.ndarray, size: np.ndarray, index: int
+) -> tuple[float, float, bool]:
+    """Return place and size of the maximum at a point by its neighbours, and if they are near.
 
-    A warning with the `name` tells where these are beyond half of the power of the maximum, and
-    what to do where points were added already.
+    They are not where one of them is below half of the power of the maximum.
     """
     near = slice(index - 1, index + 2)
-    if size[near].min() < HALF_POWER * size[index]:
-        advice = "compute the response with refine=True"
-        if was_refined:
-            advice = "refine=True adds no more: give more of them there, or add damping"
-        warnings.warn(
-            f"{name}: the points around the peak at {at[index]:g} rad/s are too far apart to give "
-            f"its size and width; {advice}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    return peak_between(at[near], size[near])
+    is_near = bool(size[near].min() >= HALF_POWER * size[index])
+    return *peak_between(at[near], size[near]), is_near
+
+
+def warn_of_coarse_peaks(coarse: Sequence[tuple[str, float]], was_refined: bool) -> None:
+    """Warn of peaks [rad/s] at places whose neighbours are too far apart, once for all."""
+    if not coarse:
+        return
+    advice = "compute the response with refine=True"
+    if was_refined:
+        advice = "refine=True adds no more: give more of them there, or add damping"
+    name, at = coarse[0]
+    more = f" (and {len(coarse) - 1} more)" if len(coarse) > 1 else ""
+    warnings.warn(
+        f"{name}: the points around the peak at {at:g} rad/s{more} are too far apart to give its "
+        f"size and width; {advice}",
+        UserWarning,
+        stacklevel=user_level(),
+    )
 
 
 def peak_between(at: np.ndarray, size: np.ndarray) -> tuple[float, float]:

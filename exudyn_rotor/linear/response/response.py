@@ -6,19 +6,23 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response import bode
-from exudyn_rotor.linear.response.refinement import resolved_peak
+from exudyn_rotor.linear.response.basis_check import NOT_KNOWN, in_table
+from exudyn_rotor.linear.response.refinement import resolved_peak, warn_of_coarse_peaks
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.plotting import axes_or_new, figure
 from exudyn_rotor.results import numbers, words
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
@@ -36,16 +40,16 @@ class Response(RunStart, ABC):
     orders : ndarray of int, shape (h,)
         The harmonics n that matter.
     motion : ndarray of complex, shape (s, p, h, 6)
-        Amplitudes a_n of the displacement along (n1, n2, e) [m] and the rotation about them [rad];
-        rotations of a node are NaN.
+        Amplitudes a_n of the displacement along (n1, n2, e) [m] and the rotation about them [rad]:
+        peak values, half of peak to peak. Rotations of a node are NaN, and all where there is no
+        steady motion. No two harmonics have one frequency: their sum is one of them.
     frame : {'inertial', 'rotor'}
         Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
     basis_errors : ndarray, shape (s, p), or None
         Estimated relative errors by the basis of a reduced rotor, of the displacement in the
         harmonic that is largest across the axis; a motion counts as at least a tenth of the largest
-        at that speed or frequency. NaN where it was not looked at: where supports or rotor are
-        anisotropic, so that the motion has harmonics, it is at all peaks and at the first, middle
-        and last point only, which the table names. None where they are not known.
+        at that speed or frequency. They are estimated at all peaks and at the first, middle and
+        last point, which the table names; NaN elsewhere. None where they are not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     refined : bool
@@ -78,14 +82,14 @@ class Response(RunStart, ABC):
     @property
     def main_order(self) -> int:
         """The harmonic with the largest displacement across the axis, or along it if none is."""
-        sizes = np.abs(self.motion).max(axis=(0, 1))
+        sizes = np.abs(np.nan_to_num(self.motion)).max(axis=(0, 1))
         across = sizes[:, :2] if np.any(sizes[:, :2]) else sizes[:, :3]
         return int(self.orders[across.max(axis=1).argmax()])
 
     def phasor(
         self, place: str | None = None, direction: str = "n1", order: int | None = None
     ) -> np.ndarray:
-        """Return complex amplitudes, shape (s,): the size and, as ``np.angle``, the phase.
+        """Return complex amplitudes, shape (s,): the peak value and, as ``np.angle``, the phase.
 
         Parameters
         ----------
@@ -120,7 +124,7 @@ class Response(RunStart, ABC):
     def semi_axes(
         self, place: str | None = None, order: int | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the semi-axes of the orbit across e, each (s,) [m].
+        """Return the semi-axes of the orbit across e, each (s,) [m]: half of peak to peak.
 
         The minor one is negative where the rotor whirls backward.
         """
@@ -147,7 +151,11 @@ class Response(RunStart, ABC):
                 f"{self.abscissa[-1]:g} rad/s; extend the range{more}"
             )
         index = int(inner[major[inner].argmax()])
-        return resolved_peak(self.abscissa, major, index, self._place(place), self.refined)
+        at, size, is_near = resolved_peak(self.abscissa, major, index)
+        if not is_near:
+            coarse = [(self._place(place), float(self.abscissa[index]))]
+            warn_of_coarse_peaks(coarse, self.refined)
+        return at, size
 
     def orbit(
         self, value: float, place: str | None = None, order: int | None = None, points: int = 181
@@ -171,7 +179,7 @@ class Response(RunStart, ABC):
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
         return (motion * np.exp(1j * angle)[:, None]).real
 
-    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
         """Return sizes and phases as columns: one row for each point, place and harmonic.
 
         `units` are those of :meth:`table`.
@@ -209,7 +217,7 @@ class Response(RunStart, ABC):
         return Units.of(units).speeds(self.abscissa), Units.of(units).speed
 
     def table(
-        self, place: str | None = None, order: int | None = None, *, units: str = "SI"
+        self, place: str | None = None, order: int | None = None, *, units: str = "rpm"
     ) -> str:
         """Return sizes and phases at one place as text; '-' for an error that is not estimated.
 
@@ -217,8 +225,8 @@ class Response(RunStart, ABC):
         ----------
         place, order
             See :meth:`phasor`.
-        units : {'SI', 'Hz', 'rpm'}
-            'SI' rad/s; 'rpm' is for spin speeds, frequencies are in Hz then.
+        units : {'rpm', 'Hz', 'SI'}
+            'rpm' is for spin speeds, frequencies are in Hz then; 'SI' is rad/s.
         """
         place, order = self._place(place), self._order(order)
         values, unit = self._shown(units)
@@ -258,7 +266,7 @@ class Response(RunStart, ABC):
         order: int | None = None,
         ax: Sequence[Axes] | None = None,
         log: bool = True,
-        units: str = "Hz",
+        units: str = "rpm",
     ) -> np.ndarray:
         """Draw size and phase of the displacement over speed or frequency (Bode diagram).
 
@@ -273,7 +281,7 @@ class Response(RunStart, ABC):
             For size and phase; a new figure by default.
         log : bool, optional
             Logarithmic sizes.
-        units : {'Hz', 'rpm', 'SI'}
+        units : {'rpm', 'Hz', 'SI'}
             See :meth:`table`.
 
         Returns
@@ -287,6 +295,8 @@ class Response(RunStart, ABC):
         place, order = self._place(place), self._order(order)
         if ax is None:
             ax = figure(2, 1, size=(7.0, 5.5), sharex=True)[1]
+        from matplotlib.axes import Axes
+
         pair = checks.instances(ax, "ax", Axes)
         if len(pair) != 2:
             raise ValueError(f"ax: needs two Axes, for size and phase, got {len(pair)}")
@@ -304,7 +314,7 @@ class Response(RunStart, ABC):
         order: int | None = None,
         ax: Axes | None = None,
         marks: int = 5,
-        units: str = "Hz",
+        units: str = "rpm",
     ) -> Axes:
         """Draw the complex amplitude [µm] as a curve in its plane (Nyquist diagram).
 
@@ -336,7 +346,7 @@ class Response(RunStart, ABC):
         places: Sequence[str] | None = None,
         order: int | None = None,
         ax: Axes | None = None,
-        units: str = "Hz",
+        units: str = "rpm",
     ) -> Axes:
         """Draw one revolution of the orbits [µm] at a speed or frequency [rad/s].
 
@@ -352,7 +362,7 @@ class Response(RunStart, ABC):
             Harmonic; the main one by default.
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
-        units : {'Hz', 'rpm', 'SI'}
+        units : {'rpm', 'Hz', 'SI'}
             Of the title.
         """
         value, (shown, unit) = checks.number(value, "value", "rad/s"), self._shown(units)

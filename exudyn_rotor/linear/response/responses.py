@@ -26,7 +26,7 @@ class UnbalanceResponse(Response):
     speeds : ndarray, shape (s,)
         Spin speeds Ω [rad/s].
     loads : tuple of str
-        The unbalances in words.
+        The unbalances in words: those given, and the rotor's own eccentricity with its amount.
 
     Examples
     --------
@@ -43,7 +43,7 @@ class UnbalanceResponse(Response):
     loads: tuple[str, ...] = field(default=(), kw_only=True)
 
     def table(
-        self, place: str | None = None, order: int | None = None, *, units: str = "SI"
+        self, place: str | None = None, order: int | None = None, *, units: str = "rpm"
     ) -> str:
         """Return the table of :meth:`Response.table`, with the unbalances."""
         return "\n".join([super().table(place, order, units=units), *self.loads])

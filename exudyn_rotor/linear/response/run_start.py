@@ -1,14 +1,15 @@
 """Runs that begin in the steady motion of a linear response.
 
-A response keeps the coordinates of its model in harmonics, seen from the rotor: those of the
-reduced rotor's basis x, or those of the scene y. Of a reduced rotor, ``x = F f + T ζ`` with the
-motions F of the frame that its formulation has, and the basis Ψ = Q T of its modal coordinates.
-After x come the modes of a foundation, and pairs of controllers' coordinates, which turn as x does.
-What films remember begins as in a journal at rest.
+A response keeps harmonics of coordinates in the axes of the rotor: of the reduced rotor's basis x,
+or of a scene y. Of a reduced rotor, ``x = F f + T ζ`` with the motions F of the frame that its
+formulation has, and the basis Ψ = Q T of its modal coordinates. After x come the modes of a
+foundation, and pairs of controllers' coordinates, which turn as x does. What films remember begins
+as in a journal at rest.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,14 +19,11 @@ from exudyn_rotor.bearings.film.void_states import COUNT
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.rotor.own_coordinates import WORDS, names_of_own
-from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION, names_of_foundation
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.element import WORDS
+from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.scene_model import SceneModel
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
@@ -38,9 +36,9 @@ from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 BASES = ("rotor", "scene")
-_OWN = MagneticBearing, JournalBearing, TiltingPadBearing  # in the order of WORDS
+_OWN = dict(zip((MagneticBearing, JournalBearing, TiltingPadBearing), WORDS.values(), strict=True))
 _SAME_SPEED = 1e-9  # share by which a wanted speed may differ from a computed one
-_SAME_MOTION = 1e-6  # share of the largest motion of an interface that is rounding
+_SAME_MOTION = 1e-4  # share of the largest motion of an interface by small harmonics left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +57,7 @@ class RunStart(Result):
     """
 
     coordinates: np.ndarray | None = numbers(
-        "abscissa", "harmonics", "coordinates", dtype=complex, optional=True
+        "abscissa", "harmonics", "coordinates", dtype=complex, finite=False, optional=True
     )
     basis: str | None = field(default=None, kw_only=True)
     beside: tuple[str, ...] = words("beside", default=(), kw_only=True)
@@ -132,6 +130,8 @@ class RunStart(Result):
                 f"state: the response was not computed at {value:g} rad/s, the nearest is "
                 f"{nearest:g} rad/s; compute it there, too"
             )
+        if not np.all(np.isfinite(self.coordinates[index])):
+            raise ValueError(f"state: the response has no steady motion at {nearest:g} rad/s")
         return index
 
     def _scene(self, body: RotorBody) -> SceneCoordinates:
@@ -177,11 +177,11 @@ class RunStart(Result):
 
     def _is_motion(self, place: int, rows: np.ndarray) -> bool:
         """Return whether coordinates and motion of a place agree, at θ = 0 where it is largest."""
-        seen = self.motion[:, place].sum(axis=1).real
-        index = int(np.abs(seen[:, :3]).max(axis=1).argmax())
+        seen = self.motion[:, place].sum(axis=1).real[:, :3]
+        index = int(np.nan_to_num(np.abs(seen)).max(axis=1).argmax())
         x = self.coordinates[index].sum(axis=0).real
-        off = np.abs(seen[index] - rows @ x)[:3].max()
-        return bool(off <= _SAME_MOTION * np.abs(self.motion[:, place, :, :3]).max())
+        off = np.abs(seen[index] - rows[:3] @ x).max()
+        return bool(off <= _SAME_MOTION * np.nanmax(np.abs(self.motion[:, place, :, :3])))
 
 
 def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
@@ -191,8 +191,10 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
     """
     foundation = _foundation(body)
     own = _with_own(body)
-    names = names_of_own(
-        (WORDS[_OWN.index(type(one.support))], one.support.interface, size) for one, _, size in own
+    names = tuple(
+        f"{_OWN[type(one.support)]} {index} at {one.support.interface}, {number}"
+        for index, (one, _, size) in enumerate(own, 1)
+        for number in range(1, size + 1)
     )
     if foundation is None:
         return names, {}
@@ -202,7 +204,8 @@ def _beside(body: RotorBody) -> tuple[tuple[str, ...], dict[str, np.ndarray]]:
         ON_FOUNDATION.format(name): np.pad(T @ U @ given.mode_shapes, ((0, 0), (own, len(names))))
         for name, U in given.points.items()
     }
-    return names_of_foundation(given) + names, points
+    standing = tuple(f"foundation, {number}" for number in range(1, given.size + 1))
+    return standing + names, points
 
 
 def _foundation(body: RotorBody) -> SceneFoundation | None:
@@ -225,7 +228,7 @@ def _foundation(body: RotorBody) -> SceneFoundation | None:
 def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
     """Return supports with own coordinates in linear analyses, where a scene has these, how many.
 
-    In the order of :class:`OwnCoordinates`. What a film remembers is no coordinate of a scene.
+    In the order of linear models. What a film remembers is no coordinate of a scene.
     """
     found = []
     for one in body.supports:
@@ -233,7 +236,7 @@ def _with_own(body: RotorBody) -> list[tuple[SceneSupport, np.ndarray, int]]:
         remembers = isinstance(one.support, JournalBearing) and one.support.remembers
         if size := COUNT if remembers else len(places):
             found.append((one, places, size))
-    return sorted(found, key=lambda each: _OWN.index(type(each[0].support)))
+    return sorted(found, key=lambda each: list(_OWN).index(type(each[0].support)))
 
 
 def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndarray) -> StartState:
@@ -260,11 +263,36 @@ def _with_beside(body: RotorBody, state: StartState, x: np.ndarray, x_t: np.ndar
     return replace(state, q=q, q_t=q_t)
 
 
-def kept_basis(model: LinearModel) -> str | None:
-    """Return the basis of a model's coordinates that a response keeps; None to keep none."""
-    if isinstance(model, LinearScene | RememberingScene):
-        return "scene"
-    return "rotor" if isinstance(model, LinearRotor | ExtendedRotor) else None
+def kept_coordinates(
+    model: LinearModel, found: Sequence[Mapping[int, np.ndarray]], speed: float
+) -> dict[str, object]:
+    """Return what a response keeps for runs, given harmonics (k,) of coordinates at each value.
+
+    Of one rotor in its own axes, all of its columns are coordinates, and of a scene its unknowns;
+    else nothing is kept.
+    """
+    if isinstance(model, SceneModel):
+        found = [model.unknowns(one, speed) for one in found]
+        return {"coordinates": _in_array(found, model.scene.size), "basis": "scene"}
+    assembly = model.assembly(speed)
+    rotor = assembly.bodies[0]
+    if len(model.rotors) > 1 or model.turns != 1 or model.ratios[rotor.name] != 1.0:
+        return {}
+    kept = _in_array(found, model.size)
+    if rotor.is_apart:  # the spin is a rotation about the axis
+        spin = np.pad(rotor.spin.turn - rotor.spin.momentum, (0, model.size - rotor.size))
+        kept += (kept[..., : rotor.size] @ rotor.spin.momentum)[..., None] * spin
+    return {"coordinates": kept, "basis": "rotor", "beside": model.coordinates[rotor.size :]}
+
+
+def _in_array(found: Sequence[Mapping[int, np.ndarray]], size: int) -> np.ndarray:
+    """Return harmonics −N … N as an array (s, h, k)."""
+    top = max(abs(n) for one in found for n in one)
+    kept = np.zeros((len(found), 2 * top + 1, size), dtype=complex)
+    for row, one in zip(kept, found, strict=True):
+        for n, x in one.items():
+            row[top + n] = x
+    return kept
 
 
 def _in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:

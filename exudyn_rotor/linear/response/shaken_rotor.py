@@ -1,11 +1,16 @@
-"""How a rotor moves over time while a record shakes the ground: steps of a Magnus series.
+"""How a rotor moves over time while a record shakes the ground: steps of first-order equations.
 
-The equations of :class:`PeriodicSystem` with ``f = −Sᵀ Aᵀ a(t)`` (109), in first order with the
-load beside the state, ``(x, ẋ, a, ȧ)``: one matrix exponential of a fourth-order Magnus series for
-each step of a revolution, and then nothing but products. In each step the record is the straight
-line with its mean and first moment, both exact. Steps are halved until the motion no longer
-changes, and straight lines between them follow it: a rotor may swing faster than its record.
-Source of the series: Blanes, Casas, Oteo, Ros, Phys. Rep. 470 (2009), Sect. 5.
+The equations are ``ż = A(θ) z + B Σ L_n exp(inθ) a(t)`` with the load ``f = −Sᵀ a`` (109). In each
+step the record is the straight line with its mean and first moment, both exact.
+
+- Constant equations are followed exactly, whatever decays or swings fast: one matrix exponential of
+  the state beside the line of the load, which turns with exp(inθ).
+- Periodic equations take steps of Radau's method with three stages. It is of fifth order, and what
+  decays within a step decays. What a step does is periodic in its first angle, and so known by a
+  few Fourier terms. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, Sect. IV.5.
+
+Steps are halved until the motion no longer changes, and straight lines between them follow it: a
+rotor may swing faster than its record.
 """
 
 from __future__ import annotations
@@ -17,62 +22,82 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.foundations.record import BaseRecord
-from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic.fundamental import (
-    GAUSS_POINTS,
-    accelerations,
-    magnus_exponent,
-    sampled,
-)
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.equations import Terms, UnconvergedError, at_angle
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.places import Place
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.rotating_axes import axes_of, turning_harmonics
+from exudyn_rotor.linear.solve.state import states_of
+from exudyn_rotor.theory.rotating_axes import axes_of
 from exudyn_rotor.threads import one_thread
 
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
-_MOST_HALVINGS = 7
+_MOST_STEPS = 2_000_000
+_ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
+_KEPT = 512  # steps in a revolution that are kept as matrices
+_HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
+_TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
+_S = np.sqrt(6.0)
+_STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
+_RADAU = np.array(
+    [
+        [(88.0 - 7.0 * _S) / 360.0, (296.0 - 169.0 * _S) / 1800.0, (-2.0 + 3.0 * _S) / 225.0],
+        [(296.0 + 169.0 * _S) / 1800.0, (88.0 + 7.0 * _S) / 360.0, (-2.0 - 3.0 * _S) / 225.0],
+        [(16.0 - _S) / 36.0, (16.0 + _S) / 36.0, 1.0 / 9.0],
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
 class ShakenRotor:
-    """Equations without a free spin, the record along (n1, n2, e), and what is looked at."""
+    """Equations of first order, the record along (n1, n2, e), and what is looked at.
 
-    system: PeriodicSystem
-    loads: np.ndarray
+    Attributes
+    ----------
+    speed : float
+        Ω [rad/s].
+    A : mapping of int to ndarray, shape (2k, 2k)
+        Fourier terms of the rates per state.
+    loads : mapping of int to ndarray, shape (2k, 3)
+        Fourier terms of the rates per acceleration of the ground.
+    seen : sequence of mapping of int to ndarray, shape (6, 2k)
+        Fourier terms of the motion of each place per state, axes that stand still.
+    record : BaseRecord
+    """
+
+    speed: float
+    A: Terms
+    loads: Terms
+    seen: Sequence[Terms]
     record: BaseRecord
-    rows: np.ndarray
-    stands: np.ndarray
 
     @classmethod
     def of(
-        cls,
-        model: LinearRotor | ExtendedRotor,
-        speed: float,
-        record: BaseRecord,
-        observed: Sequence[Place],
+        cls, model: LinearModel, speed: float, record: BaseRecord, observed: Sequence[Place]
     ) -> ShakenRotor:
         """Return the equations at a spin speed [rad/s], with a spin that nothing holds held."""
-        space = model.space(1, abs(speed), held=True)
-        T = np.eye(model.size) if space.others is None else space.others
-        standing = np.isin(np.arange(model.size), model.standing)
-        turned = record.turned(axes_of(SpinAxis(model.invariants.direction)).T)
-        loads = np.stack([T.T @ np.where(which, model.base_loads, 0.0).T
-                          for which in (~standing, standing)])  # fmt: skip
-        rows = np.array([one.motion @ T for one in observed])
-        stands = np.array([one.stands for one in observed])
-        return cls(space.at(speed), loads, turned, rows, stands)
+        system, basis = model.at(speed), model.held_basis
+        basis = np.eye(model.size) if basis is None else basis
+        states = states_of(system.projected(basis))
+        k = basis.shape[1]
+        shape = basis @ states.shape
+        # forces act on the second half of the state, by the modes of the first
+        pulled = np.vstack([np.zeros((k, model.size)), states.A[0][:k, k:] @ shape[:, :k].T])
+        loads = {n: pulled @ each.T for n, each in model.base_loads(speed).items()}
+        seen = [{n: U @ shape for n, U in one.seen.items()} for one in observed]
+        axis = next(iter(model.rotors.values())).axis
+        return cls(speed, states.A, loads, seen, record.turned(axes_of(axis).T))
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the rates per state do not change in time."""
+        return self.speed == 0.0 or len(self.A) == 1
 
     @one_thread()
-    def converged(
-        self, start: float, end: float, tolerance: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def converged(self, end: float, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return times and motions (t, p, 6), with steps small enough."""
-        coarse, last = self._first_step(end - start), None
-        for halving in range(_MOST_HALVINGS):
-            every = 2**halving
+        start = float(self.record.times[0])
+        coarse, last, every = self._first_step(end - start), None, 1
+        while last is None or (end - start) * every / coarse < _MOST_STEPS:
             time, motion = self._motion(start, end, coarse / every, every)
             if not np.all(np.isfinite(motion)):
                 raise ValueError(
@@ -81,24 +106,25 @@ class ShakenRotor:
                 )
             moved = motion[..., :3]
             size = np.abs(moved).max()
-            if last is not None and np.abs(moved[::2] - last).max() <= tolerance * size:
-                strides = (every >> fewer for fewer in range(halving))
+            change = np.inf if last is None else np.abs(moved[::2] - last).max()
+            if change <= _HALVED * tolerance * size:
+                strides = [every >> fewer for fewer in range(every.bit_length() - 1)]
                 kept = next((n for n in strides if _follow(moved[:: n // 2], size)), None)
                 if kept is not None:
                     return time[::kept], motion[::kept]
-            last = moved
+            last, every = moved, 2 * every
         raise UnconvergedError(
-            f"base response: steps of {coarse / every:.2g} s are too long for the motion; give an "
-            "earlier end_time, or a reduced rotor without modes that are so fast"
+            f"base response: steps of {2.0 * coarse / every:.2g} s are too long for the motion; "
+            "give an earlier end_time, or a reduced rotor without modes that are so fast"
         )
 
     def _first_step(self, length: float) -> float:
-        """Return the largest step: a whole part of a revolution, and of the record's at rest."""
+        """Return the largest step: a whole part of a step of the record, or of a revolution."""
         largest = min(self.record.step, length / _IN_ALL)
-        if self.system.speed == 0.0:
-            return largest
-        turn = 2.0 * np.pi / abs(self.system.speed)
-        return turn / max(_PER_TURN, int(np.ceil(turn / largest)))
+        whole, least = self.record.step, 1.0
+        if not self.is_constant:
+            whole, least = 2.0 * np.pi / abs(self.speed), _PER_TURN
+        return whole / max(least, np.ceil(whole / largest - 1e-9))
 
     def _motion(
         self, start: float, end: float, step: float, every: int
@@ -106,54 +132,88 @@ class ShakenRotor:
         """Return times and motions of all steps, a multiple of `every`."""
         count = every * max(1, int(np.floor((end - start) / (every * step) + 1e-9)))
         times = start + step * np.arange(count + 1)
-        speed = self.system.speed
-        per_turn = 1 if speed == 0.0 else round(2.0 * np.pi / abs(speed) / step)
-        angles = speed * step * np.arange(min(per_turn, count))
-        by_state, by_load = self._propagators(angles, step)
-        mean, slope = self._lines(times, step)
-        loads = np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
-        size = self.system.size
-        states = np.zeros((count + 1, 2 * size))
+        angles = self.speed * (times - start)
+        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
+        lines = self._lines(times, step)
+        waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
+        given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
+        states = np.zeros((count + 1, len(self.A[0])))
+        turn = 1 if self.is_constant else round(2.0 * np.pi / abs(self.speed) / step)
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            for n in range(count):
-                place = n % len(angles)
-                states[n + 1] = by_state[place] @ states[n] + by_load[place] @ loads[n]
-        return times, self._seen(states[:, :size], speed * (times - start))
+            if turn <= _KEPT:
+                each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
+                for n in range(count):
+                    states[n + 1] = each[n % turn] @ states[n] + given[n]
+            else:
+                # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
+                later = [n for n in by_state if n > 0]
+                parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
+                tall = np.vstack([by_state[0].real, *parts])
+                parts = (w for n in later for w in (waves[n].real, waves[n].imag))
+                weights = np.column_stack([np.ones(count + 1), *parts])
+                for n in range(count):
+                    stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
+                    states[n + 1] = weights[n] @ stepped + given[n]
+            motion = np.zeros((count + 1, len(self.seen), 6))
+            for place, seen in enumerate(self.seen):
+                for n, U in seen.items():
+                    motion[:, place] += (waves[n][:, None] * (states @ U.T)).real
+        return times, motion
 
-    def _lines(self, times: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the line of every step that has the record's mean and first moment."""
+    def _lines(self, times: np.ndarray, step: float) -> np.ndarray:
+        """Return first value and slope (t, 6) of the line in every step.
+
+        It has the mean and the first moment of the record.
+        """
         velocity, place = self.record.integrals(times)
         mean = np.diff(velocity, axis=0) / step
         moment = 0.5 * step * (velocity[1:] + velocity[:-1]) - np.diff(place, axis=0)
-        return mean, 12.0 * moment / step**3
+        slope = 12.0 * moment / step**3
+        return np.concatenate([mean - 0.5 * step * slope, slope], axis=1)
 
-    def _propagators(self, angles: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return what the state and the line of the load do in the steps from these angles."""
-        turns = self.system.speed * step * GAUSS_POINTS
-        A, B = (step * self._generator(angles + turn) for turn in turns)
-        propagators = scipy.linalg.expm(magnus_exponent(A, B))
-        state = 2 * self.system.size
-        return propagators[:, :state, :state], propagators[:, :state, state:]
+    def _exact(self, step: float) -> tuple[dict, dict]:
+        """Return Fourier terms of what a step does with the state (2k, 2k) and a line (2k, 6)."""
+        A = at_angle(self.A, 0.0)
+        size, by_line = len(A), {}
+        for n, load in self.loads.items():
+            generator = np.zeros((size + 6, size + 6), dtype=complex)
+            generator[:size, :size], generator[:size, size : size + 3] = A, load
+            generator[size : size + 3, size + 3 :] = np.eye(3)
+            generator[size:, size:] += 1j * n * self.speed * np.eye(6)
+            by_line[n] = scipy.linalg.expm(step * generator)[:size, size:]
+        return {0: scipy.linalg.expm(step * A)}, by_line
 
-    def _generator(self, angles: np.ndarray) -> np.ndarray:
-        """Return the rates of (x, ẋ, a, ȧ) at angles, shape (n, 2k + 6, 2k + 6)."""
-        k = self.system.size
-        M, D, K = sampled(self.system, angles)
-        R = _rotations(angles)
-        load = self.loads[0] @ R.transpose(0, 2, 1) + self.loads[1]
-        rates = accelerations(self.system, M, np.concatenate([-K, -D, load], axis=2))
-        generator = np.zeros((len(angles), 2 * k + 6, 2 * k + 6))
-        generator[:, :k, k : 2 * k] = np.eye(k)
-        generator[:, k : 2 * k, : 2 * k + 3] = rates
-        generator[:, 2 * k : 2 * k + 3, 2 * k + 3 :] = np.eye(3)
-        return generator
+    def _radau(self, step: float) -> tuple[dict, dict]:
+        """Return what :meth:`_exact` does, of periodic equations."""
+        size, count = len(self.A[0]), _ANGLES
+        while True:
+            angles = 2.0 * np.pi * np.arange(count) / count
+            spectrum = np.fft.fft([self._stepped(step, angle) for angle in angles], axis=0) / count
+            sizes = np.abs(spectrum).max(axis=1)  # the lines act on states of another size
+            sizes = (sizes / np.maximum(sizes.max(axis=0), 1e-300)).max(axis=1)
+            if sizes[count // 4 : -count // 4].max() <= _TAIL or count >= _MOST_ANGLES:
+                break
+            count *= 2
+        terms = {n: spectrum[n] for n in range(-count // 4, count // 4 + 1) if sizes[n] > _ROUNDING}
+        return tuple({n: X[:, part] for n, X in terms.items()}
+                     for part in (slice(size), slice(size, None)))  # fmt: skip
 
-    def _seen(self, x: np.ndarray, angles: np.ndarray) -> np.ndarray:
-        """Return the motions (t, p, 6) in inertial axes."""
-        motion = np.einsum("pik,tk->tpi", self.rows, x)
-        both = np.kron(np.eye(2), np.ones((3, 3))) * np.tile(_rotations(angles), (1, 2, 2))
-        turned = np.einsum("tij,tpj->tpi", both, motion)
-        return np.where(self.stands[:, None], motion, turned)
+    def _stepped(self, step: float, angle: float) -> np.ndarray:
+        """Return what a step from a spin angle [rad] does with state and line, (2k, 2k + 6)."""
+        size = len(self.A[0])
+        stages = angle + self.speed * step * _STAGES
+        rates = np.stack([at_angle(self.A, each) for each in stages])
+        loads = np.stack([np.hstack([self._load(each), share * step * self._load(each)])
+                          for each, share in zip(stages, _STAGES, strict=True)])  # fmt: skip
+        left = np.eye(3 * size).reshape(3, size, 3, size)
+        left -= step * np.einsum("ij,jab->iajb", _RADAU, rates)
+        right = step * np.einsum("ij,jab->iab", _RADAU, loads).reshape(3 * size, 6)
+        right = np.hstack([np.tile(np.eye(size), (3, 1)), right])
+        return np.linalg.solve(left.reshape(3 * size, 3 * size), right)[2 * size :]
+
+    def _load(self, angle: float) -> np.ndarray:
+        """Return the rates per acceleration of the ground at a spin angle [rad], (2k, 3)."""
+        return sum(load * np.exp(1j * n * angle) for n, load in self.loads.items()).real
 
 
 def _follow(moved: np.ndarray, size: float) -> bool:
@@ -162,8 +222,6 @@ def _follow(moved: np.ndarray, size: float) -> bool:
     return bool(np.abs(moved[1::2] - between).max() <= _BETWEEN * size)
 
 
-def _rotations(angles: np.ndarray) -> np.ndarray:
-    """Return R(θ) from rotor into inertial axes, shape (n, 3, 3)."""
-    return sum(
-        np.exp(1j * n * angles)[:, None, None] * R for n, R in turning_harmonics(3).items()
-    ).real
+def _orders(seen: Sequence[Terms]) -> set[int]:
+    return {n for each in seen for n in each}
+

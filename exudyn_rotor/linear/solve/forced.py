@@ -13,12 +13,15 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.solve.chain import chained, is_chain
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
-_FREE = 1e-12  # of matrices with diagonals of one: a motion that nothing resists
+_FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resists
+_NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
+_FAR = 1e6  # of matrices with diagonals of one: size of a solution that nothing free is in
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
-_SINGULAR = 1e-14  # reciprocal condition of equations without a solution
+_SINGULAR = 1e-13  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
 
 
@@ -59,9 +62,20 @@ def forced_motions(
         given = [[each[i] for i in constant] for each in (systems, loads, rates)]
         for i, motion in zip(constant, _constant(*given, driven), strict=True):
             found[i] = motion
+    groups: dict[tuple, list[int]] = {}
     for i, system in enumerate(systems):
         if not system.is_constant:
-            found[i] = _periodic(system, loads[i], float(rates[i]), driven, tolerance)
+            acting = tuple(sorted(n for n, F in loads[i].items() if np.any(F)))
+            groups.setdefault((system.step, acting, is_chain(system)), []).append(i)
+    for (step, acting, chain), members in groups.items():
+        for n in {n % step: n for n in acting}:  # harmonics that are coupled
+            together = [m for m in acting if m % step == n]
+            given = [[each[i] for i in members] for each in (systems, loads, rates)]
+            motions = _periodic(*given, together, chain, driven, tolerance)
+            for i, motion in zip(members, motions, strict=True):
+                found[i] |= motion
+        for i in members:
+            found[i] = found[i] or {n: 0j * F for n, F in loads[i].items()}
     if held is not None:
         found = [{n: held @ X for n, X in each.items()} for each in found]
     return found
@@ -150,8 +164,13 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
     alone = diagonal <= _FREE * diagonal.max(initial=0.0)
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
     scaled, b = scale[:, None] * A * scale, scale * load
+    if np.linalg.norm(b[alone]) <= _LOADED * np.linalg.norm(b):
+        x = np.zeros(len(load), dtype=complex)
+        x[~alone] = _one(scaled[np.ix_(~alone, ~alone)], b[~alone])
+        if np.linalg.norm(x) <= _FAR * np.linalg.norm(b):  # nothing else is nearly free
+            return scale * x
     U, values, Vh = np.linalg.svd(scaled)
-    free = values <= _FREE * values.max(initial=0.0)
+    free = values <= _NONE * values.max(initial=0.0)
     if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):
         return np.full(len(load), np.nan, dtype=complex)
     kept = ~free
@@ -159,35 +178,74 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
 
 
 def _periodic(
-    system: PeriodicSystem,
-    loads: Harmonics,
-    rate: float,
+    systems: list[PeriodicSystem],
+    loads: list[Harmonics],
+    rates: list[float],
+    acting: list[int],
+    chain: bool,
     driven: np.ndarray | None,
     tolerance: float,
-) -> dict[int, np.ndarray]:
-    """Return the harmonics of periodic equations, as many as the tolerance needs."""
-    step, motion = system.step, {}
-    given = {n: F for n, F in loads.items() if np.any(F)}
-    while given:
-        first = min(given)
-        group = {n: F for n, F in given.items() if (n - first) % step == 0}
-        given = {n: F for n, F in given.items() if n not in group}
-        last = None
-        for more in range(2, _MOST):
-            orders = np.arange(min(group) - more * step, max(group) + more * step + 1, step)
-            found = _coupled(system, group, rate, orders, driven)
-            size = max(np.abs(x).max() for x in found.values())
-            if not np.isfinite(size):
-                break
-            if last is not None:
-                change = max(np.abs(x - last.get(n, 0.0)).max() for n, x in found.items())
-                if change <= tolerance * size:
-                    break
-            last = found
+) -> list[dict[int, np.ndarray]]:
+    """Return the harmonics of periodic equations, as many as the tolerance needs.
+
+    Of systems with one step, under the coupled harmonics `acting` of the loads.
+    """
+    step, found = systems[0].step, [{} for _ in systems]
+    loads = [{n: load[n] for n in acting} for load in loads]
+    left = np.arange(len(systems))
+    last = None
+    for more in range(2, _MOST):
+        orders = range(acting[0] - more * step, acting[-1] + more * step + 1, step)
+        given = [[each[i] for i in left] for each in (systems, loads, rates)]
+        if chain:
+            X = _in_chain(*given, orders, driven)
         else:
-            found = {n: np.nan * x for n, x in found.items()}
-        motion |= found
-    return motion or {n: 0j * F for n, F in loads.items()}
+            motions = [_coupled(*one, np.array(orders), driven) for one in zip(*given, strict=True)]
+            X = np.array([[motion[n] for n in orders] for motion in motions])
+        size = np.abs(X).max(axis=(1, 2))
+        done = ~np.isfinite(size)
+        if last is not None:
+            change = np.abs(X - np.pad(last, ((0, 0), (1, 1), (0, 0)))).max(axis=(1, 2))
+            done |= change <= tolerance * size
+        for row in np.flatnonzero(done):
+            found[left[row]] = dict(zip(orders, X[row], strict=True))
+        left, last = left[~done], X[~done]
+        if not left.size:
+            return found
+    for i in left:
+        found[i] = {n: np.full(systems[i].size, np.nan, dtype=complex) for n in acting}
+    return found
+
+
+def _in_chain(
+    systems: list[PeriodicSystem],
+    loads: list[Harmonics],
+    rates: list[float],
+    orders: Sequence[int],
+    driven: np.ndarray | None,
+) -> np.ndarray:
+    """Return the harmonics (s, h, k) of systems whose harmonics are coupled in a chain."""
+    nu = np.array([[_rate(float(rate), n, system.speed) for n in orders]
+                   for rate, system in zip(rates, systems, strict=True)])  # fmt: skip
+    at_mean = {id(s): (s.M, s.D[0].real, s.K[0].real) for s in systems}
+
+    def stiffness(i: int, a: int) -> np.ndarray:
+        return _dynamic(systems[i], at_mean[id(systems[i])], nu[i, a])
+
+    X = np.zeros((len(systems), len(orders), systems[0].size), dtype=complex)
+    places = [tuple(np.flatnonzero(row == 0.0)) for row in nu]
+    for place in set(places):  # where a constant harmonic stands
+        few = [i for i, one in enumerate(places) if one == place]
+        given = [[each[i] for i in few] for each in (systems, loads)]
+        constant = np.full(len(few), bool(place))
+
+        def middle(A: np.ndarray, b: np.ndarray, constant: np.ndarray = constant) -> np.ndarray:
+            return _solved(A, b, constant, driven)
+
+        X[few] = chained(
+            *given, orders, nu[few], lambda i, a, few=few: stiffness(few[i], a), middle
+        )
+    return X
 
 
 def _coupled(
@@ -199,8 +257,25 @@ def _coupled(
 ) -> dict[int, np.ndarray]:
     """Return the harmonics that are coupled, from one matrix."""
     h, k = len(orders), system.size
+    A, nu = coupled_stiffness(system, rate, orders)
+    F = np.array([loads.get(int(m), np.zeros(k)) for m in orders], dtype=complex)
+    constant = 0.0 in nu
+    momenta = None
+    if constant and driven is not None and driven.shape[1]:
+        momenta = np.zeros((h, k, driven.shape[1]))
+        momenta[nu.index(0.0)] = driven
+        momenta = momenta.reshape(h * k, -1)
+    given = A[None], F.reshape(1, -1)
+    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
+    return {int(n): x for n, x in zip(orders, X, strict=True)}
+
+
+def coupled_stiffness(
+    system: PeriodicSystem, rate: float, orders: Sequence[int]
+) -> tuple[np.ndarray, list[float]]:
+    """Return the dynamic stiffness between harmonics, (h k, h k), and their frequencies [rad/s]."""
+    h, k = len(orders), system.size
     A = np.zeros((h, k, h, k), dtype=complex)
-    F = np.zeros((h, k), dtype=complex)
     nu = [_rate(rate, int(n), system.speed) for n in orders]
     for a, m in enumerate(orders):
         for b, n in enumerate(orders):
@@ -210,13 +285,4 @@ def _coupled(
         A[a, :, a] -= nu[a] ** 2 * system.M
         for n, H in system.H:
             A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
-        F[a] = loads.get(int(m), 0.0)
-    constant = 0.0 in nu
-    momenta = None
-    if constant and driven is not None and driven.shape[1]:
-        momenta = np.zeros((h, k, driven.shape[1]))
-        momenta[nu.index(0.0)] = driven
-        momenta = momenta.reshape(h * k, -1)
-    given = A.reshape(1, h * k, h * k), F.reshape(1, -1)
-    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
-    return {int(n): x for n, x in zip(orders, X, strict=True)}
+    return A.reshape(h * k, h * k), nu

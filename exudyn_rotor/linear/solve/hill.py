@@ -8,39 +8,129 @@ harmonic, as λ + inΩ: of these copies the one whose harmonics lie around zero 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.solve.state import States
 
-_SIZES = (2, 3, 4, 6, 9)  # harmonics on either side, in steps of the coefficients
-_LARGEST = 640  # unknowns, beyond which harmonics are not added
+_SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
+_LARGEST = 420  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
+# energy at the edge of the sum that counts as none, over the tolerance: the error of λ is the
+# product of that and of the small part of λ that changes in a turn; and energy that is too much
+_EDGE, _LOST = 1e2, 3e-3
+_COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
+
+
+class Exponents(NamedTuple):
+    """Motions of periodic equations, k for all of k coordinates.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+        λ; NaN where it did not converge.
+    states : ndarray, shape (h, 2k, k)
+        Harmonics of the state.
+    orders : ndarray of int, shape (h,)
+    """
+
+    values: np.ndarray
+    states: np.ndarray
+    orders: np.ndarray
 
 
 def hill_motions(
     system: PeriodicSystem, made: States, tolerance: float, begin: int = 0
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Return 2k exponents, their states (h, 2k, 2k), the harmonics, and what to begin with next.
+) -> tuple[Exponents, int]:
+    """Return the motions of a system, and with how many harmonics to begin at the next speed.
 
-    Harmonics are added until those at the edge of the sum hold no more than the `tolerance` of the
-    energy of each motion: the error of λ is of that size. Fast decays are not waited for. Exponents
-    that do not get there are NaN.
+    Harmonics are added until those at the edge of the sum hold next to nothing of each motion. Fast
+    decays are not waited for. Exponents that do not get there are NaN.
     """
-    count = 2 * system.size
     place = begin
     while True:
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
-        values, states, edges = _centered(values, states, orders, system.step, count)
+        chosen = one_of_each_family(values, states, orders, system, made)
+        values, states = values[chosen], states[:, :, chosen]
+        energy = np.sum(np.abs(states) ** 2, axis=1)
+        energy = energy / energy.sum(axis=0)
+        edges = energy[0] + energy[-1]
         fast = -values.real > _FAST * abs(system.speed)
-        done = fast | (edges <= tolerance)
-        larger = count * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
+        done = fast | (edges <= _EDGE * tolerance)
+        larger = 2 * system.size * (2 * _SIZES[min(place + 1, len(_SIZES) - 1)] + 1)
         if np.all(done) or place + 1 == len(_SIZES) or larger > _LARGEST:
             break
         place += 1
-    values = np.where(fast | (edges <= 1e3 * tolerance), values, np.nan)
-    return values, states, orders, place
+    fewer = np.all(fast | (energy[1] + energy[-2] <= _EDGE * tolerance))
+    found = fast | (edges <= _LOST)
+    return Exponents(np.where(found, values, np.nan), states, orders), max(place - fewer, 0)
+
+
+def one_of_each_family(
+    values: np.ndarray,
+    states: np.ndarray,
+    orders: np.ndarray,
+    system: PeriodicSystem,
+    made: States,
+) -> np.ndarray:
+    """Return which of many exponents stand for all, k.
+
+    Of each motion, its copies and their conjugates one, whose harmonics lie around zero; of motions
+    that are their own conjugates the less damped half.
+    """
+    step, base = system.step, system.step * system.speed
+    energy = np.sum(np.abs(states) ** 2, axis=1)
+    energy = energy / energy.sum(axis=0)
+    shapes = made.shape @ states
+    shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
+    mean, edges = orders @ energy / step, energy[0] + energy[-1]
+    # the small number decides between two copies half a step from zero; copies of what is not
+    # resolved do not tell that they are copies, and come last
+    waiting = np.argsort(np.abs(mean - 1e-2) + 10.0 * (edges > _LOST), kind="stable")
+    left, pairs, single = np.ones(len(values), dtype=bool), [], []
+    for i in waiting:
+        if 2 * len(pairs) + len(single) >= 2 * system.size:
+            break
+        if not left[i]:
+            continue
+        near = (_COPY + edges + edges[i]) * abs(base) + 1e-6 * abs(values[i])
+        own = _copies(values, shapes, values[i], shapes[:, :, i], base, near)
+        mirrored = shapes[::-1, :, i].conj()
+        mirrored = _copies(values, shapes, values[i].conj(), mirrored, base, near)
+        left[own] = left[mirrored] = left[i] = False
+        if i in mirrored:
+            single.append(i)
+        else:
+            pairs.append(i)
+    single.sort(key=lambda i: -values[i].real)
+    return np.array([*pairs, *single][: system.size], dtype=int)
+
+
+def _copies(
+    values: np.ndarray,
+    shapes: np.ndarray,
+    value: complex,
+    shape: np.ndarray,
+    base: float,
+    allowed: np.ndarray,
+) -> np.ndarray:
+    """Return which motions are one, λ + ipΩn with its harmonics n steps lower.
+
+    Their exponents may be off by what is `allowed` (n,).
+    """
+    apart = values - value
+    steps = np.round(apart.imag / base).astype(int)
+    near = np.abs(apart - 1j * steps * base) <= allowed
+    found, h = [], len(shape)
+    for j in np.flatnonzero(near & (np.abs(steps) < h)):
+        n = steps[j]
+        a, b = (shape[n:], shapes[: h - n, :, j]) if n >= 0 else (shape[:n], shapes[-n:, :, j])
+        if abs(np.vdot(a, b)) > _ALIKE:
+            found.append(j)
+    return np.array(found, dtype=int)
 
 
 def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -68,17 +158,3 @@ def real_waves(h: int) -> np.ndarray:
         turn[top + n, 2 * n - 1], turn[top - n, 2 * n - 1] = np.sqrt(0.5), np.sqrt(0.5)
         turn[top + n, 2 * n], turn[top - n, 2 * n] = -1j * np.sqrt(0.5), 1j * np.sqrt(0.5)
     return turn
-
-
-def _centered(
-    values: np.ndarray, states: np.ndarray, orders: np.ndarray, step: int, count: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the motions whose harmonics lie around zero, and the energy share of their edges."""
-    energy = np.sum(np.abs(states) ** 2, axis=1)
-    energy = energy / energy.sum(axis=0)
-    mean = orders @ energy
-    edges = energy[0] + energy[-1]
-    # copies of a motion are whole steps apart: one of each lies within half a step of zero
-    distance = np.abs(mean / step - 1e-3)
-    best = np.argsort(distance + 1e3 * (edges > 0.1), kind="stable")[:count]
-    return values[best], states[:, :, best], edges[best]

@@ -7,15 +7,14 @@ motions stand for all. A free motion, which nothing resists, has λ = 0.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
-from exudyn_rotor.linear.solve.floquet import floquet_motions
-from exudyn_rotor.linear.solve.hill import hill_motions
+from exudyn_rotor.linear.solve.floquet import floquet_growth, floquet_motions
+from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
 METHODS = ("auto", "hill", "floquet")
@@ -81,14 +80,57 @@ def motions_of(
     known = [system for system in systems if system is not None]
     if not known:
         return [None] * len(systems)
-    ends = [known[0], known[-1]] if len(known) > 1 else known
-    free = free_directions(ends)
-    basis = others(free, known[0].M) if free.shape[1] else None
-    reduced = known if basis is None else [system.projected(basis) for system in known]
+    reduced, free, basis = _resisted(known)
     solved = iter(_solved(reduced, method, tolerance))
     if basis is not None:
         solved = (_beside(found, free, basis) for found in solved)
     return [None if system is None else next(solved) for system in systems]
+
+
+def margins_of(
+    systems: Sequence[PeriodicSystem], method: str = "auto", tolerance: float = 1e-6
+) -> list[float]:
+    """Return by how much the least stable motion of each system grows beyond its bound [1/s].
+
+    Of motions that are not neutral; less the bound where all are. The same as from
+    :func:`motions_of`, in a fraction of the time: of periodic equations by Floquet's method without
+    shapes, and by Hill's where that does not settle.
+    """
+    reduced, _, _ = _resisted(systems)
+    found = [-0.0] * len(systems)
+    constant = [i for i, s in enumerate(reduced) if s.is_constant and s.size]
+    if constant:
+        made = [states_of(reduced[i]) for i in constant]
+        for i, values, each in zip(
+            constant, np.linalg.eigvals(np.stack([each.A[0] for each in made])), made, strict=True
+        ):
+            found[i] = _margin(values, _bound(each))
+    rest, steps = [], 0
+    for i in (i for i, s in enumerate(reduced) if not s.is_constant and s.size):
+        made = states_of(reduced[i])
+        growth, bound, steps = floquet_growth(reduced[i], made, tolerance, steps)
+        found[i] = _margin(growth, max(bound, _bound(made)))
+        if method == "hill" or np.any(np.isnan(growth)):
+            rest.append(i)
+    for i, each in zip(rest, _solved([reduced[i] for i in rest], method, tolerance), strict=True):
+        found[i] = _margin(each.values, each.bound)
+    return found
+
+
+def _margin(values: np.ndarray, bound: float) -> float:
+    growth = values.real[np.abs(values.real) > bound]
+    return float(growth.max(initial=0.0 if not growth.size else -np.inf) - bound)
+
+
+def _resisted(
+    systems: Sequence[PeriodicSystem],
+) -> tuple[list[PeriodicSystem], np.ndarray, np.ndarray | None]:
+    """Return systems without what nothing resists at any of them, those motions, and a basis."""
+    free = free_directions([systems[0], systems[-1]] if len(systems) > 1 else [systems[0]])
+    if not free.shape[1]:
+        return list(systems), free, None
+    basis = others(free, systems[0].M)
+    return [system.projected(basis) for system in systems], free, basis
 
 
 def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> list[Motions]:
@@ -101,7 +143,6 @@ def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> lis
         for i, values, vectors in zip(constant, *np.linalg.eig(matrices), strict=True):
             found[i] = _constant(systems[i].speed, values, vectors, made[i])
     size = 0
-    lost = []
     for i, system in enumerate(systems):
         if found[i] is not None:
             continue
@@ -110,30 +151,16 @@ def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> lis
             found[i] = Motions(system.speed, none[0, 0], none, np.array([0]), 0.0)
             continue
         if method == "floquet":
-            parts = floquet_motions(system, made[i])
+            exponents = floquet_motions(system, made[i])
         else:
-            *parts, size = hill_motions(system, made[i], tolerance, size)
-        found[i] = _periodic(system.speed, *parts, made[i])
-        if np.any(np.isnan(found[i].values)):
-            lost.append(system.speed)
-    if lost:
-        _warn_of_lost(lost)
+            exponents, size = hill_motions(system, made[i], tolerance, size)
+        found[i] = _periodic(system.speed, exponents, made[i])
     return found
 
 
-def _warn_of_lost(speeds: list[float]) -> None:
-    shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
-    warnings.warn(
-        f"the harmonics of an uneven rotor on uneven supports do not converge for all motions at "
-        f"{shown} rad/s, which are NaN there: at a speed that is small beside the difference of "
-        "the frequencies in the rotor's two planes they are too many",
-        UserWarning,
-        stacklevel=2,
-    )
-
-
 def _bound(made: States) -> float:
-    return float(_ROUNDING * sum(np.linalg.norm(X, 2) for X in made.A.values()))
+    sizes = (np.linalg.norm(X, 1) * np.linalg.norm(X, np.inf) for X in made.A.values())
+    return float(_ROUNDING * np.sum(np.sqrt(list(sizes))))
 
 
 def _constant(speed: float, values: np.ndarray, vectors: np.ndarray, made: States) -> Motions:
@@ -154,47 +181,13 @@ def one_of_each_pair(values: np.ndarray) -> np.ndarray:
     return chosen[np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))]
 
 
-def _periodic(
-    speed: float, values: np.ndarray, states: np.ndarray, orders: np.ndarray, made: States
-) -> Motions:
-    """Return motions from 2k exponents and their states (h, 2k, 2k), one of each pair."""
-    chosen = _paired(values, states, orders, speed)
-    vectors = made.shape @ states[:, :, chosen]
-    sizes = np.linalg.norm(vectors.reshape(-1, len(chosen)), axis=0)
+def _periodic(speed: float, found: Exponents, made: States) -> Motions:
+    """Return motions in ascending order, in the coordinates of the system."""
+    vectors = made.shape @ found.states
+    sizes = np.linalg.norm(vectors.reshape(-1, len(found.values)), axis=0)
     vectors = vectors / np.where(sizes > 0.0, sizes, 1.0)
-    order = np.lexsort((values[chosen].real, np.abs(values[chosen].imag)))
-    return Motions(speed, values[chosen][order], vectors[:, :, order], orders, _bound(made))
-
-
-def _paired(
-    values: np.ndarray, states: np.ndarray, orders: np.ndarray, speed: float
-) -> np.ndarray:
-    """Return which of 2k Floquet exponents stand for all, k.
-
-    The conjugate of a motion is found by its exponent; where several have the same, by its shape.
-    """
-    count, left, chosen, real = len(values) // 2, list(range(len(values))), [], []
-    left.sort(key=lambda i: (-np.nan_to_num(values[i].imag, nan=-np.inf)))
-    while left:
-        i = left.pop(0)
-        if np.isnan(values[i]):
-            real.append(i)
-            continue
-        scale = abs(values[i]) + abs(speed)
-        apart = np.array([abs(values[j] - values[i].conj()) for j in left] + [np.inf])
-        if abs(values[i].imag) <= 1e-9 * scale and apart.min() > 1e-6 * scale:
-            real.append(i)
-            continue
-        near = np.flatnonzero(apart[:-1] <= apart.min() + 1e-7 * scale)
-        mirrored = states[::-1, :, i].conj()
-        partner = max(near, key=lambda n: abs(np.vdot(mirrored, states[:, :, left[n]])), default=None)
-        if partner is None:
-            real.append(i)
-            continue
-        left.pop(partner)
-        chosen.append(i)
-    real.sort(key=lambda i: -np.nan_to_num(values[i].real, nan=-np.inf))
-    return np.array([*chosen, *real[: count - len(chosen)]], dtype=int)
+    order = np.lexsort((found.values.real, np.abs(found.values.imag)))
+    return Motions(speed, found.values[order], vectors[:, :, order], found.orders, _bound(made))
 
 
 def _beside(found: Motions, free: np.ndarray, basis: np.ndarray) -> Motions:

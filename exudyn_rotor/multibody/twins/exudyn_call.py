@@ -6,28 +6,21 @@ Argument names, defaults and returned keys are those of
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import exudyn
 import numpy as np
-from exudyn.FEM import FEMinterface
 from exudyn.misc.extensionRegistry import extends, install
 from numpy.typing import ArrayLike
 
-import exudyn_rotor.multibody.calls.copying  # noqa: F401 (its GetDictionary)
-from exudyn_rotor import checks
-from exudyn_rotor.multibody.rotor import inputs
-from exudyn_rotor.multibody.rotor.node_markers import carry_markers
-from exudyn_rotor.multibody.twins.later_stress import StressConversion, accept_stress_modes
-from exudyn_rotor.multibody.twins.swapped_body import (
-    Additions,
-    State,
-    add_swapped_body,
-    numbers,
-    solid_rotor,
-)
-from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
-from exudyn_rotor.solid.carried_prestress import Prestress
-from exudyn_rotor.theory.axis import SpinAxis
-from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
+import exudyn_rotor.multibody.wrapping  # noqa: F401 (methods of MainSystem that know rotors)
+
+if TYPE_CHECKING:
+    from exudyn.FEM import FEMinterface
+
+    from exudyn_rotor.solid.carried_prestress import Prestress
+    from exudyn_rotor.theory.axis import SpinAxis
+    from exudyn_rotor.theory.formulation import ConstantSpeed, PrescribedMotion
 
 
 @extends(exudyn.MainSystem)
@@ -139,6 +132,22 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
         >>> rotor["FFRFReducedOrderObjectDict"]["rotorBody"]
         RotorBody('rotor', Sect. 2.5, stiffening 'tilt', 6 modes, markers: top)
     """
+    # not before: importing the package adds this method, and most scripts do not call it
+    from exudyn.FEM import FEMinterface
+
+    from exudyn_rotor import checks
+    from exudyn_rotor.multibody.rotor import inputs
+    from exudyn_rotor.multibody.rotor.node_markers import carry_markers
+    from exudyn_rotor.multibody.twins.later_stress import StressConversion, accept_stress_modes
+    from exudyn_rotor.multibody.twins.swapped_body import (
+        Additions,
+        State,
+        add_swapped_body,
+        numbers,
+        solid_rotor,
+    )
+    from exudyn_rotor.reduction.mean_axis import frame_shares, warn_of_held_frame
+
     inputs.main_system(mbs)
     checks.instance(femInterface, "femInterface", FEMinterface)
     checks.flag(showMarkers, "showMarkers")
@@ -178,6 +187,8 @@ def MainSystemCreateFixedAxisFFRFReducedOrderObject(
 def _offsets(interfaces: list[str], offsets: ArrayLike | None) -> dict[str, np.ndarray]:
     if offsets is None:
         return {}
+    from exudyn_rotor import checks
+
     table = checks.array(offsets, "superElementRigidMarkersOffsets", "m")
     if table.shape != (len(interfaces), 3):
         raise ValueError(

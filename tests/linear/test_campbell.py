@@ -1,0 +1,132 @@
+"""Campbell diagrams against closed forms, and what they do where a value cannot be computed."""
+
+import time
+
+import numpy as np
+import pytest
+from models import centered_disc
+from point_rotors import ring_rotor
+
+from exudyn_rotor import RotorTrain, ShortJournalBearing, Support, campbell
+
+AXES = ["x", "y", "z"]
+
+
+def disc(modes=12):
+    return centered_disc().reduce(modes)
+
+
+def rigid(axis="z"):
+    """Return a rigid rotor of ten masses with its I_p and I_t, supported where they are."""
+    radius, half, mass = 0.15, 0.05, 20.0
+    rotor = ring_rotor(radius, half, mass).with_interface("left", range(5))
+    rotor = rotor.with_interface("right", range(5, 10))
+    return rotor, mass * radius**2, mass * (0.5 * radius**2 + half**2), half, mass
+
+
+@pytest.mark.parametrize("speed", [0.0, 40.0, 200.0, 700.0])
+@pytest.mark.parametrize(("kx", "ky"), [(1e6, 1e6), (1e6, 2.5e6)])
+def test_rigid_disc_on_springs_that_differ(speed, kx, ky):
+    """``(c_x − I_t ω²)(c_y − I_t ω²) = (I_p Ω ω)²`` for tilts, ``k_x/m`` and ``k_y/m`` else."""
+    rotor, Ip, It, half, mass = rigid()
+    supports = [Support(name, np.diag([kx, ky])) for name in ("left", "right")]
+    found = campbell(rotor, [speed], supports=supports, accuracy=None)
+    cx, cy = 2.0 * kx * half**2, 2.0 * ky * half**2
+    tilts = np.roots([It**2, -(It * (cx + cy) + (Ip * speed) ** 2), cx * cy])
+    wanted = np.sqrt(np.r_[2.0 * kx / mass, 2.0 * ky / mass, tilts.real])
+    frequencies = found.frequencies_inertial[0]
+    frequencies = np.sort(frequencies[frequencies > 1.0])[:4]
+    # the masses are on springs of 1e8 N/m
+    np.testing.assert_allclose(frequencies, np.sort(wanted), rtol=2e-2)
+    stiffer = np.abs(frequencies / np.sort(wanted) - 1.0)
+    assert stiffer.max() < 2e-2
+
+
+def test_uneven_bearings_over_fifty_speeds_take_no_time_and_agree_with_a_train():
+    supports = [Support(n, np.diag([2e7, 4e7]), np.diag([500.0, 300.0])) for n in ("left", "right")]
+    speeds = np.linspace(0.0, 628.0, 51)
+    rotor = disc()
+    begun = time.process_time()
+    found = campbell(rotor, speeds, supports=supports, accuracy=None)
+    assert time.process_time() - begun < 5.0
+    assert np.all(np.isfinite(found.growth))
+    train = RotorTrain({"r": rotor}, {"r": 1.0}, {"r": supports})
+    other = campbell(train, speeds, accuracy=None)
+    np.testing.assert_allclose(
+        np.sort(found.frequencies_inertial), np.sort(other.frequencies_inertial), rtol=1e-8,
+        atol=1e-6,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("speed", [2.0, 5.0, 10.0])
+def test_slow_rotors_on_uneven_bearings(speed):
+    supports = [Support(n, np.diag([2e7, 4e7]), 400.0) for n in ("left", "right")]
+    slow = campbell(disc(), [speed], supports=supports, accuracy=None)
+    rest = campbell(disc(), [0.0], supports=supports, accuracy=None)
+    few = slice(2, 8)
+    np.testing.assert_allclose(
+        slow.frequencies_inertial[0, few], rest.frequencies_inertial[0, few], rtol=2e-2
+    )
+
+
+def test_spin_stands_once_and_overdamped_motions_stand_in_the_list():
+    supports = [Support(n, np.diag([1e6, 2e6]), 1.5e5) for n in ("left", "right")]
+    found = campbell(disc(6), [31.4], supports=supports, accuracy=None)
+    assert found.growth.shape[1] == found.vectors.shape[1]
+    spins = (found.whirl[0] == "torsional") & (found.frequencies_inertial[0] == 0.0)
+    assert np.count_nonzero(spins) == 1
+    assert np.count_nonzero(found.whirl[0] == "overdamped") >= 2
+    assert np.all(found.frequencies_rotor >= 0.0)
+
+
+def test_speeds_without_values_are_nan_with_one_warning():
+    table = np.array([0.0, 300.0]), np.array([1e7, 2e7])
+    supports = [Support(n, table, 300.0) for n in ("left", "right")]
+    with pytest.warns(UserWarning, match="no values at 301") as caught:
+        found = campbell(disc(), [100.0, 299.0, 301.0], supports=supports, accuracy=None)
+    assert len(caught) == 1
+    assert np.all(np.isnan(found.growth[2])) and np.all(np.isfinite(found.growth[:2]))
+    assert "no values" in found.table()
+    assert not found.plot().get_legend() is None
+
+
+def test_films_at_rest_leave_the_other_speeds():
+    bearings = [
+        ShortJournalBearing(interface=n, load=(0.0, -120.0), radius=0.02, length=0.02,
+                            clearance=4e-5, viscosity=0.01)
+        for n in ("left", "right")
+    ]  # fmt: skip
+    with pytest.warns(UserWarning, match="no values at 0 "):
+        found = campbell(disc(), [0.0, 100.0, 300.0], supports=bearings, accuracy=None)
+    assert np.all(np.isnan(found.growth[0])) and np.all(np.isfinite(found.growth[1:]))
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_whirl_of_a_round_rotor(axis):
+    nodes = {"x": [0, 1, 0], "y": [0, 0, 1], "z": [1, 0, 0]}
+    assert axis in nodes
+    rotor, *_ = rigid()
+    supports = [Support(n, 1e6, 50.0) for n in ("left", "right")]
+    found = campbell(rotor, [300.0], supports=supports, accuracy=None, modes=6)
+    moving = found.frequencies_inertial[0] > 1.0
+    words = found.whirl[0][moving].tolist()
+    assert words.count("forward") == words.count("backward") == 2
+    assert np.all(found.nodal_diameters[0][moving] == 1)
+
+
+def test_lines_follow_their_modes_through_a_crossing():
+    supports = [Support(n, 2e7, 200.0) for n in ("left", "right")]
+    found = campbell(disc(), np.linspace(0.0, 2000.0, 41), supports=supports, accuracy=None)
+    tracked = found.tracked()
+    lateral = (tracked.nodal_diameters[20] == 1) & (tracked.frequencies_inertial[20] > 1.0)
+    steps = np.abs(np.diff(tracked.frequencies_inertial[:, lateral], axis=0))
+    assert steps.max() < 2.1 * 50.0 + 1e-2 * tracked.frequencies_inertial.max()
+    assert tracked.continued[:, lateral].mean() > 0.97
+
+
+def test_more_modes_change_the_estimated_error_to_what_it_is():
+    supports = [Support(n, 2e8, 200.0) for n in ("left", "right")]
+    few = campbell(disc(4), [200.0], supports=supports, accuracy=0.9, modes=4)
+    many = campbell(disc(40), [200.0], supports=supports, accuracy=None, modes=4)
+    errors = few.frequencies_inertial[0, 2:] / many.frequencies_inertial[0, 2:] - 1.0
+    np.testing.assert_allclose(few.basis_errors[0, 2:], errors, rtol=0.5)

@@ -1,0 +1,156 @@
+"""The linear model: axes, what is averaged, free motions, matrices and state space for others."""
+
+import numpy as np
+import pytest
+from models import centered_disc
+
+from exudyn_rotor import (
+    Foundation,
+    LinearModel,
+    RotorTrain,
+    SolidRotor,
+    Support,
+    campbell,
+    linear_model,
+    stability,
+)
+
+UNEVEN = np.diag([2e7, 4e7])
+
+
+def disc(modes=12):
+    return centered_disc().reduce(modes)
+
+
+def held(stiffness=2e7, damping=300.0):
+    return [Support(name, stiffness, damping) for name in ("left", "right")]
+
+
+def flat(across=3e4):
+    """Return three masses on a rod whose bending stiffness differs in two planes."""
+    bend = np.kron([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.diag([1e4, across, 0.0]))
+    axial = np.kron([[1, -1, 0], [-1, 2, -1], [0, -1, 1]], np.diag([0.0, 0.0, 1e8]))
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(9), bend + axial, nodes, "z")
+    return rotor.with_interface("left", [0]).with_interface("right", [2])
+
+
+@pytest.mark.parametrize(
+    ("made", "supports", "axes", "constant"),
+    [
+        (disc, held(), "inertial", True),
+        (disc, held(UNEVEN), "inertial", True),
+        (disc, [*held(), Support("left", 1e5, 10.0, frame="rotor")], "inertial", True),
+        (disc, [*held(), Support("left", UNEVEN, frame="rotor")], "rotor", True),
+        (flat, held(), "rotor", True),
+        (flat, held(UNEVEN), "rotor", False),
+    ],
+)
+def test_axes_are_those_in_which_equations_are_constant(made, supports, axes, constant):
+    model = linear_model(made(), supports=supports)
+    assert model.axes == axes
+    assert model.at(200.0).is_constant == constant
+    assert model.at(0.0).is_constant
+
+
+def test_point_mass_in_standing_axes_is_a_point_mass():
+    rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]
+    rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
+    M, D, K, _, axes = linear_model(rotor).matrices(300.0)
+    assert axes == "inertial"
+    np.testing.assert_allclose(D, 0.0, atol=1e-9)
+    np.testing.assert_allclose(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)[:5], 0.0,
+                               atol=1e-6)  # fmt: skip
+
+
+@pytest.mark.parametrize("supports", [held(), held(UNEVEN, np.diag([300.0, 900.0]))])
+def test_axes_do_not_change_motions_seen_from_outside(supports):
+    rotor = flat(1e4)
+    both = [
+        campbell(rotor, [150.0], supports=supports, axes=axes, accuracy=None, modes=6)
+        for axes in ("inertial", "rotor")
+    ]
+    for name in ("frequencies_inertial", "growth"):
+        one, other = (np.sort(getattr(each, name)[0]) for each in both)
+        np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-7)
+
+
+def test_meshs_own_unevenness_is_averaged_and_told():
+    model = linear_model(disc(), supports=held(UNEVEN))
+    assert 1e-5 < model.unevenness < 1e-2
+    assert linear_model(disc(), supports=held(UNEVEN), axes="rotor").unevenness == 0.0
+    result = campbell(disc(), [100.0], supports=held(UNEVEN), accuracy=None)
+    assert result.unevenness == model.unevenness
+    assert "unevenness of the mesh" in result.table()
+
+
+def test_rotor_and_train_of_one_are_the_same():
+    supports, speeds = held(UNEVEN), [0.0, 100.0, 400.0]
+    alone = stability(disc(), speeds, supports=supports, accuracy=None)
+    train = RotorTrain({"r": disc()}, {"r": 1.0}, {"r": supports})
+    np.testing.assert_allclose(
+        np.sort_complex(stability(train, speeds, accuracy=None).exponents),
+        np.sort_complex(alone.exponents),
+        rtol=1e-8, atol=1e-6,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("supports", "free"),
+    [
+        (held(), ("translation along axis", "spin")),
+        (held(np.diag([1e7, 1e7, 1e6])), ("spin",)),
+        # stiffness and damping of a film: only the axis and the spin are free
+        ([Support("left", [[2.5e6, 6.5e7], [-1.9e7, 2.5e6]], np.diag([6.2e5, 1.8e5])),
+          Support("right", [[2.5e6, 6.5e7], [-1.9e7, 2.5e6]], np.diag([6.2e5, 1.8e5]))],
+         ("translation along axis", "spin")),
+    ],
+)  # fmt: skip
+def test_free_motions_are_the_real_ones(supports, free):
+    model = linear_model(disc(), supports=supports)
+    assert model.free_motions == free
+    result = campbell(model, [100.0], accuracy=None)
+    resting = (result.frequencies_inertial == 0.0) & (result.growth == 0.0)
+    assert np.count_nonzero(resting) == len(free)
+
+
+def test_matrices_and_state_space_are_what_analyses_solve():
+    model = linear_model(disc(), supports=held(UNEVEN))
+    space = model.state_space(300.0)
+    assert space.B.shape == (2 * model.size, 4) and space.C.shape == (4, 2 * model.size)
+    values = np.linalg.eigvals(space.A)
+    wanted = campbell(model, [300.0], accuracy=None)
+    for growth, frequency in zip(wanted.growth[0], wanted.frequencies_inertial[0], strict=True):
+        if 10.0 < frequency < 1e4 and wanted.nodal_diameters[0, 0] <= 1:
+            assert np.abs(values - (growth + 1j * frequency)).min() < 1e-5 * frequency
+    static = -space.C @ np.linalg.lstsq(space.A, space.B)[0]
+    assert static[0, 0] > static[1, 1] > 0.0  # softer along n1
+    coordinates = model.matrices(300.0).coordinates
+    assert len(coordinates) == model.size and coordinates[0] == "translation 1"
+
+
+def test_model_shows_itself_in_a_few_lines():
+    block = Foundation(mass=np.eye(3) * 50.0, damping=np.zeros((3, 3)), stiffness=5e6 * np.eye(3),
+                       points={n: np.eye(3) for n in ("left", "right")})  # fmt: skip
+    model = linear_model(disc(), supports=held(), foundation=block)
+    assert isinstance(model, LinearModel)
+    text = repr(model)
+    assert len(text.splitlines()) == 5 and len(text) < 500
+    assert "on a foundation" in text
+
+
+def test_periodic_equations_have_no_single_matrices():
+    model = linear_model(flat(), supports=held(UNEVEN))
+    with pytest.raises(ValueError, match="repeat every revolution"):
+        model.matrices(100.0)
+
+
+def test_foundation_is_taken_by_every_analysis():
+    block = Foundation(mass=np.eye(3) * 50.0, damping=200.0 * np.eye(3), stiffness=5e6 * np.eye(3),
+                       points={n: np.eye(3) for n in ("left", "right")})  # fmt: skip
+    model = linear_model(disc(), supports=held(), foundation=block)
+    direct = campbell(disc(), [100.0], supports=held(), foundation=block, accuracy=None)
+    np.testing.assert_array_equal(
+        direct.frequencies_inertial, campbell(model, [100.0], accuracy=None).frequencies_inertial
+    )
