@@ -12,32 +12,21 @@ from typing import Any
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing, Linearised
-from exudyn_rotor.bearings.controlled_support import (
-    ControlledSupport,
-    FilmSupport,
-    PadSupport,
-)
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import COEFFICIENTS, Support, acts
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.linear_model import MODELS
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
-from exudyn_rotor.linear.models.rotor.rotor_on_foundation import RotorOnFoundation
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
-from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
-from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.scene.scene_model import SceneModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid.summary import directions
 from exudyn_rotor.solid_rotor import SolidRotor
 
 SUPPORTS = (Support, Bearing, MagneticBearing)
-DESCRIBED = (ReducedRotor, SolidRotor, RotorTrain, Foundation, *MODELS)
+DESCRIBED = (ReducedRotor, SolidRotor, RotorTrain, Foundation, LinearModel)
 _FEW = 4  # entries of an array that is written out
 _WIDTH = 66  # of the last column
-_KINDS = {ControlledSupport: "magnetic", FilmSupport: "film with voids", PadSupport: "tilting pads"}
 _ROUNDING = 1e-9  # of matrices of an axisymmetric rotor
 _UNITS = dict(zip(COEFFICIENTS, ("N/m", "N s/m", "N m/rad", "N m s/rad"), strict=True))
 
@@ -82,43 +71,43 @@ def _reduced(rotor: ReducedRotor) -> str:
     return "\n".join(lines)
 
 
-def _train(train: RotorTrain, unevenness: dict[str, float] | None = None) -> str:
+def _train(train: RotorTrain) -> str:
     """Return rotors with their ratios, supports and links."""
-    lines = []
-    for name, ratio in train.ratios.items():
-        share = 0.0 if unevenness is None else unevenness[name]
-        uneven = f", {share:.2g} of its matrices uneven" if share > _ROUNDING else ""
-        driven = ", driven" if name in train.driven else ""
-        rotor = train.rotors[name]
-        lines.append(
-            f"rotor {name}: {ratio:.6g} times the speed, {rotor.invariants.mass:.6g} kg, "
-            f"{rotor.size} coordinates{uneven}{driven}"
-        )
-    given = [
-        (f"{name}:{one.interface}", one) for name, each in train.supports.items() for one in each
+    return "\n".join([_ratios(train, train.driven), _acting(train)])
+
+
+def _ratios(given: RotorTrain | LinearModel, driven: Sequence[str]) -> str:
+    return "\n".join(
+        f"rotor {name}: {ratio:.6g} times the speed, {given.rotors[name].invariants.mass:.6g} kg, "
+        f"{given.rotors[name].size} coordinates{', driven' if name in driven else ''}"
+        for name, ratio in given.ratios.items()
+    )
+
+
+def _acting(given: RotorTrain | LinearModel) -> str:
+    """Return supports and links as lines of text."""
+    lines = [
+        (f"{name}:{one.interface}" if name else one.interface, one)
+        for name, each in given.supports.items()
+        for one in each
     ]
-    given += [(f"{link.first} – {link.second}", link.connection) for link in train.links]
-    return "\n".join([*lines, _table(_lines(given))])
+    lines += [(f"{link.first} – {link.second}", link.connection) for link in given.links]
+    return _table(_lines(lines))
 
 
 def _model(model: LinearModel) -> str:
     """Return supports, foundation, level of stiffening and free motions of a linear model."""
-    model = model.scene if isinstance(model, RememberingScene) else model
-    plain = model.plain if isinstance(model, ControlledRotor) else model
-    if isinstance(model, LinearTrain):
-        lines = [_train(model.train, model.unevenness)]
-    elif isinstance(model, LinearScene):
-        lines = [f"scene of {model.size} coordinates, about its {model.about} motion"]
-        lines.append(model.body.report())
-    else:
-        given = list(plain.supports)
-        if isinstance(model, ControlledRotor):
-            given = [*given[: -2 * len(model.own.supports)], *model.own.supports]
-        lines = [_table(_lines((one.interface, one) for one in given))]
-    lines += [repr(plain.foundation)] if isinstance(plain, RotorOnFoundation) else []
+    axes = f"{model.size} coordinates in {model.axes} axes"
+    uneven = f", {model.unevenness:.2g} of it averaged" if model.unevenness > _ROUNDING else ""
+    stiffening = f"centrifugal stiffening: {model.stiffening}"
+    if isinstance(model, SceneModel):
+        about = f"scene of {axes}{uneven}, about its {model.scene.about} motion"
+        return "\n".join([about, model.scene.body.report(), stiffening])
+    lines = [_ratios(model, model.driven)] if len(model.rotors) > 1 else []
+    lines += [axes + uneven, _acting(model)]
+    lines += [repr(model.foundation)] if model.foundation is not None else []
     free = ", ".join(model.free_motions) or "none"
-    lines += [f"centrifugal stiffening: {model.stiffening}"]
-    return "\n".join(lines + ([] if isinstance(model, LinearScene) else [f"free motions: {free}"]))
+    return "\n".join([*lines, stiffening, f"free motions: {free}"])
 
 
 Line = tuple[str, str, str, str]
@@ -146,10 +135,6 @@ def _lines(named: Iterable[tuple[str, Any]]) -> list[Line]:
                 for name in COEFFICIENTS
                 if acts(value := getattr(one, name))
             ]
-        elif isinstance(one, tuple(_KINDS)):
-            kind = _KINDS[type(one)]
-            seen = "" if one.sensor == one.interface else f", sensors at {one.sensor}"
-            lines.append((where, "inertial", kind, f"{one.size} coordinates of its own{seen}"))
         else:
             lines.append((where, "", _words(one), _values(one)))
     return lines

@@ -23,8 +23,8 @@ from exudyn_rotor import checks, plotting
 from exudyn_rotor.descriptions import DESCRIBED, SUPPORTS, described, described_supports
 from exudyn_rotor.export import csv_text
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.models.linear_model import MODELS
-from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
 from exudyn_rotor.storage import write_text
@@ -201,7 +201,7 @@ _HEADINGS = {
     (SolidRotor, ReducedRotor): "Rotor",
     RotorTrain: "Rotors",
     Foundation: "Foundation",
-    MODELS: "Linear model",
+    LinearModel: "Linear model",
 }
 
 

@@ -81,7 +81,7 @@ def test_change_by_the_full_level_without_supports(speed):
 
 @pytest.mark.parametrize("stiffness", [1e7, 1e8])
 def test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that(stiffness):
-    """An eccentric rotor at 300 rad/s against its full model.
+    """An eccentric rotor at 300 rad/s against one with 80 modes.
 
     The load, the last, is at rest in the rotor frame. It grows by 0.05 Ω there, which adds 5 % to
     the stiffness of supports by their damping.
@@ -96,9 +96,10 @@ def test_what_modes_miss_of_the_response_to_unbalance_is_the_error_of_that(stiff
         mode_choice._responses(one, request, plan).complete[0][:, -1]
         for one in (given, given.attached)
     )
+    many = solid.reduce(craig_bampton_modes(solid, 80, coupling="RBE3"))
     full, ours = (
         unbalance_response(r, [speed], supports=supports, accuracy=None).motion[..., :3].ravel()
-        for r in (solid, reduced)
+        for r in (many, reduced)
     )
     error = np.linalg.norm(ours - full) / np.linalg.norm(full)
     missing = np.linalg.norm(found - attached) / np.linalg.norm(attached)

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from apart import apart
 from models import disc_with_two_modes
-from test_uneven_films import BLOCK, HEAVY, SPEED, apart
+from test_uneven_films import BLOCK, HEAVY, SPEED
 from void_films import CLEARANCE, SKEW, oil, scene
 
 from exudyn_rotor import (

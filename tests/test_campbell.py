@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
-from models import STEEL, block_beam
-from point_rotors import SKEW_AXIS, random_arrays, random_rotor
+from point_rotors import SKEW_AXIS, random_arrays
 
-from exudyn_rotor import SolidRotor, Support, campbell, free_modes
-from exudyn_rotor.linear.modal import whirl
+from exudyn_rotor import SolidRotor, Support, campbell
 
 HERTZ = 2.0 * np.pi
 
@@ -75,34 +73,6 @@ def test_reduced_with_all_modes_equals_full(rotor, stiffening):
     np.testing.assert_allclose(reduced.growth, full.growth, rtol=0, atol=1e-12)
 
 
-def test_few_modes_come_close_to_the_full_model_of_a_mesh():
-    """Left-out modes from ω̂ on, coupled by 2ΩG with |G| ≤ 1, act as 4Ω²ω²/(ω̂² − ω²) on ω²."""
-    beam = SolidRotor.from_ngsolve(block_beam(0.06), STEEL, "z", order=1)
-    speed, flexible = 2000.0, slice(6, 12)
-    full = campbell(beam, speed).frequencies_rotor[0, flexible]
-    deviations = []
-    for count in (6, 24):
-        few = campbell(beam.reduce(count), speed).frequencies_rotor[0, flexible]
-        left_out = free_modes(beam, count + 1).frequencies[-1]
-        deviations.append(np.abs(few / full - 1.0))
-        assert np.all(deviations[-1] < 2.0 * speed**2 / (left_out**2 - full**2))
-    assert np.all(deviations[1] < deviations[0])
-
-
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
-@pytest.mark.parametrize("stiffening", ["none", "tilt"])
-def test_no_mode_is_ever_lost(stiffening):
-    """Rigid motions and unstable modes, whose eigenvalues are real, are counted as well."""
-    rotor = random_rotor(22)
-    speeds = np.linspace(0.0, 30.0, 13)
-    for model, size in ((rotor, 18), (rotor.reduce(4), 10)):
-        result = campbell(model, speeds, stiffening=stiffening)
-        assert result.frequencies_rotor.shape == result.growth.shape == (13, size)
-        assert np.all(np.isfinite(result.growth))
-        moving = np.where(result.frequencies_inertial > 0.0, result.frequencies_inertial, np.nan)
-        assert np.nanmin(np.diff(moving) / moving[:, 1:]) >= -1e-9
-
-
 def test_softening_below_zero_shows_as_growth():
     """At twice its frequency a mass that can only move radially runs away with √(4−1) ω₀."""
     stiffness = np.diag((HERTZ * np.array([10.0, 1e4, 1e4])) ** 2)
@@ -128,16 +98,6 @@ def test_progress_bar(rotor, capsys):
     assert capsys.readouterr().err == ""
     campbell(rotor, [0.0, 1.0], progress=True)
     assert "Campbell" in capsys.readouterr().err
-
-
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
-def test_what_does_not_depend_on_the_speed_is_computed_once(monkeypatch):
-    calls = []
-    waves = whirl.wave_amplitudes
-    monkeypatch.setattr(whirl, "wave_amplitudes", lambda *given: calls.append(1) or waves(*given))
-    rotor = random_rotor(22).reduce(4)
-    campbell(rotor, np.linspace(0.0, 30.0, 7), stiffening="none", accuracy=None)
-    assert len(calls) == 1
 
 
 @pytest.mark.parametrize("across", [(4e5, 4e5), (4e5, 3e5)])

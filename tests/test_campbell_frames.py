@@ -1,21 +1,13 @@
 """Campbell diagrams in both frames: closed forms, whirl, tracking, periodic and full models."""
 
-from concurrent.futures import ProcessPoolExecutor
-
 import numpy as np
 import pytest
 from models import centered_disc, two_masses
 from point_rotors import random_rotor, ring_rotor
 
-from exudyn_rotor import SolidRotor, campbell, linear_model, plotting, stability
+from exudyn_rotor import SolidRotor, campbell
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear.modal.campbell import Campbell
-from exudyn_rotor.linear.modal.campbell_diagram import draw_campbell
-from exudyn_rotor.linear.modal.tracking import track
-from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.protocol import PointMotions
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.periodic_system import fold
 from exudyn_rotor.results import load_result
 
 HERTZ = 2.0 * np.pi
@@ -219,57 +211,6 @@ def test_few_modes_are_the_same_at_all_speeds(count):
     assert steps.max() <= 2.0 * (speeds[1] - speeds[0])
 
 
-def test_a_line_breaks_where_it_would_join_different_modes():
-    """Two masses that share no motion: only one of them at each of two speeds."""
-    first, second = np.eye(2)[:, :1], np.eye(2)[:, 1:]
-    at = [
-        FloquetModes(np.array([100j]), x[None] + 0j, np.array([0]), 1e-6) for x in (first, second)
-    ]
-    found = track([at[0], at[0], at[1]], np.array([0.0, 1.0, 2.0]), np.eye(2).__matmul__)
-    assert found.continued.ravel().tolist() == [True, True, False]
-    ax = plotting.axes_or_new(None)
-    values, codes = np.full((3, 1), 5.0), np.zeros((3, 1), dtype=int)
-    draw_campbell(ax, np.arange(3.0), values, codes, found.continued, np.zeros((3, 1), dtype=bool))
-    assert sorted(len(line.get_xdata()) for line in ax.lines) == [1, 2]
-
-
-@pytest.mark.parametrize("wave", range(-4, 5))
-@pytest.mark.parametrize("component", ["radial", "tangential", "axial"])
-def test_a_wave_is_recognised(wave, component):
-    """Random points in a ring; smooth radial dependence r^|l| of each Cartesian component."""
-    rng = np.random.default_rng(5)
-    angle, radius, z = rng.uniform([[0.0], [0.8], [0.0]], [[HERTZ], [1.0], [2.0]], (3, 400))
-    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])
-    shape, zero = np.exp(-1j * wave * angle), np.zeros(400)
-    along = {
-        "radial": (np.cos(angle), np.sin(angle), zero),
-        "tangential": (-np.sin(angle), np.cos(angle), zero),
-        "axial": (zero, zero, zero + 1.0),
-    }[component]
-    field = (shape * np.array(along)).T.reshape(-1, 1)
-    content = WhirlContent.from_points(PointMotions(points, np.eye(1200), None, True))
-    energy = content.energies(field[None])[0, :, 0]
-    assert content.orders[np.argmax(energy)] == wave
-    # r^±5 is fitted by r^|l| (1, r²) over 0.8 … 1
-    assert energy.max() > 0.95 * np.sum(np.abs(field) ** 2)
-
-
-@pytest.mark.parametrize("count", [1, 5], ids=["by amplitudes", "by forms"])
-def test_mean_wave_of_a_shifted_ring(count):
-    """The circle (1, −i) is the wave 1, (1, i) the wave −1; both are orthogonal: means of |a|²."""
-    angle, zero = np.linspace(0.0, HERTZ, 40, endpoint=False), np.zeros(40)
-    points = np.column_stack([np.cos(angle), np.sin(angle), zero])
-    content = WhirlContent.from_points(
-        PointMotions(points, np.tile(np.eye(3), (40, 1)), None, True)
-    )
-    share = np.linspace(0.1, 1.0, count)
-    motions = np.array([1.0 + share, 1j * (share - 1.0), 0.0 * share])
-    expected = [(1.0 - share**2) / (1.0 + share**2)] * 2
-    found = content.mean_waves(np.array([motions, -2j * motions]))
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
-    assert np.all(content.mean_waves(0.0 * motions[None]) == 0.0)
-
-
 # ------------------------------------------------------------------ periodic systems
 
 
@@ -286,57 +227,6 @@ def test_anisotropic_support_of_a_point_mass():
     assert np.sum(result.whirl == "mixed") == 10
     tracked = result.tracked()
     np.testing.assert_allclose(np.ptp(tracked.frequencies_inertial, axis=0), 0.0, atol=1e-6)
-
-
-def test_a_nearly_isotropic_support_takes_hills_way_to_the_same_result():
-    rotor = rings(SHAFT).reduce(6)
-    both = []
-    for ratio in (1.0, 1.0 + 1e-9):
-        supports = [Support("all", np.diag([1e6, 1e6 * ratio, 1e6]), tilt_stiffness=1e5)]
-        both.append(campbell(rotor, [50.0, 200.0], supports=supports, frame="rotor"))
-    constant, periodic = both
-    assert constant.free_motions == periodic.free_motions == ("spin",)
-    for name in ("frequencies_rotor", "frequencies_inertial"):
-        np.testing.assert_allclose(
-            getattr(periodic, name), getattr(constant, name), rtol=1e-7, atol=1e-3
-        )
-
-
-@pytest.mark.parametrize("split", [1e-10, 1e-9, 1e-8])
-def test_nearly_circular_motions_are_one_forward_and_one_backward(split):
-    """Seen from a rotor both planes hold ν − Ω and ν + Ω: two motions, which have one of each."""
-    nu, speeds = 100.0, np.linspace(7.0, 93.0, 8)
-    for axes in (np.eye(2), np.array([[0.6, -0.8], [0.8, 0.6]])):
-        stiffness = np.eye(3) * 9e4
-        stiffness[:2, :2] = nu**2 * axes @ np.diag([1.0, 1.0 + split]) @ axes.T
-        found = campbell(point_mass(), speeds, supports=[Support("at", stiffness)], frame="rotor")
-        for speed, seen in zip(speeds, found.frequencies_rotor, strict=True):
-            expected = np.sort([nu - speed, nu + speed, 300.0])
-            np.testing.assert_allclose(seen, expected, rtol=nu * split)
-
-
-@pytest.mark.parametrize("ratio", [1.0, 1.3], ids=["constant", "periodic"])
-def test_campbell_and_stability_have_the_same_exponents(ratio):
-    """Each to its tolerance, 1e-10 of Ω or of |λ|; real pairs are known by their less damped half.
-
-    Rounding of the eigenvalues is below 1e-12 of the largest |λ| of either.
-    """
-    rotor = rings(SHAFT).reduce(4)
-    supports = [
-        Support("all", np.diag([1e6, ratio * 1e6, 5e5]), 300.0, np.diag([2e3, 3e3, 1e3]), 0.1),
-        Support("all", damping=80.0, frame="rotor"),
-    ]
-    model = linear_model(rotor, supports=supports)
-    speeds = [40.0, 150.0]
-    diagram = campbell(model, speeds, tolerance=1e-10)
-    margins = stability(model, speeds, tolerance=1e-10)
-    for row, speed in enumerate(speeds):
-        values = diagram.growth[row] + 1j * diagram.frequencies_rotor[row]
-        limit = 1e-10 * max(speed, np.abs(values).max())
-        for value in values:
-            apart = fold(margins.exponents[row] - value, margins.base[row])
-            assert np.abs(apart).min() <= limit
-        assert margins.growth[row] == pytest.approx(diagram.growth[row].max(), abs=limit)
 
 
 # ------------------------------------------------------------------ results and input
@@ -358,16 +248,6 @@ def test_result_is_stored_and_shown(tmp_path):
         assert len(ax.lines) >= 3
     with pytest.raises(ValueError, match="frame: 'rotating' is unknown"):
         result.plot(frame="rotating")
-
-
-def test_processes_give_the_same_result():
-    rotor = rings(SHAFT).reduce(2)
-    given = {"supports": [Support("all", 1e6)]}
-    here = campbell(rotor, [0.0, 10.0, 20.0], **given)
-    with ProcessPoolExecutor(1) as executor:
-        there = campbell(rotor, [0.0, 10.0, 20.0], executor=executor, **given)
-    np.testing.assert_array_equal(here.frequencies_rotor, there.frequencies_rotor)
-    np.testing.assert_array_equal(here.order, there.order)
 
 
 def test_wrong_input_is_refused():

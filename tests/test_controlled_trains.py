@@ -26,7 +26,7 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from exudyn_rotor.linear.periodic.exponents import exponents
+from linear_values import exponents
 
 GIVEN = {"accuracy": None}
 MAGNETIC = rigid(), [*pair(angle=0.3)]  # a controller with filter and delay

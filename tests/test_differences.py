@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_rotor.linear.models.scene.differences import CURVATURE, differences, slopes
+from exudyn_rotor.linear.model.scene.differences import CURVATURE, differences, slopes
 
 STEP = 1e-4
 

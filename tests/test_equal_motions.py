@@ -12,8 +12,6 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from exudyn_rotor.linear.modal.listing import ranks
-from exudyn_rotor.linear.periodic.eigenvalues import quadratic_modes
 
 STIFFNESS, DAMPING, MASS = 2e4, 10.0, 2.0
 NATURAL = np.sqrt(STIFFNESS / MASS)
@@ -90,18 +88,6 @@ def test_lines_pass_a_speed_at_which_the_rotor_frame_sees_no_motion(turn):
     assert wave_pairs(result) == [["axial"], *lateral, ["axial"]]
 
 
-def test_displacements_that_turn_stand_for_two():
-    """``ẍ + 2Ω(e × x)˙ = 0`` in two planes: at λ = 0 circles; their conjugates are the others."""
-    turning = np.kron(np.eye(2), [[0.0, -200.0], [200.0, 0.0]])
-    free = np.zeros((1, 4, 4))
-    values, vectors = (found[0] for found in quadratic_modes(np.eye(4), turning[None], free)[:2])
-    np.testing.assert_allclose(values, [0.0, 0.0, 200j, 200j], atol=1e-9)
-    still = vectors[:, :2]
-    np.testing.assert_allclose(np.abs(still[::2]), np.abs(still[1::2]), atol=1e-12)
-    lengths = np.linalg.svd(np.hstack([still, still.conj()]), compute_uv=False)
-    np.testing.assert_allclose(lengths, 1.0, rtol=1e-12)
-
-
 @pytest.mark.parametrize("turn", TURNS)
 def test_a_free_rotor_stands_still_in_space_at_any_speed(turn):
     result = campbell(rod(turn), [0.0, 100.0, 1000.0])
@@ -166,10 +152,3 @@ def test_lines_in_steps_larger_than_the_distance_of_forward_and_backward_whirl(s
         np.testing.assert_allclose(np.sort(row), np.sort(roots), rtol=1e-3 + (speed / 1e4) ** 2)
     np.testing.assert_array_equal(np.sign(found), np.sign(found[[0]]).repeat(6, axis=0))
     assert np.all(result.continued[:, lines])
-
-
-def test_values_that_only_rounding_tells_apart_have_one_rank():
-    values = np.array([3.0, 1.0, 1.0 + 1e-12, 2.0, 2.001])
-    np.testing.assert_array_equal(ranks(values), [3, 0, 0, 1, 2])
-    np.testing.assert_array_equal(ranks(values, [0, 0, 0, 1e-3, 1e-3]), [2, 0, 0, 1, 1])
-    np.testing.assert_array_equal(ranks(values, [0, 0, 0, 1e-3, 0.0]), [3, 0, 0, 1, 2])

@@ -6,11 +6,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from dask.distributed import Client, LocalCluster
-from point_rotors import ring_rotor
 
-from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear.response.steady_response import unbalance_response
-from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.sweep import sweep
 
 
@@ -74,13 +70,3 @@ def test_progress_counts_all_values(executor, capsys):
     for chosen in (None, executor):
         sweep(inverse, np.linspace(4.0, 5.0, 130), executor=chosen, progress=True, label="counted")
         assert "counted: 100%" in capsys.readouterr().err
-
-
-def test_a_response_is_the_same_to_the_last_bit(executor):
-    rotor = ring_rotor(0.1, 0.2, 10.0).with_interface("mid", range(10)).reduce(4)
-    supports = [Support("mid", np.diag([4e5, 6e5]), 100.0, 5e4, 10.0)]
-    arguments = (rotor, np.linspace(0.0, 500.0, 21), [Unbalance("mid", 1e-4), Unbalance(3, 1e-5)])
-    here = unbalance_response(*arguments, supports=supports)
-    there = unbalance_response(*arguments, supports=supports, executor=executor)
-    assert np.array_equal(here.orders, there.orders)
-    assert np.array_equal(here.motion, there.motion)

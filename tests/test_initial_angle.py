@@ -17,7 +17,7 @@ from exudyn_rotor import (
     recommended_settings,
     stability,
 )
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 DISPLACEMENT = exu.OutputVariableType.Displacement

@@ -6,10 +6,11 @@ An uneven mesh, its axis skew in space, under five times its weight.
 import exudyn as exu
 import numpy as np
 import pytest
+from apart import apart
 from models import disc_with_two_modes
 from point_rotors import ring_rotor
 from test_magnetic_bearing import DELAYED, LINEAR
-from test_uneven_films import BLOCK, HEAVY, SPEED, apart
+from test_uneven_films import BLOCK, HEAVY, SPEED
 from void_films import SKEW
 
 from exudyn_rotor import (
@@ -142,8 +143,9 @@ def test_static_moments_on_a_block_leave_the_exponents(kind):
 
 def _tilt_functions(model):
     """Return who evaluates every support's moment."""
-    mbs, name = model.body.mbs, "springForceTorqueUserFunction"
-    items = [mbs.GetObject(number) for one in model.body.supports for number in one.objects]
+    body = model.scene.body
+    mbs, name = body.mbs, "springForceTorqueUserFunction"
+    items = [mbs.GetObject(number) for one in body.supports for number in one.objects]
     return [str(item[name]) for item in items if name in item]
 
 

@@ -28,7 +28,7 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.bearings.given import linear_supports
 from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.reduction.mode_kind import ModeKind
 
 K_I, K_S = 80.0, 3e5

@@ -32,7 +32,7 @@ from exudyn_rotor import (
     steady_state,
     unbalance_response,
 )
-from exudyn_rotor.linear.periodic.exponents import exponents
+from linear_values import exponents
 
 pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")
 ANGLE = 0.37  # rad: of the mirror, from n1 to n2

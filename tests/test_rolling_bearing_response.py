@@ -310,3 +310,17 @@ def test_refused_input():
     turned = "speeds: -10 is negative; .* turn the spin axis round"  # it has no allow_negative
     with pytest.raises(ValueError, match=turned):
         rolling_bearing_response(point(), [-10.0, 10.0], supports=balls, gravity=GRAVITY)
+
+
+def test_a_speed_without_a_motion_is_nan_and_costs_no_other():
+    """A table that ends: beyond it there are no coefficients."""
+    table = Support("seat", ([0.0, 250.0], [np.diag([1e5, 1e5, 1e6])] * 2))
+    given = {"supports": [table, bearing()], "gravity": GRAVITY}
+    with pytest.warns(UserWarning, match="no values at 300 rad/s, which are NaN"):
+        found = rolling_bearing_response(point(), [100.0, 200.0, 300.0], **given)
+    assert np.isnan(found.end_to_end()).any(axis=1).tolist() == [False, False, True]
+    assert np.isnan(found.element_loads[:, 0]).tolist() == [False, False, True]
+    assert found.verdicts[2] == "not determined"
+    assert "nan" in found.table()
+    with pytest.raises(ValueError, match="rolling bearings at 300 rad/s"):
+        rolling_bearing_response(point(), [300.0], **given)

@@ -19,7 +19,7 @@ from exudyn_rotor import (
     rolling_bearing_response,
     stability,
 )
-from exudyn_rotor.linear.periodic.impulses import ChangingEquations
+from exudyn_rotor.linear.solve.impulses import ChangingEquations
 from exudyn_rotor.linear.response import contact_stability
 
 MASS, WEIGHT = 20.0, 20.0 * 9.81

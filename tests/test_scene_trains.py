@@ -27,7 +27,8 @@ from exudyn_rotor import (
     linear_model,
     stability,
 )
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.body import RotorBody as LinearBody
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.response.run_start import _in_body
 from exudyn_rotor.multibody.evaluation import evaluating
 from exudyn_rotor.reduction.driven import _others
@@ -79,17 +80,20 @@ def forces(mbs, bodies, model, rates, motion):
     y, y_t, y_tt = motion
     size = mbs.systemData.ODE2Size()
     q, q_t, q_tt, looked_at = np.zeros(size), np.zeros(size), np.zeros(size), []
-    for (name, part), body, rate in zip(model.parts.items(), bodies, rates, strict=True):
-        alone = list(motion[:, model._slices[name]])
-        if part.turning is not None:  # x = exp(−Gα) y, α = wθ
-            G, w = part.turning.generator, part.drift * SPEED
+    assembly = model.assembly(SPEED)
+    parts = zip(assembly.bodies, assembly.slices, strict=True)
+    parts = [each for each in parts if isinstance(each[0], LinearBody)]
+    for (part, place), body, rate in zip(parts, bodies, rates, strict=True):
+        alone = list(motion[:, place])
+        if part.mean:  # x = exp(−Gα) y, α = wθ
+            G, w = part.alone.turning.generator, part.drift * SPEED
             turn = la.expm(-G * part.drift * ANGLE)
             alone = [
                 turn @ alone[0],
                 turn @ (alone[1] - w * G @ alone[0]),
                 turn @ (alone[2] - 2.0 * w * G @ alone[1] + w**2 * G @ G @ alone[0]),
             ]
-        if name in model.train.driven:
+        if part.name in model.driven:
             alone = [_others(body.selection.source) @ one for one in alone]
         (x, x_t, x_tt), spins = zip(*(_in_body(body, one) for one in alone), strict=True)
         given = SceneCoordinates.of(body)
@@ -110,11 +114,7 @@ def forces(mbs, bodies, model, rates, motion):
     if len(places):
         at = slice(model.size - len(places), model.size)
         p, p_t, p_tt = (one[at].reshape(-1, 2) for one in (y, y_t, y_tt))
-        c, s = np.cos(ANGLE), np.sin(ANGLE)
-        R, turned = np.array([[c, s], [-s, c]]), SPEED * np.array([[0.0, 1.0], [-1.0, 0.0]])
-        q[places] = (p @ R).ravel()
-        q_t[places] = ((p_t + p @ turned) @ R).ravel()
-        q_tt[places] = ((p_tt + 2.0 * p_t @ turned + p @ turned @ turned) @ R).ravel()
+        q[places], q_t[places], q_tt[places] = p.ravel(), p_t.ravel(), p_tt.ravel()
         looked_at.append(places)
     with evaluating(mbs) as solver:
         data = mbs.systemData
@@ -138,7 +138,7 @@ def test_accelerations_of_a_scene_are_those_of_its_train(ratio, axis, rotation):
     """Uneven and cross-coupled supports, a magnetic bearing with delay, a link with damping."""
     mbs, bodies, _ = scene(ratio, axis, rotation)
     model = linear_model(mbs, body=bodies)
-    assert model.train.ratios == pytest.approx({"LP": 1.0, "HP": ratio})
+    assert model.ratios == pytest.approx({"LP": 1.0, "HP": ratio})
     assert accelerations_left(mbs, bodies, model, (1.0, ratio)) < 1e-9
 
 
@@ -181,9 +181,9 @@ def test_spins_of_a_scene_that_a_drive_holds_are_held_in_its_train(connection, t
     """Torsion is that of the spins that are free in the scene, through gears and couplings."""
     mbs, bodies = geared(connection, driven=driven, turned=turned)
     model = linear_model(mbs, body=bodies)
-    assert model.train.driven == tuple(driven)
+    assert model.driven == tuple(driven)
     assert model.size == 12 - len(driven)
-    assert accelerations_left(mbs, bodies, model, [*model.train.ratios.values()]) < 1e-8
+    assert accelerations_left(mbs, bodies, model, [*model.ratios.values()]) < 1e-8
 
 
 @pytest.mark.filterwarnings("ignore:rotor '.'. no node of Exudyn turns")

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from exudyn.itemInterface import LoadForceVector, LoadTorqueVector
 from point_rotors import ring_rotor
+from scipy.optimize import brentq
 
 from exudyn_rotor import (
+    SqueezeFilmDamper,
     StartState,
     Support,
     add_rotor,
@@ -16,10 +18,10 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
-from exudyn_rotor.linear.models.scene import steady_motion as search
-from exudyn_rotor.linear.models.scene.probe import linearised
-from exudyn_rotor.linear.models.scene.scene_checks import check_period
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.model.scene import steady_motion as search
+from exudyn_rotor.linear.model.scene.probe import linearised
+from exudyn_rotor.linear.model.scene.scene_checks import check_period
+from exudyn_rotor.linear.equations import UnconvergedError
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
 TOTAL = MASS + 2 * ADDED  # kg
@@ -368,3 +370,65 @@ def test_own_spin_that_nothing_holds_does_not_twist_in_bearings_off_the_axis(hea
 def test_own_spin_that_nothing_holds_against_a_torque_is_refused(heavy):
     with pytest.raises(UnconvergedError, match="nothing holds"):
         steady_state(with_own_spin(heavy, torque=10.0))
+
+
+# ------------------------------------------------------------------ where the search begins
+
+
+def in_dampers(speed):
+    """Return a balanced rotor with 5 g at its rim, in squeeze film dampers on centring springs."""
+    rotor = ring_rotor(RADIUS, LENGTH, MASS)
+    for name, z in ENDS.items():
+        rotor = rotor.add_point_mass([RADIUS, 0.0, z], 0.0025)
+        rotor = rotor.with_interface(name, np.flatnonzero(np.isclose(rotor.nodes[:, 2], z)))
+    mbs = exu.SystemContainer().AddSystem()
+    body = add_rotor(mbs, rotor.reduce(0), spin=speed, translation="none", markers="position")
+    film = {"radius": 0.06, "length": 0.02, "clearance": 1.5e-4, "viscosity": 0.002}
+    dampers = [SqueezeFilmDamper(interface=name, centring_stiffness=1e6, **film) for name in ENDS]
+    add_supports(body, [*dampers, Support("right", np.diag([0.0, 0.0, 1e6]), 10.0)])
+    mbs.Assemble()
+    return body
+
+
+def test_a_second_branch_is_found_from_a_motion_on_it():
+    """Circles in short films of 180°: L. San Andrés, Modern Lubrication Theory, Notes 13."""
+    c, mass, stiffness, unbalance = 1.5e-4, MASS + 0.005, 2e6, 5e-4
+    critical = np.sqrt(stiffness / mass)
+    speed = 2.5 * critical
+    size = 2.0 * 0.002 * 0.06 * 0.02**3 / c**2 * speed
+
+    def left(e):
+        radial = (stiffness - mass * speed**2) * e * c + 2.0 * size * e**2 / (1.0 - e**2) ** 2
+        return np.hypot(radial, 0.5 * np.pi * size * e / (1.0 - e**2) ** 1.5) - unbalance * speed**2
+
+    grid = np.linspace(0.01, 0.95, 2000)
+    ends = np.flatnonzero(np.diff(np.sign([left(e) for e in grid])))
+    small, _, large = (brentq(left, grid[i], grid[i + 1]) for i in ends)
+    near = steady_state(in_dampers(1.5 * critical))
+    for ratio in (2.0, 2.3):
+        near = steady_state(in_dampers(ratio * critical), start=near)
+    body = in_dampers(speed)
+    for start, expected in ((None, small), (near, large), (near.state(), large)):
+        motion = steady_state(body, start=start).interface_motion("left", 0.0)
+        assert np.hypot(*motion[:2]) / c == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_start_of_another_scene_is_refused(reduced):
+    mbs, body = build(reduced, 50.0)
+    mbs.Assemble()
+    other, another = build(reduced, 50.0, "free")
+    other.Assemble()
+    start = steady_state(another)
+    with pytest.raises(ValueError, match="start: has .* it is of another scene"):
+        steady_state(body, start=start)
+    with pytest.raises(TypeError, match="start: needs"):
+        steady_state(body, start=1.0)
+
+
+def test_a_frozen_spin_has_the_steady_motion_of_a_free_one(reduced):
+    found = []
+    for coupling in ("full", "frozen"):
+        mbs, body = build(reduced, "free", initial_speed=50.0, spin_coupling=coupling)
+        mbs.Assemble()
+        found.append(steady_state(body).interface_motion("left", 0.3))
+    np.testing.assert_allclose(*found, rtol=1e-9, atol=1e-15)

@@ -26,8 +26,9 @@ from exudyn_rotor import (
     unbalance_response,
 )
 from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.periodic.exponents import exponents
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem, fold
+from linear_values import exponents
+from linear_values import fold
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.theory.nodal import skew
 from exudyn_rotor.theory.rotating_axes import turning_harmonics

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from apart import apart
 from models import disc_with_two_modes
 from void_films import CLEARANCE, SKEW, TO_X, bearings, oil, rotor, scene
 from void_films import SPEED as RIGID_SPEED
 
 from exudyn_rotor import Foundation, JournalBearing, Mount, Support, bearing_loads, linear_model
 from exudyn_rotor.bearings.held_law import TangentFilm
-from exudyn_rotor.linear.models.scene import remembering_scene
-from exudyn_rotor.linear.periodic.exponents import exponents
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene import films
 
 SPEED, HEAVY = 300.0, 5.0 * np.array([0.0, -9.81, 0.0])
 CORNERS = [[x, -0.3, z] for x in (-0.2, 0.2) for z in (-0.1, 0.6)]
@@ -50,21 +50,6 @@ def given(heavy=0.0, more=(), rotation=None, free=False, speed=SPEED, foundation
     return linear_model(mbs, body=body, about="equilibrium"), in_list
 
 
-def apart(first, second, speed):
-    """Return the largest distance of exponents, but for multiples of iΩ, relative to the speed.
-
-    Of motions that do not decay much within a turn: elsewhere the states tell the film's Z(s) to
-    1e-3 only, and rounding decides 1e-7 of it.
-    """
-    found, expected = exponents(first.at(speed)), exponents(second.at(speed))
-    slow = (expected.real > -0.3 * abs(speed)) & (np.abs(expected.real) > 1e-6 * abs(speed))
-    turns = 1j * speed * np.arange(-2, 3)[:, None]
-    both = np.r_[found, found.conj()]
-    distances = [np.abs(both - s + turns).min() for s in expected[slow]]
-    assert len(distances) > 1
-    return max(distances) / abs(speed)
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_scenes_are_linearised_as_lists(name):
     """Journals move by ε = 4e-4 to 3e-3 of the clearance; their mean place is off by ε²."""
@@ -72,9 +57,9 @@ def test_scenes_are_linearised_as_lists(name):
     in_scene, in_list = given(**film, **placed)
     speed = placed.get("speed", SPEED)
     assert apart(in_scene, in_list, speed) < 1e-6
-    bearing, journal = in_scene.scene.remembering[0].support, in_scene.scene.journals(speed)[0]
+    bearing, journal = in_scene.scene.remembering[0].support, in_scene.scene.points(speed)[1][0]
     assert np.ptp([place for place, _ in journal], axis=0).max() > 4e-4 * CLEARANCE
-    rests = remembering_scene.at_rest(bearing, journal, speed).position
+    rests = films.at_rest(bearing, journal, speed).position
     np.testing.assert_allclose(rests, bearing.equilibrium(speed), rtol=0.0, atol=1e-8 * CLEARANCE)
 
 

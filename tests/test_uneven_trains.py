@@ -18,7 +18,7 @@ from exudyn_rotor import (
     stability,
 )
 from exudyn_rotor.linear.models.trains.turning import Turning
-from exudyn_rotor.linear.periodic.exponents import exponents
+from linear_values import exponents
 
 CROSS = np.array([[0.0, 1e6, 0.0], [-1e6, 0.0, 0.0], [0.0, 0.0, 0.0]])
 RADIUS, HALF, SPRING = 0.1, 0.2, 2e5  # [m], [m], [N/m] at each end

@@ -12,14 +12,10 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.models.scene.remembering_scene import RememberingScene
-from exudyn_rotor.linear.periodic.harmonics import hill_matrices
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.model.body import RotorBody as LinearBody
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind
@@ -37,47 +33,64 @@ class Candidate:
 
     Attributes
     ----------
-    source : LinearRotor, ControlledRotor, LinearScene or RememberingScene
-    invariants : Invariants
-        In the basis of the rotor's modal coordinates.
-    modal : ndarray of int
-        Where the modal coordinates stand among those of `source`.
+    source : LinearModel
+        In axes of the rotor.
     flexible : ndarray of int
-        Which modal coordinates are flexible modes.
-    frequencies : ndarray
-        Of the flexible modes [rad/s].
+        Which coordinates of the rotor are flexible modes.
     grounded : bool
     supported : bool
         Whether it is known what holds the rotor.
     axial : bool
         Whether something acts along the axis; True where nothing is known.
     interfaces : tuple of str
-    translations : ndarray, shape (3, k)
-        Load of a unit acceleration along (n1, n2, e).
     attached : Candidate or None
         The same with attachment modes; None where that is not known, as in a scene.
     held : tuple of int
-        Coordinates of `source` without a steady motion: the spin, where nothing holds it.
+        Coordinates of `source` without a steady motion: the spin, where nothing holds it. Loads
+        that grow slowly would turn an eccentric rotor by far more than they move its interfaces.
     """
 
-    source: LinearRotor | ControlledRotor | LinearScene | RememberingScene
-    invariants: Invariants
-    modal: np.ndarray
+    source: LinearModel
     flexible: np.ndarray
-    frequencies: np.ndarray
     grounded: bool
     supported: bool
     axial: bool
     interfaces: tuple[str, ...]
-    translations: np.ndarray
     attached: Candidate | None = None
     held: tuple[int, ...] = ()
     _systems: dict[float, PeriodicSystem] = field(default_factory=dict, repr=False)
 
     @property
+    def _rotor(self) -> LinearBody:
+        return self.source.bodies[0]
+
+    @property
+    def invariants(self) -> Invariants:
+        """Invariants in the basis of the coordinates of the rotor, about a point of the axis."""
+        return self._rotor.alone.invariants
+
+    @property
+    def modal(self) -> np.ndarray:
+        """Where the coordinates of the rotor stand among those of `source`."""
+        return np.arange(self._rotor.size)
+
+    @cached_property
+    def frequencies(self) -> np.ndarray:
+        """Frequencies of the flexible modes [rad/s]."""
+        return np.sqrt(np.maximum(np.diag(self.invariants.K)[self.flexible], 0.0))
+
+    @cached_property
+    def translations(self) -> np.ndarray:
+        """Load of a unit acceleration along (n1, n2, e), (3, k)."""
+        return self._wide(axes_of(self._rotor.alone.rotor.axis).T @ self.invariants.S)
+
+    def _wide(self, rows: np.ndarray) -> np.ndarray:
+        return np.pad(rows, [(0, 0), (0, self.source.size - rows.shape[1])])
+
+    @property
     def places(self) -> np.ndarray:
         """Where the flexible modes stand among the coordinates of `source`."""
-        return self.modal[self.flexible]
+        return self.flexible
 
     def conservative(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Return Hermitian M, G, K of ``(−ν²M + νG + K) X = 0`` and the number of harmonics.
@@ -86,8 +99,8 @@ class Candidate:
         """
         alone = self.resonating
         system = self.system(speed) if alone is self.source else alone.at(speed)
-        orders = system.harmonics(_ORDER)
-        M, D, K = hill_matrices(system, orders)
+        orders = _harmonics(system)
+        M, D, K = _hill(system, orders)
         G = 1j * D
         return M, 0.5 * (G + G.conj().T), 0.5 * (K + K.conj().T), len(orders)
 
@@ -100,7 +113,7 @@ class Candidate:
     def hill(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Return M, D, K in the rotor frame, harmonics of the speed included."""
         system, orders = self.system(speed), self.orders(speed)
-        return *hill_matrices(system, orders), len(orders)
+        return *_hill(system, orders), len(orders)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a speed [rad/s]; a scene is probed at many angles once."""
@@ -110,12 +123,12 @@ class Candidate:
 
     def orders(self, speed: float) -> np.ndarray:
         """Return the harmonics of the speed that :meth:`hill` holds."""
-        return self.system(speed).harmonics(_ORDER)
+        return _harmonics(self.system(speed))
 
     def motion(self) -> np.ndarray:
         """Return the displacements that count, across the axis and along it if need be, (p, k)."""
         rows = 3 if self.axial else 2
-        motions = (self.source.interface_motion(name)[:rows] for name in self.interfaces)
+        motions = (self._wide(self._rotor.motion(name)[:rows]) for name in self.interfaces)
         return np.vstack(list(motions))
 
     def inertia_loads(self) -> np.ndarray:
@@ -125,7 +138,7 @@ class Candidate:
         across = np.eye(3) - np.outer(inv.direction, inv.direction)
         second = np.trace(inv.J)
         couple = np.linalg.norm(across @ inv.J @ inv.direction) / second
-        unbalance = np.asarray(self.source.unit_unbalance, dtype=float)
+        unbalance = self.source.unbalance()[0].real
         # flexible modes of a balanced rotor stretch under the rotation; that is no unbalance
         static = np.linalg.norm(self.translations @ unbalance) / np.sqrt(inv.mass**3 * second)
         if max(couple, static) < _BALANCED:
@@ -169,7 +182,7 @@ def _of_rotor(
     axial: bool | None,
 ) -> Candidate:
     known = supports is not None
-    source = linear_model(reduced, body=body, supports=supports if known else ())
+    source = linear_model(reduced, body=body, supports=supports if known else (), axes="rotor")
     attached = None
     if reduced.with_attachments is not None:
         with warnings.catch_warnings():  # said above
@@ -177,40 +190,26 @@ def _of_rotor(
                 "ignore", message="the (centre of mass|nearest principal axis) is"
             )
             attached = _of_rotor(reduced.with_attachments, body, supports, interfaces, axial)
-    plain = source.plain if isinstance(source, ControlledRotor) else source
-    if axial is None:  # what has coordinates of its own acts across the axis
-        axial = not known or any(_acts_along(support) for support in plain.supports)
-    first = len(reduced.rigid_kinds)
+    if axial is None:
+        axial = not known or any(map(_acts_along, source.supports[""]))
+    free = source.free_spins.shape[1] and ModeKind.SPIN in reduced.rigid_kinds
     return Candidate(
         source=source,
-        invariants=source.invariants,
-        modal=np.arange(reduced.size),
-        flexible=np.arange(first, reduced.size),
-        frequencies=reduced.frequencies[first:],
+        flexible=np.arange(len(reduced.rigid_kinds), reduced.size),
         grounded=reduced.grounded,
         supported=known or reduced.grounded,
         axial=bool(axial),
         interfaces=_named(interfaces, tuple(reduced.interfaces)),
-        translations=_wide(axes_of(reduced.axis).T @ source.invariants.S, source),
         attached=attached,
-        held=_free_spin(reduced, plain),
+        held=(reduced.rigid_kinds.index(ModeKind.SPIN),) if free else (),
     )
 
 
-def _free_spin(reduced: ReducedRotor, source: LinearRotor) -> tuple[int, ...]:
-    """Return where the spin stands if nothing holds it: it has no steady motion.
-
-    Loads that grow slowly would turn an eccentric rotor, and its interfaces with it, by far more
-    than they move them.
-    """
-    if source.free_spin is None or ModeKind.SPIN not in reduced.rigid_kinds:
-        return ()
-    return (reduced.rigid_kinds.index(ModeKind.SPIN),)
-
-
-def _acts_along(support: Support) -> bool:
-    """True if a support acts along the axis, at rest or spinning."""
-    matrices = [matrix for speed in (0.0, 1.0, 1e3) for matrix in support.matrices(speed)]
+def _acts_along(given: object) -> bool:
+    """True if a support acts along the axis, at rest or spinning; a bearing acts across it."""
+    if not isinstance(given, Support):
+        return False
+    matrices = [matrix for speed in (0.0, 1.0, 1e3) for matrix in given.matrices(speed)]
     return any(np.any(matrix[2]) or np.any(matrix[:, 2]) for matrix in matrices)
 
 
@@ -225,43 +224,21 @@ def _of_scene(
     reduced_body(body, how="a scene needs what add_rotor returned")
     if supports is not None:
         raise ValueError("supports: are for a rotor; a scene has its own connectors")
-    scene = LinearScene.of(mbs, body, about="given")
-    source = RememberingScene.of(scene)
-    inv, kinds = body.motion.invariants, body.selection.kinds
-    first = body.motion.formulation.translation_count
-    # constraints may mix coordinates; those of the rotor's modes stay as they are
-    modal = np.argmax(np.abs(scene.N[first : first + inv.size]), axis=1)
-    elastic = [kind is ModeKind.ELASTIC for kind in kinds]
-    flexible = np.flatnonzero((np.diag(inv.K) > 0.0) & elastic)
+    source = linear_model(mbs, body=body, about="given", axes="rotor")
+    rotor = body.selection.source
+    columns = np.abs(source.bodies[0].alone.Q).argmax(axis=0)
+    elastic = [rotor.kinds[column] is ModeKind.ELASTIC for column in columns]
     return Candidate(
         source=source,
-        invariants=inv,
-        modal=modal,
-        flexible=flexible,
-        frequencies=np.sqrt(np.maximum(np.diag(inv.K)[flexible], 0.0)),
-        grounded=body.selection.source.grounded,
+        flexible=np.flatnonzero((np.diag(source.bodies[0].alone.invariants.K) > 0.0) & elastic),
+        grounded=rotor.grounded,
         supported=True,
-        axial=_scene_acts_along(scene, body, speed) if axial is None else bool(axial),
+        axial=_scene_acts_along(source, body, speed) if axial is None else bool(axial),
         interfaces=_named(interfaces, tuple(body.markers)),
-        translations=_wide(_scene_translations(scene, body), source),
     )
 
 
-def _wide(columns: np.ndarray, source: LinearModel) -> np.ndarray:
-    """Return columns with zeros for coordinates that come last, of supports."""
-    return np.pad(columns, [(0, 0), (0, source.size - columns.shape[1])])
-
-
-def _scene_translations(scene: LinearScene, body: RotorBody) -> np.ndarray:
-    inv = body.motion.invariants
-    count = body.motion.formulation.translation_count
-    loads = np.zeros((3, len(scene.free)))
-    loads[:count, :count] = inv.mass * np.eye(3)[:count, :count]
-    loads[:, count : count + inv.size] = axes_of(body.axis).T @ inv.S
-    return loads @ scene.N
-
-
-def _scene_acts_along(scene: LinearScene, body: RotorBody, speed: float) -> bool:
+def _scene_acts_along(source: LinearModel, body: RotorBody, speed: float) -> bool:
     """True if gravity or a connector acts along the axis; films do not."""
     axis = body.frame.orientation @ body.motion.invariants.direction
     gravity = body.motion.gravity
@@ -269,18 +246,37 @@ def _scene_acts_along(scene: LinearScene, body: RotorBody, speed: float) -> bool
         gravity = np.asarray(body.mbs.GetLoadParameter(body.gravity_load, "loadVector"))
     if abs(axis @ gravity) > 1e-9 * np.linalg.norm(gravity):
         return True
-    count = body.motion.formulation.translation_count
-    kinds = body.selection.kinds
-    if count == 3:
-        row = 2
-    elif ModeKind.AXIAL in kinds:
-        row = count + kinds.index(ModeKind.AXIAL)
-    else:
+    Q, kinds = source.bodies[0].alone.Q, body.selection.source.rigid_kinds
+    if ModeKind.AXIAL not in kinds:
         return True
-    row = int(np.argmax(np.abs(scene.N[row])))
-    system = scene.at(speed)
+    along = Q[kinds.index(ModeKind.AXIAL)]
+    system = source.at(speed)
     scale = max(np.abs(term).max() for term in system.K.values())
-    return any(np.abs(term[row]).max() > 1e-9 * scale for term in system.K.values())
+    return any(np.abs(along @ term[: len(along)]).max() > 1e-9 * scale for term in system.K.values())
+
+
+def _harmonics(system: PeriodicSystem) -> np.ndarray:
+    """Return the harmonics of the speed that coefficients couple."""
+    step = system.step or _ORDER + 1
+    return step * np.arange(-(_ORDER // step), _ORDER // step + 1)
+
+
+def _hill(
+    system: PeriodicSystem, orders: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, D, K of ``(s²M + sD + K) X`` for harmonics X, in Hill's matrices (h k, h k)."""
+    h, k = len(orders), system.size
+    none = np.zeros((h, k, h, k), dtype=complex)
+    M, D, K = none.copy(), none.copy(), none.copy()
+    for a, m in enumerate(orders):
+        for b, n in enumerate(orders):
+            for blocks, terms in ((D, system.D), (K, system.K)):
+                if m - n in terms:
+                    blocks[a, :, b] = terms[m - n]
+        M[a, :, a] = system.M
+    M, D, K = (X.reshape(h * k, h * k) for X in (M, D, K))
+    rate = np.repeat(1j * orders * system.speed, k)
+    return M, D + 2.0 * M * rate, K + D * rate + M * rate**2
 
 
 def _named(interfaces: Sequence[str] | None, known: tuple[str, ...]) -> tuple[str, ...]:

@@ -59,26 +59,24 @@ class Responses:
 
     Attributes
     ----------
-    points : list of (Z, rows, loads)
-        Dynamic stiffness, displacements that count and loads, at one speed and frequency.
+    points : list of (Z, rows, loads, places)
+        Dynamic stiffness, displacements that count, loads, and where each flexible mode stands in
+        Z, (modes, harmonics), at one speed and frequency.
     frequencies : ndarray
         Flexible frequencies [rad/s].
-    places : ndarray of int, shape (modes, harmonics)
-        Where a flexible mode stands in Z.
     """
 
-    points: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    points: list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]
     frequencies: np.ndarray
-    places: np.ndarray
 
     @cached_property
     def complete(self) -> list[np.ndarray]:
         """Responses with all modes."""
-        return [rows @ np.linalg.solve(Z, loads) for Z, rows, loads in self.points]
+        return [rows @ np.linalg.solve(Z, loads) for Z, rows, loads, _ in self.points]
 
     @cached_property
     def _compliances(self) -> list[np.ndarray]:
-        return [np.linalg.inv(Z) for Z, _, _ in self.points]
+        return [np.linalg.inv(Z) for Z, *_ in self.points]
 
     def error_without(self, dropped: np.ndarray) -> float:
         """Return the largest relative change of the response to any load without some modes.
@@ -87,11 +85,11 @@ class Responses:
         """
         if len(dropped) == 0:
             return 0.0
-        places = self.places[dropped].ravel()
         worst = 0.0
-        for (_, rows, loads), H, response in zip(
+        for (_, rows, loads, all_places), H, response in zip(
             self.points, self._compliances, self.complete, strict=True
         ):
+            places = all_places[dropped].ravel()
             inner = np.linalg.solve(H[np.ix_(places, places)], H[places] @ loads)
             change = rows @ (H[:, places] @ inner)
             worst = max(worst, largest_share(change, np.linalg.norm(response, axis=0)))
@@ -171,7 +169,7 @@ def _plan(given: Candidate, request: Request) -> _Plan:
 
 
 def _responses(given: Candidate, request: Request, plan: _Plan) -> Responses:
-    points, places = [], np.zeros((given.frequencies.size, 0), dtype=int)
+    points = []
     for speed, frequencies in plan:
         M, D, K, count = given.hill(speed)
         size = len(M) // count
@@ -180,8 +178,8 @@ def _responses(given: Candidate, request: Request, plan: _Plan) -> Responses:
         for nu in frequencies:
             s = 1j * nu + GROWTH * max(nu, speed, 0.1 * request.highest)
             Z = s**2 * M + s * D + K
-            points.append((Z[np.ix_(used, used)], rows[:, used], loads[used]))
-    return Responses(points, given.frequencies, places)
+            points.append((Z[np.ix_(used, used)], rows[:, used], loads[used], places))
+    return Responses(points, given.frequencies)
 
 
 def _coordinates(given: Candidate, size: int, count: int) -> tuple[np.ndarray, np.ndarray]:

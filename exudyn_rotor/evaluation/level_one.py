@@ -17,10 +17,9 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.bearings.given import check_interfaces, checked_supports
-from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes, first_forward
+from exudyn_rotor.evaluation.coupled_modes import ROUNDING, Coupled, Modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import CHOICES
@@ -28,7 +27,6 @@ from exudyn_rotor.units import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
 
 MACHINES = {"centrifugal": 3.0, "axial": 1.5}  # factor of the anticipated cross-coupling
 _MULTIPLES = np.linspace(0.0, 10.0, 11)  # of the anticipated cross-coupling
@@ -97,6 +95,7 @@ class StabilityLevelOne(Result):
     applied : ndarray, shape (q,)
         Sum of the cross-coupled stiffnesses Q, from 0 to 10 Q_A [N/m].
     log_decrement : ndarray, shape (q,)
+        Infinite where the mode decays without oscillating.
     frequencies : ndarray, shape (q,)
         Of the mode in the inertial frame [rad/s].
     anticipated : float
@@ -129,7 +128,7 @@ class StabilityLevelOne(Result):
     """
 
     applied: np.ndarray = numbers("applied", least=0.0)
-    log_decrement: np.ndarray = numbers("applied")
+    log_decrement: np.ndarray = numbers("applied", finite=False)
     frequencies: np.ndarray = numbers("applied")
     anticipated: float
     speed: float
@@ -150,6 +149,8 @@ class StabilityLevelOne(Result):
     @property
     def anticipated_decrement(self) -> float:
         """Log decrement under the anticipated cross-coupling."""
+        if self.anticipated in self.applied:  # beside it may be infinite ones
+            return float(self.log_decrement[self.applied == self.anticipated][0])
         return float(np.interp(self.anticipated, self.applied, self.log_decrement))
 
     @property
@@ -251,7 +252,7 @@ def stability_level_one(
     cross_coupling: ArrayLike,
     at: Sequence[str] | str,
     *,
-    supports: Sequence[Support] | Support,
+    supports: Sequence[Given] | Given,
     machine: str = "centrifugal",
     critical_speed_ratio: float | None = None,
     gas_density: float | None = None,
@@ -260,8 +261,9 @@ def stability_level_one(
     """Compute the log decrement of the first forward mode from no cross-coupling to 10 Q_A.
 
     The mode is the lowest lateral one that the cross-coupling makes less stable, followed from
-    none to all of it: work on an orbit has the sign of its sense. Cross-coupling Q gives the forces
-    ``(−Q u_n2, Q u_n1)``, which feed forward whirl.
+    none to all of it: work on an orbit has the sign of its sense. Modes of a damping ratio above
+    0.7, which have no resonance, are passed over where there is another. Cross-coupling Q gives the
+    forces ``(−Q u_n2, Q u_n1)``, which feed forward whirl.
 
     Parameters
     ----------
@@ -274,7 +276,7 @@ def stability_level_one(
     at : str or sequence of str
         Interfaces: midspan between bearings, the centre of mass of an overhung stage, or all stages
         of a double overhung rotor.
-    supports : sequence of Support
+    supports : sequence of Support or bearings
         Bearings, without seals.
     machine : {'centrifugal', 'axial'}
         By which criteria level II is required.
@@ -318,7 +320,7 @@ def stability_level_one(
             "cross_coupling: needs a positive number [N/m] for each interface of at, got "
             + checks.shown(cross_coupling)
         )
-    supports = checked_supports(supports)
+    supports = given_supports(supports)
     check_interfaces(supports, target.interfaces)
     checks.choice(machine, "machine", MACHINES)
     checks.choice(stiffening, "stiffening", CHOICES)
@@ -327,21 +329,23 @@ def stability_level_one(
     if gas_density is not None:
         checks.number(gas_density, "gas_density", "kg/m³", above=0.0)
     coupled = Coupled(target, speed, dict(zip(names, amounts, strict=True)), supports, stiffening)
-    followed = [coupled.modes(0.0)]
+    first, last = coupled.first_forward()
+    followed = [first]
     for multiple in _MULTIPLES[1:]:
-        followed.append(followed[-1].continued(coupled.modes(multiple)))
-    mode = first_forward(followed, speed)
-    _warn_of_others(followed, mode, float(amounts.sum()))
-    decrement = np.array([modes.decrements[mode] for modes in followed])
-    frequencies = np.array([modes.frequencies[mode] for modes in followed])
+        last = coupled.followed(*last, multiple)
+        followed.append(last)
     total, threshold = float(amounts.sum()), None
+    _warn_of_others(followed, total)
+    decrement = np.array([modes.decrements[mode] for modes, mode in followed])
+    frequencies = np.array([modes.named.inertial[mode] for modes, mode in followed])
     if np.any(decrement <= 0.0):
         end = int(np.argmax(decrement <= 0.0))
         threshold = 0.0
         if end > 0:
 
             def between(multiple: float) -> float:
-                return followed[end - 1].continued(coupled.modes(multiple)).decrements[mode]
+                modes, mode = coupled.followed(*followed[end - 1], multiple)
+                return -float(modes.named.motions.values.real[mode])
 
             threshold = total * brentq(between, *_MULTIPLES[end - 1 : end + 1])
     return StabilityLevelOne(
@@ -350,19 +354,19 @@ def stability_level_one(
     )  # fmt: skip
 
 
-def _warn_of_others(followed: list[Modes], mode: int, total: float) -> None:
+def _warn_of_others(followed: list[tuple[Modes, int]], total: float) -> None:
     """Warn of lateral modes that are unstable where the one followed is stable."""
-    lateral = followed[0].lateral
-    for multiple, modes in zip(_MULTIPLES, followed, strict=True):
+    for modes, mode in followed:
         if modes.decrements[mode] <= 0.0:
             return
-        lowest = int(np.argmin(np.where(lateral, modes.decrements, np.inf)))
-        if modes.decrements[lowest] < -ROUNDING:
-            hertz = modes.frequencies[lowest] / (2.0 * np.pi)
+        decrements = np.where(modes.lateral, np.nan_to_num(modes.decrements), np.inf)
+        lowest = int(np.argmin(decrements))
+        if decrements[lowest] < -ROUNDING:
+            hertz = modes.named.inertial[lowest] / (2.0 * np.pi)
             warnings.warn(
-                f"another mode, at {hertz:.4g} Hz, is unstable from Q = {multiple * total:.4g} N/m "
-                "at the latest, where the first forward mode is stable; stability finds the limit "
-                "of all modes",
+                f"another mode, at {hertz:.4g} Hz, is unstable from Q = "
+                f"{modes.multiple * total:.4g} N/m at the latest, where the first forward mode is "
+                "stable; stability finds the limit of all modes",
                 UserWarning,
                 stacklevel=user_level(),
             )

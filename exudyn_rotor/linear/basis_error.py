@@ -15,7 +15,7 @@ import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.modal.whirl_new import Content, Named
+from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.over import motions_over
@@ -63,6 +63,8 @@ def shifts_over(
         return None
     chosen = [known[i] for i in points(len(known))]
     content, lifted = Content.of(richer), lifting(model, richer)
+    if lifted.shape[0] == lifted.shape[1]:
+        return np.zeros(shape, dtype=complex)
     found = motions_over(richer, speeds[chosen], held=held)
     shifts = np.full((len(chosen), shape[1]), np.nan, dtype=complex)
     for row, (place, motions) in enumerate(zip(chosen, found, strict=True)):

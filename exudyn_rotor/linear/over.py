@@ -11,7 +11,7 @@ from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
 from exudyn_rotor.threads import one_thread
 
 _AT_ONCE = 2_000_000  # entries of matrices that are made at once
@@ -88,7 +88,49 @@ def motions_over(
             few = [None if system is None else system.projected(basis) for system in few]
         solved = motions_of(few, method, tolerance)
         found += solved if basis is None else [_in_all(each, basis, neutral) for each in solved]
+    _warn_of_lost([each for each in found if each is not None])
     return found
+
+
+@one_thread()
+def margins_over(
+    model: LinearModel,
+    speeds: Sequence[float],
+    *,
+    method: str = "auto",
+    tolerance: float = 1e-6,
+) -> np.ndarray:
+    """Return by how much the least stable motion grows beyond its bound at speeds [1/s], (s,).
+
+    Free spins are held; neutral motions do not count; NaN where the model has no equations.
+    """
+    speeds = np.asarray(speeds, dtype=float)
+    basis, count = model.moving_basis, max(1, _AT_ONCE // (2 * model.size) ** 2)
+    margins = np.full(len(speeds), np.nan)
+    systems = [
+        system if basis is None or system is None else system.projected(basis)
+        for system in systems_at(model, speeds)
+    ]
+    known = [i for i, system in enumerate(systems) if system is not None]
+    for first in range(0, len(known), count):
+        few = known[first : first + count]
+        margins[few] = margins_of([systems[i] for i in few], method, tolerance)
+    return margins
+
+
+def _warn_of_lost(motions: Sequence[Motions]) -> None:
+    """Warn of motions of periodic equations that were not found."""
+    speeds = [each.speed for each in motions if np.any(np.isnan(each.values))]
+    if not speeds:
+        return
+    shown = ", ".join(f"{speed:.4g}" for speed in speeds[:5]) + (" …" if len(speeds) > 5 else "")
+    warnings.warn(
+        f"the harmonics of an uneven rotor on uneven supports do not converge for all motions at "
+        f"{shown} rad/s, which are NaN there: at a speed that is small beside the difference of "
+        "the frequencies in the rotor's two planes they are too many",
+        UserWarning,
+        stacklevel=user_level(),
+    )
 
 
 def _in_all(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,19 +10,17 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.linear_model import (
-    Target,
-    linear_model,
-    warn_of_structural_damping,
-)
-from exudyn_rotor.linear.models.protocol import LinearModel, Mesh
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_structural_damping
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.linear.response.harmonic_loads import unbalance_load
 from exudyn_rotor.linear.response.unbalance import Unbalance
+from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.pictures.motion_shapes import MotionShapes
 from exudyn_rotor.sweep import ascending_from_zero
 
-_MODES = 6  # that the subspace of a full rotor begins with
 _ANGLES = 90  # of a revolution, at which the size of a response is looked up: 0.1 % of an ellipse
 
 
@@ -33,8 +31,8 @@ def mode_shapes(
     supports: Sequence[Support] = (),
     modes: int = 6,
     stiffening: str = "auto",
-    tolerance: float = 1e-8,
-    residual: float = 1e-5,
+    axes: str = "auto",
+    tolerance: float = 1e-6,
 ) -> MotionShapes:
     """Return the shapes of the lowest modes at one spin speed, by frequency seen from outside.
 
@@ -44,7 +42,7 @@ def mode_shapes(
         See :func:`linear_model`; a ReducedRotor must have kept its shapes.
     speed : float
         Spin speed [rad/s].
-    supports, stiffening, tolerance, residual
+    supports, stiffening, axes, tolerance
         See :func:`campbell`.
     modes : int, optional
         How many; fewer where there are fewer.
@@ -71,26 +69,25 @@ def mode_shapes(
     speed = checks.number(speed, "speed", "rad/s")
     count = checks.count(modes, "modes", least=1)
     tolerance = options.accuracy(tolerance, "tolerance")
-    residual = options.accuracy(residual, "residual")
-    model, mesh = _with_mesh(target, supports, stiffening)
+    model = _with_mesh(target, supports, stiffening, axes)
     warn_of_structural_damping(model, "mode_shapes finds modes")
-    wanted = min(count, model.size)
-    space = model.space(wanted, abs(speed), residual=residual)
-    motions = space.modes(speed, tolerance)
-    vectors, seen, codes, _ = WhirlContent.of(model).named(motions, speed)
-    chosen = np.argsort(seen, kind="stable")[:wanted]
-    shapes = vectors[:, :, chosen]
-    motion = np.array(
-        [_unit(np.array([mesh.columns @ x for x in shapes[:, :, i]])) for i in range(len(chosen))]
-    )
+    [motions] = motions_over(model, [speed], tolerance=tolerance)
+    named = Content.of(model).named(motions)
+    chosen = np.argsort(np.where(np.isnan(motions.values), np.inf, named.inertial), kind="stable")
+    chosen = chosen[: min(count, np.count_nonzero(~np.isnan(motions.values)))]
+    values, vectors = named.motions.values[chosen], named.motions.vectors[:, :, chosen]
+    vectors = np.where(values.imag < 0.0, vectors[::-1].conj(), vectors)
+    seen = _of_nodes(model, {int(m): x for m, x in zip(motions.orders, vectors, strict=True)}, speed)
+    orders = np.array(sorted(seen))
+    motion = np.array([seen[m] for m in orders])
     return MotionShapes(
-        **_surface(mesh),
+        **_surface(model),
         speeds=np.full(len(chosen), speed),
-        labels=tuple(f"mode {i + 1}, {WHIRLS[codes[j]]}" for i, j in enumerate(chosen)),
-        rates=np.abs(motions.values.imag[chosen]),
-        frequencies=seen[chosen],
-        orders=motions.orders,
-        motion=motion,
+        labels=tuple(f"mode {i + 1}, {WHIRLS[named.codes[j]]}" for i, j in enumerate(chosen)),
+        rates=np.abs(values.imag),
+        frequencies=named.inertial[chosen],
+        orders=orders,
+        motion=np.array([_unit(motion[:, :, i]) for i in range(len(chosen))]),
     )
 
 
@@ -102,8 +99,8 @@ def response_shapes(
     own: bool = True,
     supports: Sequence[Support] = (),
     stiffening: str = "auto",
-    tolerance: float = 1e-9,
-    residual: float = 1e-9,
+    axes: str = "auto",
+    tolerance: float = 1e-6,
 ) -> MotionShapes:
     """Return the shapes of the steady motion under unbalance at some spin speeds.
 
@@ -115,7 +112,7 @@ def response_shapes(
         See :func:`linear_model`; a ReducedRotor must have kept its shapes.
     speeds : array_like, shape (s,)
         Ascending spin speeds above zero [rad/s].
-    unbalances, own, supports, stiffening, tolerance, residual
+    unbalances, own, supports, stiffening, axes, tolerance
         See :func:`unbalance_response`.
 
     Raises
@@ -146,20 +143,19 @@ def response_shapes(
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     checks.flag(own, "own")
     tolerance = options.accuracy(tolerance, "tolerance")
-    residual = options.accuracy(residual, "residual")
-    model, mesh = _with_mesh(target, supports, stiffening)
-    load = unbalance_load(model, unbalances, own)
-    space = model.space(_MODES, values[-1], loads=[load], residual=residual)
-    motions = [
-        space.steady_motion(speed, {0: speed**2 * load + 0j}, 0.0, tolerance) for speed in values
-    ]
-    orders = np.array(sorted({n for motion in motions for n in motion}))
-    zero = np.zeros(model.size, dtype=complex)
-    motion = np.array(
-        [[mesh.columns @ found.get(n, zero) for n in orders] for found in motions], dtype=complex
-    )
+    model = _with_mesh(target, supports, stiffening, axes).for_responses
+    load, held = unbalance_load(model, unbalances, own), model.held_basis
+    systems = [model.at(float(speed)) for speed in values]
+    loads = [{n: speed**2 * F for n, F in load.items()} for speed in values]
+    found = forced_motions(systems, loads, [0.0] * len(values), held=held, tolerance=tolerance)
+    seen = [_of_nodes(model, motion, 1.0) for motion in found]
+    if any(np.any(np.isnan(x)) for each in seen for x in each.values()):
+        raise UnconvergedError("response_shapes: there is no steady motion at one of the speeds")
+    orders = np.array(sorted({n for motion in seen for n in motion}))
+    zero = np.zeros_like(next(iter(seen[0].values())))
+    motion = np.array([[each.get(n, zero) for n in orders] for each in seen], dtype=complex)
     return MotionShapes(
-        **_surface(mesh),
+        **_surface(model),
         speeds=values,
         labels=tuple(f"unbalance, largest {_largest(orders, part):.3g} m" for part in motion),
         rates=np.zeros(len(values)),
@@ -187,21 +183,42 @@ def _unit(motion: np.ndarray) -> np.ndarray:
 
 
 def _with_mesh(
-    target: Target, supports: Sequence[Support], stiffening: str
-) -> tuple[LinearModel, Mesh]:
-    model = linear_model(target, supports=supports, stiffening=stiffening)
-    if model.mesh is None:
+    target: Target, supports: Sequence[Support], stiffening: str, axes: str
+) -> LinearModel:
+    model = linear_model(target, supports=supports, stiffening=stiffening, axes=axes)
+    if len(model.rotors) > 1 or model.bodies[0].alone.rotor.shapes is None:
         raise ValueError(
             "target: its linear model has no mesh nodes to show; take a rotor on supports, reduced "
             "with keep_shapes=True, and not a scene"
         )
-    return model, model.mesh
+    return model
 
 
-def _surface(mesh: Mesh) -> dict[str, np.ndarray]:
+def _of_nodes(
+    model: LinearModel, motion: Mapping[int, np.ndarray], speed: float
+) -> dict[int, np.ndarray]:
+    """Return harmonics (3n, …) of the nodes in the frame of the rotor, mesh axes.
+
+    From those (k, …) of the coordinates of a model.
+    """
+    body = model.assembly(speed).bodies[0]
+    alone, found = body.alone, {}
+    columns = alone.rotor.shapes.matrix @ alone.Q
+    if body.is_apart:
+        columns = body.spin.about_axis(columns)
+    parts = alone.turning.parts(columns) if body.mean else {0: columns}  # U exp(−Nθ)
+    for m, x in motion.items():
+        for wave, U in parts.items():
+            if wave == 0 or np.any(U):
+                found[m - wave] = found.get(m - wave, 0.0) + U @ x[: body.size]
+    return found
+
+
+def _surface(model: LinearModel) -> dict[str, np.ndarray]:
+    rotor = model.bodies[0].alone.rotor
     return {
-        "positions": mesh.nodes,
-        "triangles": mesh.triangles,
-        "direction": mesh.axis.direction,
-        "point": mesh.axis.point,
+        "positions": rotor.shapes.nodes,
+        "triangles": rotor.shapes.triangles,
+        "direction": rotor.axis.direction,
+        "point": rotor.axis.point,
     }

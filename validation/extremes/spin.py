@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_rotor import Formulation, Invariants, Motion, Support, campbell, stability
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor import (
+    Formulation,
+    Invariants,
+    LinearModel,
+    Motion,
+    Support,
+    campbell,
+    linear_model,
+    stability,
+)
 from exudyn_rotor.theory.stiffening import stiffening
 from validation.extremes.rotors import cloud, held, shaft_frequencies, shaft_rotor, two_rings
 from validation.extremes.rows import EPS, Row, breaking_point, message
@@ -56,14 +63,14 @@ def speeds_of_campbell(quick: bool = False) -> Row:
 def smallest_stiffness(level: str, speed: float) -> float:
     """Return the smallest eigenvalue of ``K − Ω²Ĉ`` of a rigid rotor, its spin held [1/s²]."""
     rotor = rigid_on_support(level)
-    moving = [i for i, kind in enumerate(rotor.rotor.kinds) if kind is not ModeKind.SPIN]
-    return float(np.linalg.eigvalsh(rotor.at(speed).K[0][np.ix_(moving, moving)])[0])
+    moving, K = rotor.held_basis, rotor.at(speed).K[0]
+    return float(np.linalg.eigvalsh(moving.T @ K @ moving)[0])
 
 
-def rigid_on_support(level: str) -> LinearRotor:
+def rigid_on_support(level: str) -> LinearModel:
     """Return a rigid rotor, its middle held by springs; nothing resists the spin."""
     support = Support("all", np.diag([BEARING] * 3), tilt_stiffness=TILT)
-    return LinearRotor.of(two_rings().reduce(0), [support], level)
+    return linear_model(two_rings().reduce(0), supports=[support], stiffening=level, axes="rotor")
 
 
 def rigid_speeds() -> dict[str, float]:

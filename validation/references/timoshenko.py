@@ -20,14 +20,15 @@ import numpy as np
 from netgen import occ
 
 from exudyn_rotor import (
+    LinearModel,
     ReducedRotor,
     SolidRotor,
     Support,
     campbell,
     craig_bampton_modes,
     critical_speeds,
+    linear_model,
 )
-from exudyn_rotor.linear.models.rotor.rotor_on_supports import LinearRotor
 
 REFERENCE = Path(__file__).with_name("timoshenko_ross.json")
 LATERAL = ("forward", "backward", "mixed")
@@ -55,7 +56,7 @@ def supports(shaft: dict) -> list[Support]:
     return [Support(name, shaft["bearing_stiffness"]) for name in ("left", "right")]
 
 
-def lateral_frequencies(system: LinearRotor, speeds: list[float]) -> np.ndarray:
+def lateral_frequencies(system: LinearModel, speeds: list[float]) -> np.ndarray:
     """Return the six lowest lateral frequencies in the inertial frame, shape (speeds, 6)."""
     result = campbell(system, speeds)
     rows = []
@@ -64,14 +65,14 @@ def lateral_frequencies(system: LinearRotor, speeds: list[float]) -> np.ndarray:
     return np.array(rows)
 
 
-def forward_criticals(system: LinearRotor, count: int) -> np.ndarray:
-    """Return the lowest forward critical speeds; a pair split by the mesh counts once."""
+def forward_criticals(system: LinearModel, count: int) -> np.ndarray:
+    """Return the lowest forward critical speeds."""
     found = critical_speeds(system, max_speed=4000.0)
     forward = found.speeds[np.array(found.whirl) == "forward"]
     return forward[np.append(True, np.diff(forward) > 1e-2 * forward[1:])][:count]
 
 
-def compare(system: LinearRotor, beam: dict, speeds: list[float]) -> dict:
+def compare(system: LinearModel, beam: dict, speeds: list[float]) -> dict:
     """Return relative deviations of a solid rotor from beam numbers."""
     ours = lateral_frequencies(system, speeds)
     theirs = np.sort(np.array(beam["frequencies"]), axis=1)
@@ -102,7 +103,7 @@ def compare_all(element_size: float, safety: float = 2.0) -> tuple[dict, dict]:
             ("two discs against points", with_discs, discs),
             ("two discs against rigid hubs", with_discs, hubs),
         ):
-            system = LinearRotor.of(rotor, supports(beam["shaft"]), level)
+            system = linear_model(rotor, supports=supports(beam["shaft"]), stiffening=level)
             results[f"{name}, '{level}'"] = compare(system, beam, speeds)
     return data, results
 

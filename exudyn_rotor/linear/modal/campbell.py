@@ -13,7 +13,7 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import basis_error, options
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import track
-from exudyn_rotor.linear.modal.whirl_new import (
+from exudyn_rotor.linear.modal.whirl import (
     OVERDAMPED,
     UNKNOWN,
     Content,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal import excitation
-from exudyn_rotor.linear.modal.whirl_new import BACKWARD, WHIRLS, oscillates
+from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
 from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.rotating_axes import FRAMES

@@ -2,38 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
-from functools import partial
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
+from tqdm import tqdm
 
-from exudyn_rotor import checks, plotting
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal import excitation
+from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
+    SHOWN,
     CriticalSpeeds,
     checked,
-    critical_speeds_of,
+    collected,
     warn_of_critical,
 )
-from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
-from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.modal.resonance import NO_EQUATIONS, Search, Stiffness
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, WHIRLS, Content
+from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.sweep import sweep
 from exudyn_rotor.theory.stiffening import CHOICES, LEVELS
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_CURVE = 200  # speeds of a bearing's own curve
+_UNIT = 1e15  # N/m, beside which all others are rounding
 
 
 @storable
@@ -46,25 +54,30 @@ class CriticalSpeedMap(Result):
     stiffnesses : ndarray, shape (s,)
         [N/m]
     speeds : ndarray, shape (s, c)
-        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s]. A pair
-        that an uneven mesh splits is there once, as in :class:`CriticalSpeeds`.
+        Critical speeds at every stiffness, ascending; NaN where there are fewer [rad/s].
     whirl_codes : ndarray of int, shape (s, c)
-        Index into :data:`exudyn_rotor.linear.modal.whirl.WHIRLS`; −1 where the speed is NaN.
+        Index into :attr:`CriticalSpeeds.whirl` words; −1 where the speed is NaN.
     order : float
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
     basis_errors : ndarray, shape (s, c), or None
-        Estimated relative errors by the basis of a reduced rotor, NaN as in
-        :class:`CriticalSpeeds`; None where they are not known.
+        Estimated relative errors by the basis of a reduced rotor, at the first, the middle and the
+        last stiffness, NaN as in :class:`CriticalSpeeds`; None where they are not known.
+    bearing_speeds : ndarray, shape (b,), or None
+        Speeds at which the stiffness of a given bearing is known [rad/s].
+    bearing_stiffnesses : ndarray, shape (b, 2), or None
+        Its direct stiffnesses k11 and k22 there [N/m].
+    axes, unevenness
+        See :class:`CriticalSpeeds`.
 
     Examples
     --------
     >>> from exudyn_rotor import CriticalSpeedMap
     >>> print(CriticalSpeedMap([1e4, 4e4], [[50.0], [100.0]], [[0], [0]], 1.0).table())
-    undamped critical speeds of order 1 [rad/s]
+    undamped critical speeds of order 1 [rpm]
       stiffness [N/m]
-      10000            50 forward
-      40000            100 forward
+      10000            477.465 forward
+      40000            954.93 forward
     error of the basis: not known
     """
 
@@ -76,13 +89,18 @@ class CriticalSpeedMap(Result):
     order: float
     stiffening: str | None = None
     basis_errors: np.ndarray | None = numbers("stiffnesses", "speeds", finite=False, optional=True)
+    bearing_speeds: np.ndarray | None = numbers("points", optional=True)
+    bearing_stiffnesses: np.ndarray | None = numbers("points", 2, optional=True)
+    axes: str = "inertial"
+    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stiffening is not None:
             checks.choice(self.stiffening, "stiffening", LEVELS)
+        checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
         shown = Units.of(units)
         rows, places = np.nonzero(self.whirl_codes >= 0)
@@ -94,12 +112,12 @@ class CriticalSpeedMap(Result):
             "basis error": np.full(len(rows), np.nan) if errors is None else errors[rows, places],
         }
 
-    def table(self, *, units: str = "SI") -> str:
+    def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds at every stiffness as lines of text.
 
         Parameters
         ----------
-        units : {'SI', 'rpm', 'Hz'}
+        units : {'rpm', 'Hz', 'SI'}
             'SI' rad/s.
         """
         shown = Units.of(units)
@@ -122,26 +140,33 @@ class CriticalSpeedMap(Result):
                 lines[-1] += f" (basis error up to {in_table(np.nanmax(errors[i]))})"
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
+        if self.unevenness > SHOWN:
+            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
     def plot(
         self,
         ax: Axes | None = None,
         *,
-        units: str = "Hz",
+        units: str = "rpm",
         operating_range: ArrayLike | None = None,
         margins: ArrayLike | None = None,
     ) -> Axes:
-        """Draw the critical speeds over the stiffness, both logarithmic.
+        """Draw the critical speeds over the stiffness, both logarithmic, as lines.
+
+        A bearing is drawn by its own direct stiffnesses over the speed.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
             A new figure by default.
-        units : {'Hz', 'rpm', 'SI'}
+        units : {'rpm', 'Hz', 'SI'}
         operating_range, margins : two floats, optional
             Shaded; see :meth:`Campbell.plot`.
         """
+        from exudyn_rotor import plotting
+        from exudyn_rotor.linear.modal import excitation
+
         shown = Units.of(units)
         limits = excitation.checked_range(operating_range)
         shares = excitation.checked_margins(margins, limits is not None)
@@ -149,9 +174,16 @@ class CriticalSpeedMap(Result):
         styles = {FORWARD: (plotting.COLORS[0], "o"), BACKWARD: (plotting.COLORS[1], "v")}
         for code in np.unique(self.whirl_codes[self.whirl_codes >= 0]):
             color, marker = styles.get(int(code), (plotting.COLORS[2], "s"))
-            drawn = np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan)
-            lines = ax.loglog(self.stiffnesses, drawn, marker, color=color, ms=3.5)
-            lines[0].set_label(WHIRLS[code])
+            # the first, second, … of a whirl at each stiffness make a line; NaN are sorted last
+            drawn = np.sort(np.where(self.whirl_codes == code, shown.speeds(self.speeds), np.nan))
+            handles = ax.loglog(self.stiffnesses, drawn, marker + "-", color=color, ms=3.5, lw=0.9)
+            handles[0].set_label(WHIRLS[code])
+        if self.bearing_speeds is not None:
+            for column, style in enumerate(("--", ":")):
+                ax.loglog(
+                    self.bearing_stiffnesses[:, column], shown.speeds(self.bearing_speeds), style,
+                    color="0.3", lw=1.2, label=f"bearing, k{column + 1}{column + 1}",
+                )  # fmt: skip
         ends = self.stiffnesses.min(), self.stiffnesses.max()
         if ends[0] < ends[1]:  # also where no critical speed is found
             room = (ends[1] / ends[0]) ** 0.05
@@ -175,9 +207,11 @@ def critical_speed_map(
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (1,),
+    bearing: Given | None = None,
     stiffening: str = "auto",
+    axes: str = "auto",
+    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
-    executor: Executor | None = None,
     progress: bool = False,
 ) -> CriticalSpeedMap:
     """Compute the undamped critical speeds over the stiffness of isotropic supports.
@@ -193,10 +227,12 @@ def critical_speed_map(
         Further supports that do not change; magnetic bearings by their static stiffness.
     foundation : Foundation, optional
         What carries all supports, as in :func:`linear_model`.
-    order, max_speed, nodal_diameters, stiffening, accuracy
-        See :func:`critical_speeds`.
-    executor : concurrent.futures.Executor, optional
-        Computes the stiffnesses.
+    order, max_speed, nodal_diameters, stiffening, axes, tolerance, accuracy
+        See :func:`critical_speeds`; the basis is looked at at the first, the middle and the last
+        stiffness.
+    bearing : Support or bearing, optional
+        One whose own stiffness over the speed is drawn beside the critical speeds: these meet it
+        where they are those of the rotor on such bearings.
     progress : bool, optional
         Show a progress bar.
 
@@ -231,55 +267,121 @@ def critical_speed_map(
     if not names:
         raise ValueError("interfaces: needs at least one name, got none")
     supports = tuple(map(_made_once, given_supports(supports)))
-    order, max_speed, waves = checked(order, max_speed, nodal_diameters)
+    given = checked(order, max_speed, nodal_diameters)
     checks.choice(stiffening, "stiffening", CHOICES)
+    checks.choice(axes, "axes", AXES)
+    checks.tolerance(tolerance)
     options.check_basis_accuracy(accuracy)
-    options.check_sweep(executor, progress)
-    made = partial(linear_model, target, foundation=foundation, stiffening=stiffening)
-    model = made(supports=supports).undamped()
-    basis = BasisError.of(model, accuracy)
-    content = WhirlContent.of(model)
-    given = {"content": content, "order": order, "waves": waves, "max_speed": max_speed}
-    task = partial(_at_stiffness, made, names, supports, given, accuracy)
-    solved = sweep(task, values, executor=executor, progress=progress, label="critical speed map")
-    most = max(len(entry.speeds) for entry in solved)
-    speeds, codes = np.full((len(values), most), np.nan), np.full((len(values), most), -1)
-    errors = np.full((len(values), most), np.nan) if basis.is_known else None
-    for row, entry in enumerate(solved):
-        count = len(entry.speeds)
-        speeds[row, :count] = entry.speeds
-        codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
-        if errors is not None:
-            errors[row, :count] = entry.basis_errors
-    result = CriticalSpeedMap(
-        values,
-        speeds,
-        codes.astype(np.int64),
-        order,
-        stiffening=solved[0].stiffening,
-        basis_errors=errors,
-    )
-    if errors is not None:
-        warn_of_critical(basis, speeds, errors)
+    checks.flag(progress, "progress")
+    curve = None if bearing is None else _as_support(bearing)
+    first = linear_model(
+        target, supports=_with(supports, names, values[0]), foundation=foundation,
+        stiffening=stiffening, axes=axes,
+    ).undamped()  # fmt: skip
+    unit = {n: X / _UNIT for n, X in _added(first, names).items()}
+    search = Search(Stiffness(first, unit), Content.of(first), *given, tolerance, is_exact=False)
+    judged = set() if accuracy is None else set(points(len(values)).tolist())
+    solved: list[CriticalSpeeds | None] = []
+    failed: dict[float, Exception] = {}
+    for row, stiffness in enumerate(tqdm(values, "critical speed map", disable=not progress)):
+        model = first
+        if row in judged:
+            model = replace(first, supports={"": _with(supports, names, stiffness)})
+        try:
+            found = search.resonances(stiffness - values[0])
+            solved.append(collected(found, search, model, row in judged))
+        except (*NO_EQUATIONS, np.linalg.LinAlgError) as error:
+            solved.append(None)
+            failed[float(stiffness)] = error
+    if len(failed) == len(values):
+        raise next(iter(failed.values()))
+    if failed:
+        shown = ", ".join(f"{stiffness:.4g}" for stiffness in failed)
+        warnings.warn(
+            f"no values at {shown} N/m, which are NaN: {next(iter(failed.values()))}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+    search.warn()
+    result = _collected(values, solved, curve, max_speed, is_known(first, accuracy))
+    if np.any(result.speeds > 0.0):
+        warn_of_left_out_stiffening(first, max_speed or np.nanmin(result.speeds))
+    if result.basis_errors is not None:
+        warn_of_critical(first, result.speeds, result.basis_errors, accuracy)
     return result
+
+
+def _with(supports: tuple[Given, ...], names: Sequence[str], stiffness: float) -> tuple[Given, ...]:
+    return (*supports, *(Support(name, float(stiffness)) for name in names))
+
+
+def _added(model: LinearModel, names: Sequence[str]) -> dict[int, np.ndarray]:
+    """Return the Fourier terms of what supports of a large stiffness add, as H has them."""
+    stiff, none = (
+        replace(
+            model,
+            supports={"": _with((), names, _UNIT)[:count]},
+            wanted_axes=model.axes,
+            largest_unevenness=np.inf,
+        )
+        .at(1.0)
+        .K
+        for count in (None, 0)
+    )
+    basis = np.eye(model.size) if model.moving_basis is None else model.moving_basis
+    return {n: basis.T @ (X - none.get(n, 0.0)) @ basis for n, X in stiff.items()}
+
+
+def _collected(
+    values: np.ndarray,
+    solved: list[CriticalSpeeds | None],
+    curve: Support | None,
+    max_speed: float | None,
+    has_errors: bool,
+) -> CriticalSpeedMap:
+    """Return the result of all stiffnesses, NaN where there is none."""
+    first = next(entry for entry in solved if entry is not None)
+    shape = len(values), max(len(entry.speeds) for entry in solved if entry is not None)
+    speeds, codes, errors = np.full(shape, np.nan), np.full(shape, -1), np.full(shape, np.nan)
+    for row, entry in enumerate(solved):
+        if entry is not None:
+            count = len(entry.speeds)
+            speeds[row, :count] = entry.speeds
+            codes[row, :count] = [WHIRLS.index(word) for word in entry.whirl]
+            if entry.basis_errors is not None:
+                errors[row, :count] = entry.basis_errors
+    own = (None, None)
+    if curve is not None:
+        own = _curve(curve, max_speed or float(np.nanmax(speeds, initial=1.0)))
+    return CriticalSpeedMap(
+        values, speeds, codes.astype(np.int64), first.order, first.stiffening,
+        basis_errors=errors if has_errors else None, bearing_speeds=own[0],
+        bearing_stiffnesses=own[1], axes=first.axes, unevenness=first.unevenness,
+    )  # fmt: skip
 
 
 def _made_once(given: Given) -> Given:
     """Return a bearing as the support that it is for all stiffnesses, if it is one."""
-    if isinstance(given, MagneticBearing | Support):
-        return given
-    made = given.linearised()
+    made = given if isinstance(given, MagneticBearing | Support) else given.linearised()
     return made if isinstance(made, Support) else given
 
 
-def _at_stiffness(
-    made: Callable[..., LinearModel],
-    names: tuple[str, ...],
-    supports: tuple[Given, ...],
-    given: dict,
-    accuracy: float | None,
-    stiffness: float,
-) -> CriticalSpeeds:
-    varied = tuple(Support(name, stiffness) for name in names)
-    model = made(supports=supports + varied).undamped()
-    return critical_speeds_of(model, **given, basis=BasisError.of(model, accuracy))
+def _as_support(bearing: Given) -> Support:
+    """Return what has the stiffness of a bearing over the speed."""
+    checks.instance(bearing, "bearing", (Support, Bearing, MagneticBearing))
+    one = bearing if isinstance(bearing, Support) else bearing.linearised()
+    return one if isinstance(one, Support) else Support(one.interface, one.static_stiffness)
+
+
+def _curve(bearing: Support, top: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return speeds up to the largest [rad/s], and the direct stiffnesses (b, 2) of a support."""
+    speeds, stiffnesses = [], []
+    for speed in np.linspace(top / _CURVE, top, _CURVE).tolist():
+        try:
+            bearing.check_range(speed)
+            K, _ = bearing.matrices(speed)
+        except NO_EQUATIONS:
+            continue
+        speeds.append(speed)
+        stiffnesses.append(np.diag(K)[:2])
+    return np.array(speeds), np.array(stiffnesses).reshape(-1, 2)

@@ -1,7 +1,4 @@
-"""Critical speeds of a rotor.
-
-The equations are in :mod:`exudyn_rotor.linear.modal.resonance`.
-"""
+"""Critical speeds of a rotor; the equations are in :mod:`exudyn_rotor.linear.modal.resonance`."""
 
 from __future__ import annotations
 
@@ -11,25 +8,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.hermitian_zeros import same_speed
-from exudyn_rotor.linear.modal.listing import signed_diameters
-from exudyn_rotor.linear.modal.resonance import Resonance, resonances
-from exudyn_rotor.linear.modal.whirl import WHIRLS, WhirlContent
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, in_table
-from exudyn_rotor.linear.models.linear_model import (
-    Target,
-    linear_model,
-    warn_of_left_out_stiffening,
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.foundations.foundation import Foundation
+from exudyn_rotor.linear import basis_error, options
+from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.modal.resonance import (
+    NO_EQUATIONS,
+    Resonance,
+    Search,
+    Stiffness,
+    named,
+    refined,
 )
-from exudyn_rotor.linear.models.protocol import LinearModel
+from exudyn_rotor.linear.modal.whirl import WHIRLS, Content
+from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.linear_model import AXES, LinearModel
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.theory.stiffening import LEVELS
+from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
 JUDGED = 6  # critical speeds that count where no largest speed is given
+_ALIKE = 0.5  # likeness of two shapes below which they are not the same motion
+_NEAR = 0.5  # share of a critical speed by which the same motion may differ
+SHOWN = 1e-6  # unevenness that is told
 
 
 @storable
@@ -48,16 +51,18 @@ class CriticalSpeeds(Result):
     whirl : tuple of str
         Words of :attr:`Campbell.whirl`; unbalance alone excites no purely backward mode.
     nodal_diameters : ndarray of int, shape (c,)
-    splits : ndarray, shape (c,), or None
-        A pair that an uneven mesh or shaft splits by less than 1 % is listed once, by the lower
-        speed; the upper one is ``speeds · (1 + splits)``. 0 for single ones.
     vectors : ndarray, shape (k, c)
-        Mode shapes in the coordinates of the rotor frame, unit length; the strongest harmonic.
+        Mode shapes in the coordinates of the model, unit length; the strongest harmonic.
     basis_errors : ndarray, shape (c,), or None
         Estimated relative errors by the basis of a reduced rotor; NaN above the lowest six where
         no largest speed was given, None where they are not known.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    axes : {'inertial', 'rotor'}
+        In which the equations were solved, and :attr:`vectors` are.
+    unevenness : float
+        Largest share of a rotor that differs around its axis, as that of a mesh, and was averaged
+        over a turn; an uneven rotor has both critical speeds of a pair.
 
     Examples
     --------
@@ -65,8 +70,8 @@ class CriticalSpeeds(Result):
     >>> result = CriticalSpeeds(1.0, [100.0], [0.0], ("forward",), [1], [[1.0]])
     >>> print(result.table())
     undamped critical speeds of order 1
-      [rad/s]      [Hz]        n  whirl
-      100          15.9155     1  forward
+      [rpm]        [Hz]        n  whirl
+      954.93       15.9155     1  forward
     error of the basis: not known
     """
 
@@ -77,16 +82,18 @@ class CriticalSpeeds(Result):
     nodal_diameters: np.ndarray = numbers("speeds", dtype=int, least=-1)
     vectors: np.ndarray = numbers("coordinates", "speeds", dtype=complex)
     stiffening: str | None = None
-    splits: np.ndarray | None = numbers("speeds", optional=True)
     basis_errors: np.ndarray | None = numbers("speeds", finite=False, optional=True)
+    axes: str = "inertial"
+    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stiffening is not None:
             checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.labels(self.whirl, "whirl", WHIRLS)
+        checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
         rotor = shown.frequencies(self.frequencies_rotor)
@@ -96,18 +103,17 @@ class CriticalSpeeds(Result):
             f"frequency in the rotor frame [{shown.frequency}]": rotor,
             "nodal diameters": self.nodal_diameters,
             "whirl": np.array(self.whirl),
-            "split": np.zeros(len(self.whirl)) if self.splits is None else self.splits,
             "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
         }
 
-    def table(self, *, units: str = "SI") -> str:
+    def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds as lines of text.
 
         The error of the basis is '-' where it is not estimated, see :attr:`basis_errors`.
 
         Parameters
         ----------
-        units : {'SI', 'rpm', 'Hz'}
+        units : {'rpm', 'Hz', 'SI'}
             Of the first column, 'SI' rad/s; the second one is in Hz.
         """
         shown = Units.of(units)
@@ -122,8 +128,6 @@ class CriticalSpeeds(Result):
         for i, (speed, n) in enumerate(zip(self.speeds, self.nodal_diameters, strict=True)):
             count, hertz = n if n >= 0 else "-", speed / (2.0 * np.pi)
             word = f"{self.whirl[i]:<9}  {in_table(errors[i]):<7}" if reduced else self.whirl[i]
-            split = 0.0 if self.splits is None else self.splits[i]
-            word += f"  pair, the other {split:.1e} above" if split > 0.0 else ""
             lines.append(
                 f"  {shown.speeds(speed):<11.6g}  {hertz:<10.6g}  {count}  {word}".rstrip()
             )
@@ -131,20 +135,23 @@ class CriticalSpeeds(Result):
             lines.append("  none")
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
+        if self.unevenness > SHOWN:
+            lines.append(f"unevenness of the mesh, averaged: {self.unevenness:.2g}")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])
 
 
 def critical_speeds(
     target: Target,
     *,
-    supports: Sequence[Support] = (),
+    supports: Sequence[Given] | Given = (),
+    foundation: Foundation | None = None,
     body: RotorBody | Sequence[RotorBody] | None = None,
     order: float = 1.0,
     max_speed: float | None = None,
     nodal_diameters: Sequence[int] = (0, 1),
     stiffening: str = "auto",
-    tolerance: float = 1e-9,
-    residual: float = 1e-5,
+    axes: str = "auto",
+    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
 ) -> CriticalSpeeds:
     """Compute the undamped critical speeds of a rotor on supports, or of a scene.
@@ -154,28 +161,30 @@ def critical_speeds(
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
+    target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or LinearModel
         See :func:`linear_model`.
-    supports : sequence of Support, optional
+    supports : sequence of Support or bearings, optional
         Of a rotor.
-    body : RotorBody or sequence of these, optional
+    foundation : Foundation, optional
+        What carries them; the ground by default.
+    body : RotorBody or sequence of RotorBody, optional
         The rotor in a scene, or all of several, see :func:`linear_model`.
     order : float, optional
         Excitation order p ≥ 0 in the inertial frame; 1 for unbalance, 0 for a load at rest.
     max_speed : float, optional
-        Largest speed of interest [rad/s]; needed for a scene, for a large SolidRotor and for
-        supports that depend on the speed or an initial displacement: there the zeros are
-        bracketed at 200 speeds up to it and ten below these, and two of one mode that are closer
-        than a 200th of it may be missed. Where tables begin above 0 rad/s, speeds from there on
-        are looked at, with a warning.
+        Largest speed of interest [rad/s]; needed where a stiffness depends on the speed, as of
+        tables, films, scenes and an initial displacement: there the zeros are bracketed at 200
+        speeds up to it, and two of one mode that are closer than a 200th of it may be missed.
+        Speeds beyond tables, and those at which a film carries nothing, are left out, with a
+        warning.
     nodal_diameters : sequence of int, optional
         Which waves may be excited: 0 for axial and torsional motion, 1 for bending and tilting.
     stiffening : {'auto', 'none', 'tilt', 'full'}
+    axes : {'auto', 'inertial', 'rotor'}
+        Of the equations, see :func:`linear_model`.
     tolerance : float, optional
-        Largest relative change of a critical speed by further harmonics.
-    residual : float, optional
-        Largest relative residual of a large SolidRotor; its critical speeds err by about the
-        square.
+        Largest relative error of a critical speed by the harmonics that are left out of periodic
+        equations, of an uneven rotor on uneven supports.
     accuracy : float, optional
         Relative error of a critical speed by the basis of a reduced rotor, estimated, above which
         a warning is given. It looks at the speeds up to `max_speed`; without, at the lowest six.
@@ -187,7 +196,7 @@ def critical_speeds(
         If the target, the body or a support is of another kind.
     ValueError
         For an order or speed that is negative or not finite, a missing `max_speed`, an unknown
-        interface, or harmonics that do not die away.
+        interface, or a support with a negative stiffness.
 
     Examples
     --------
@@ -200,123 +209,98 @@ def critical_speeds(
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> print(critical_speeds(rotor, supports=supports, nodal_diameters=[1]).table())
     undamped critical speeds of order 1
-      [rad/s]      [Hz]        n  whirl
-      100          15.9155     1  backward
-      100          15.9155     1  backward
-      100          15.9155     1  forward
-      100          15.9155     1  forward
+      [rpm]        [Hz]        n  whirl
+      954.93       15.9155     1  backward
+      954.93       15.9155     1  backward
+      954.93       15.9155     1  forward
+      954.93       15.9155     1  forward
     stiffening: tilt
     """
-    order, max_speed, waves = checked(order, max_speed, nodal_diameters)
-    tolerance = options.accuracy(tolerance, "tolerance")
-    residual = options.accuracy(residual, "residual")
+    given = checked(order, max_speed, nodal_diameters)
+    checks.tolerance(tolerance)
     options.check_basis_accuracy(accuracy)
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening).undamped()
-    basis = BasisError.of(model, accuracy)
-    result = critical_speeds_of(
-        model, WhirlContent.of(model), order, waves, max_speed, tolerance, residual, basis
-    )
-    if result.basis_errors is not None:
-        warn_of_critical(basis, result.speeds, result.basis_errors)
-    return result
-
-
-def warn_of_critical(basis: BasisError, speeds: np.ndarray, errors: np.ndarray) -> None:
-    """Warn where the basis leaves out too much for some critical speed [rad/s]."""
-    if np.any(errors > 0.0):
-        worst = Units.of("rpm").speeds(speeds.flat[np.nanargmax(errors)])
-        basis.warn(np.nan_to_num(errors), f"the critical speed of {worst:.5g} rpm")
-
-
-def critical_speeds_of(
-    model: LinearModel,
-    content: WhirlContent,
-    order: float,
-    waves: Sequence[int],
-    max_speed: float | None,
-    tolerance: float = 1e-9,
-    residual: float = 1e-5,
-    basis: BasisError | None = None,
-) -> CriticalSpeeds:
-    """Return the critical speeds of an undamped model; arguments as :func:`checked` returns them.
-
-    The `content` is that of the rotor, whatever its supports are.
-    """
-    critical = resonances(model, content, order, waves, max_speed, tolerance, residual)
-    if critical:
-        fastest = critical[0].speed if max_speed is None else max_speed
+    model = linear_model(
+        target, supports=supports, foundation=foundation, body=body, stiffening=stiffening,
+        axes=axes,
+    ).undamped()  # fmt: skip
+    search = Search(Stiffness(model), Content.of(model), *given, tolerance)
+    result = collected(search.resonances(), search, model, accuracy is not None)
+    search.warn()
+    if result.speeds.size:
+        fastest = result.speeds[0] if max_speed is None else max_speed
         warn_of_left_out_stiffening(model, fastest)
-    errors = None
-    if basis is not None and basis.is_known:
-        errors = np.full(len(critical), np.nan)
-        count = len(critical) if max_speed is not None else JUDGED
-        errors[:count] = basis.critical_errors([entry.motions for entry in critical[:count]])
-    return _collected(critical, content, order, model, errors)
+    if accuracy is not None and result.basis_errors is not None:
+        warn_of_critical(model, result.speeds, result.basis_errors, accuracy)
+    return result
 
 
 def checked(
     order: float, max_speed: float | None, nodal_diameters: Sequence[int]
-) -> tuple[float, float | None, list[int]]:
-    """Return order and largest speed, and the signed waves to look for."""
+) -> tuple[float, list[int], float | None]:
+    """Return order, nodal diameters and largest speed of an analysis."""
     order = checks.number(order, "order", least=0.0)
     if max_speed is not None:
         max_speed = checks.number(max_speed, "max_speed", "rad/s", above=0.0)
-    return order, max_speed, _waves(nodal_diameters, order)
-
-
-def _waves(nodal_diameters: Sequence[int], order: float) -> list[int]:
-    """Return the signed waves to look for; at order 0 a motion and its conjugate are one."""
     values = checks.whole_numbers(nodal_diameters, "nodal_diameters", most=4)
     if not values.size:
         raise ValueError("nodal_diameters: needs at least one whole number from 0 to 4, got none")
-    counts = sorted({int(n) for n in values})
-    backward = [-n for n in counts if n > 0 and order > 0.0]
-    return counts + backward
+    return order, sorted({int(n) for n in values}), max_speed
 
 
-def _collected(
-    critical: list[Resonance],
-    content: WhirlContent,
-    order: float,
-    model: LinearModel,
-    basis_errors: np.ndarray | None,
+def collected(
+    found: list[Resonance], search: Search, model: LinearModel, estimate: bool
 ) -> CriticalSpeeds:
-    count = len(critical)
-    speeds = np.array([entry.speed for entry in critical])
-    codes, diameters = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-    # together where the harmonics are the same, which is faster
-    alike: dict[bytes, list[int]] = {}
-    for index, entry in enumerate(critical):
-        alike.setdefault(entry.multiples.tobytes(), []).append(index)
-    for group in alike.values():
-        vectors = np.stack([critical[index].vectors for index in group], axis=2)
-        multiples = critical[group[0]].multiples
-        _, codes[group], diameters[group] = content.classify(
-            vectors, multiples, np.zeros(len(group)), speeds[group]
-        )
-    places = _places(speeds, codes, diameters)
-    critical = [critical[place] for place in places]
-    strongest = [np.argmax(np.linalg.norm(entry.vectors, axis=1)) for entry in critical]
-    rates = [abs(entry.multiples[row]) for entry, row in zip(critical, strongest, strict=True)]
-    shapes = [entry.vectors[row] for entry, row in zip(critical, strongest, strict=True)]
+    """Return the result of a search; errors by the basis of the model where they are asked for."""
+    found, names = named(found, search.content)
+    speeds = np.array([one.speed for one in found])
+    errors = None
+    if estimate and basis_error.is_known(model, 1.0):
+        errors = basis_errors(model, found, len(found) if search.limit is not None else JUDGED)
+    shapes = [x[np.argmax(np.linalg.norm(x, axis=1))] for _, x, _ in found]
+    shapes = np.array(shapes, dtype=complex).reshape(-1, model.size).T
     return CriticalSpeeds(
-        order=order,
+        order=search.order,
         speeds=speeds,
-        frequencies_rotor=np.array(rates) * speeds,
-        whirl=tuple(WHIRLS[codes[place]] for place in places),
-        nodal_diameters=diameters[places],
-        vectors=np.array(shapes, dtype=complex).reshape(-1, model.size).T,
+        frequencies_rotor=names.rotor * speeds,
+        whirl=tuple(WHIRLS[code] for code in names.codes),
+        nodal_diameters=names.diameters,
+        vectors=shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
         stiffening=model.stiffening,
-        splits=np.array([entry.split for entry in critical]),
-        basis_errors=None if basis_errors is None else basis_errors[places],
+        basis_errors=errors,
+        axes=model.axes,
+        unevenness=model.unevenness,
     )
 
 
-def _places(speeds: np.ndarray, codes: np.ndarray, diameters: np.ndarray) -> np.ndarray:
-    """Return the order of rows: by speed, those of one speed from backward to forward waves.
+@one_thread()
+def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> np.ndarray:
+    """Return relative errors of the lowest critical speeds by the basis, NaN of others, (c,).
 
-    Rounding would order the latter by chance; what moves them apart is left in `speeds`.
+    Each motion is followed into the model with the shapes that the basis lacks.
     """
-    groups = same_speed(list(range(len(speeds))), speeds.__getitem__)
-    senses = signed_diameters(codes, diameters)
-    return np.array([i for group in groups for i in sorted(group, key=senses.__getitem__)], int)
+    errors = np.full(len(found), np.nan)
+    if model.is_full:
+        errors[:count] = 0.0
+        return errors
+    richer = model.richer
+    lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
+    for i, one in enumerate(found[:count]):
+        lift = one._replace(vectors=one.vectors @ lifted.T)
+        try:
+            better = refined(stiffness, lift)
+        except NO_EQUATIONS:
+            continue
+        x, y = lift.vectors, better.vectors
+        likeness = abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real
+        if likeness > _ALIKE and abs(better.speed - one.speed) < _NEAR * one.speed:
+            errors[i] = abs(better.speed / one.speed - 1.0)
+    return errors
+
+
+def warn_of_critical(
+    model: LinearModel, speeds: np.ndarray, errors: np.ndarray, accuracy: float
+) -> None:
+    """Warn where the basis leaves out too much for some critical speed [rad/s]."""
+    if np.any(errors > 0.0):
+        worst = Units.of("rpm").speeds(speeds.flat[np.nanargmax(errors)])
+        basis_error.warn(errors, f"the critical speed of {worst:.5g} rpm", model, accuracy)

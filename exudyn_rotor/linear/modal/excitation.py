@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
-from exudyn_rotor import checks, plotting
+from exudyn_rotor import checks
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
 # of the excitation's frequency: a mode that keeps to its line, as one fixed in the rotor, does
 # not cross it by rounding
@@ -103,6 +106,8 @@ def draw_orders(
 
     `speeds`, `values` and `continued` are those of :func:`crossings`.
     """
+    from exudyn_rotor import plotting
+
     handles, last = [], speeds[np.argmax(np.abs(speeds))]
     for number, order in enumerate(orders):
         label = "spin speed" if order == 1.0 else f"{order:g} × spin speed"
@@ -127,6 +132,8 @@ def shade_range(
 
     Upright where the speed runs to the right, `across` where it runs upwards.
     """
+    from exudyn_rotor import plotting
+
     shade = ax.axhspan if across else ax.axvspan
     low, high = units.speeds(limits)
     handles = [shade(low, high, color=plotting.COLORS[2], alpha=0.15, lw=0.0)]

@@ -1,369 +1,590 @@
 """Critical speeds: spin speeds at which an excitation meets a natural frequency.
 
-An excitation of order p turns or vibrates with pΩ in the inertial frame: p = 1 is unbalance. A
-mode with the wave n answers at ``ν = (p − n)Ω`` in the rotor frame. There the undamped equations
-are Hermitian and quadratic in Ω,
+An excitation of order p turns or vibrates with pΩ in axes that stand still: p = 1 is unbalance. A
+motion with the frequency fΩ in the axes of the equations has the undamped dynamic stiffness
 
-    [K − Ω² (f²M − 2if G + C − K2)] φ = 0,    f = p − n,
+    H(Ω) = K(Ω) + i f Ω D(Ω) − f² Ω² M,
 
-one generalised eigenproblem for all critical speeds: for unbalance of an axisymmetric rotor f = 0
-and ``det K(Ω) = 0``. Supports that stand still and differ in their two directions couple f, f ± 2
-…: the same problem in harmonics. Supports that depend on the speed leave ``H(Ω) φ = 0`` with a
-Hermitian H; the zeros of its eigenvalues over Ω are found by bracketing
-(:mod:`.hermitian_zeros`). Several axisymmetric rotors are looked at in axes at rest, where uneven
-supports couple nothing: one problem of the frequency pΩ. Source: Genta, Dynamics of Rotating
-Systems (2005).
+a Hermitian matrix; f = p in axes that stand still. Where only the spin itself changes with the
+speed, ``H = K0 − Ω² B``: one eigenproblem has all critical speeds. Tables and films leave the zeros
+of the sorted eigenvalues of H, which are continuous functions of Ω: each change of a sign between
+neighbours of some 200 speeds is refined. Two zeros of one eigenvalue between neighbours are missed.
+
+In the axes of an uneven rotor a wave n answers at f = p − n. Supports that differ in their two
+directions couple f, f ± 2, …: H is a matrix of blocks, of which five are solved, and then more are
+added to each motion by itself until its critical speed stands still. Source: Genta, Dynamics of
+Rotating Systems (2005).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg as la
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
 
-from exudyn_rotor.linear.modal.hermitian_zeros import (
-    NO_EQUATIONS,
-    same_speed,
-    zeros_of_eigenvalues,
-)
-from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.basis.critical_shift import CriticalMotion
-from exudyn_rotor.linear.models.protocol import LinearModel, Space
-from exudyn_rotor.linear.models.trains.standing_space import StandingSpace
-from exudyn_rotor.linear.periodic.floquet_modes import FloquetModes
-from exudyn_rotor.linear.periodic.harmonics import dynamic_stiffness
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
+from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
+from exudyn_rotor.linear.model.assembly import rotors_of
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.solve.hill import real_waves
+from exudyn_rotor.linear.solve.motions import Motions
 from exudyn_rotor.threads import one_thread
 
-# share of a mode's energy that must turn with the excitation
-_SHARE = 0.4
+NO_EQUATIONS = NoCoefficientsError, UnconvergedError
+_SHARE = 0.4  # of a motion's energy that must turn with the excitation
 # a motion whose mean order is below minus this share of the order is the conjugate of another
 _CONJUGATE = 0.25
-_MOST_STEPS = 8
-# share of the largest inertia; an uneven mesh leaves 1e-10 for the spin
-_NO_INERTIA = 1e-6
-# deviation from K − Ω²B, relative to K, that differences in a scene may leave
-_QUADRATIC = 1e-6
-# two critical speeds this close are looked at as a pair
-PAIR = 1e-2
-_MOST_ROUNDS = 20
-_VARIES = "a system that varies with the speed"
-_MODES = 10  # that the subspace of a full rotor begins with
+_SAME = 1e-7  # relative distance of speeds that are one
+_AT_REST = 1e-8  # rad/s: a rotor runs, and its inertia is below the rounding of any stiffness
+_FREE = 1e-13  # share of the largest stiffness that is rounding
+_NO_INERTIA = 1e-6  # share of the largest inertia
+_BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
+_SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
+_FINE = 1e-10  # of the largest speed, to which zeros are refined
+_FEW, _MOST = 2, 7  # blocks on each side of the middle one
+_ITERATIONS = 8
+_OFF = 0.03  # by which films that are smooth between speeds may err
+_STEP = 1e-5  # of the speed, for the derivative of H
+
+Pair = tuple[float, np.ndarray]  # a speed [rad/s] and the motion there
 
 
-@dataclass(frozen=True, eq=False)
-class Resonance:
-    """One critical speed: harmonics (h, c) of its motion at the frequencies `multiples`·Ω.
-
-    `upper` is the other one of a pair that is listed by its lower one.
-    """
+class Resonance(NamedTuple):
+    """A critical speed [rad/s] and its motion, harmonics (h, k) at `multiples` (h,) of it."""
 
     speed: float
-    multiples: np.ndarray
     vectors: np.ndarray
-    upper: Resonance | None = None
-
-    @property
-    def split(self) -> float:
-        """Distance of the upper one, relative to `speed`; 0 without one."""
-        return 0.0 if self.upper is None else self.upper.speed / self.speed - 1.0
-
-    @property
-    def motions(self) -> tuple[CriticalMotion, CriticalMotion | None]:
-        """This motion and the upper one."""
-        own = CriticalMotion(self.speed, self.multiples, self.vectors)
-        return own, None if self.upper is None else self.upper.motions[0]
-
-
-@one_thread()
-def resonances(
-    model: LinearModel,
-    content: WhirlContent,
-    order: float,
-    waves: Sequence[int],
-    limit: float | None,
-    tolerance: float,
-    residual: float,
-) -> list[Resonance]:
-    """Return all critical speeds, ascending; motions in the coordinates of the model.
-
-    Raises
-    ------
-    ValueError
-        If the largest speed `limit` is needed and missing, or the search does not converge.
-    """
-    if not model.gives_all:
-        limit = _needed(limit, "a large SolidRotor")
-    space = model.space(_MODES, limit or 0.0, residual=residual)
-    for _ in range(_MOST_ROUNDS):
-        equations = _Equations(space, model.stiffness_varies, {})
-        critical = _resonances(
-            equations, content.within(space.basis), order, waves, limit, tolerance
-        )
-        if model.gives_all:
-            return _joined(critical, content)
-        if space.basis is not None:
-            critical = [replace(entry, vectors=entry.vectors @ space.basis.T) for entry in critical]
-        if space.holds([(entry.speed, _as_modes(entry)) for entry in critical]):
-            return _joined(critical, content)
-    raise ValueError("critical speeds: the full model does not converge; give a larger tolerance")
-
-
-def _as_modes(resonance: Resonance) -> FloquetModes:
-    center = len(resonance.multiples) // 2
-    orders = np.round(resonance.multiples - resonance.multiples[center]).astype(int)
-    value = 1j * resonance.multiples[center] * resonance.speed
-    return FloquetModes(np.array([value]), resonance.vectors[:, :, None], orders, 0.0)
-
-
-def _resonances(
-    equations: _Equations,
-    content: WhirlContent,
-    order: float,
-    waves: Sequence[int],
-    limit: float | None,
-    tolerance: float,
-) -> list[Resonance]:
-    """Return all critical speeds of dense equations, ascending."""
-    step = equations.step(limit)
-    critical = []
-    if step == 0:
-        for n in waves:
-            critical += _turning(
-                _solved(equations, np.array([order - n]), limit), content, order, waves
-            )
-    elif isinstance(equations.space, StandingSpace):
-        critical = _turning(_standing(equations, order, limit), content, order, waves)
-    else:
-        # with a step of one all harmonics, those of the conjugate motions too, are in one row
-        starts = {n % step: n for n in waves}.values() if step > 1 else [round(order)]
-        for start in starts:
-            critical += _converged(
-                equations, content, order, waves, order - start, step, limit, tolerance
-            )
-    return sorted(critical, key=lambda entry: entry.speed)
-
-
-def _standing(equations: _Equations, order: float, limit: float | None) -> list[Resonance]:
-    """Return every critical speed by equations that are constant in axes at rest, with its motion.
-
-    There the excitation has the frequency pΩ and no other.
-    """
-    space = equations.space
-    still = replace(equations, space=space.standing, known={})
-    found = _solved(still, np.array([order]), limit)
-    if not found:
-        return []
-    vectors, orders = space.turned_harmonics(np.column_stack([entry.vectors[0] for entry in found]))
-    return [
-        replace(entry, multiples=order + orders, vectors=vectors[..., column])
-        for column, entry in enumerate(found)
-    ]
-
-
-def _converged(
-    equations: _Equations,
-    content: WhirlContent,
-    order: float,
-    waves: Sequence[int],
-    center: float,
-    step: int,
-    limit: float | None,
-    tolerance: float,
-) -> list[Resonance]:
-    """Add harmonics until the critical speeds do not change any more."""
-    last = None
-    for count in range(2, _MOST_STEPS):
-        multiples = center + step * np.arange(-count, count + 1)
-        critical = _turning(_solved(equations, multiples, limit), content, order, waves)
-        speeds = np.sort([entry.speed for entry in critical])
-        changes = np.full(1, np.inf)
-        if last is not None and len(last) == len(speeds):
-            changes = np.abs(speeds - last) / speeds
-        if np.all(changes <= tolerance):
-            return critical
-        last = speeds
-    remedy = "give a smaller max_speed, or use fewer high modes"
-    if np.all(np.isfinite(changes)):
-        worst = np.argmax(changes)
-        remedy = (
-            f"that at {speeds[worst]:.6g} rad/s by {changes[worst]:.1e} of it, which is more than "
-            f"the tolerance of {tolerance:.1e}: give a larger one"
-        )
-    raise ValueError(
-        f"critical speeds: with harmonics up to the {step * (_MOST_STEPS - 1)}th they still "
-        f"change; {remedy}"
-    )
-
-
-def _solved(equations: _Equations, multiples: np.ndarray, limit: float | None) -> list[Resonance]:
-    """Return every speed with a singular dynamic stiffness, with the motion."""
-    stiffness = _Stiffness(equations, multiples)
-    if equations.vary(stiffness, limit):
-        pairs = zeros_of_eigenvalues(stiffness, _needed(limit, _VARIES))
-    else:
-        at_rest = stiffness(0.0)
-        scale = equations.scale(at_rest, limit)
-        pairs = _direct(at_rest, (at_rest - stiffness(scale)) / scale**2)
-    return [
-        Resonance(speed, multiples, vector.reshape(len(multiples), -1))
-        for speed, vector in pairs
-        if limit is None or speed <= limit
-    ]
-
-
-@dataclass(frozen=True, eq=False)
-class _Stiffness:
-    """The dynamic stiffness as a function of the speed."""
-
-    equations: _Equations
     multiples: np.ndarray
 
-    def __call__(self, speed: float) -> np.ndarray:
-        return dynamic_stiffness(self.equations.at(speed), self.multiples)[0]
+
+class Names(NamedTuple):
+    """Of critical speeds the frequency in the frame of the rotor over Ω, whirl and diameters."""
+
+    rotor: np.ndarray
+    codes: np.ndarray
+    diameters: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
-class _Equations:
-    """The equations of a space, solved for once per speed: linearising a scene is slow.
+class Stiffness:
+    """The dynamic stiffness of an undamped model, whose equations are made once per speed.
+
+    Motions that nothing holds at any speed, like a free spin, are none of its coordinates.
 
     Attributes
     ----------
-    space : Space
-    supports_vary : bool or None
-        Whether supports depend on the speed; None where that has to be tried.
-    known : dict of float to PeriodicSystem
+    model : LinearModel
+    unit : Terms
+        Fourier terms of a stiffness that is added by its `factor`.
+    factor : float
+    between : callable, optional
+        Gives equations between the speeds at which films are solved.
     """
 
-    space: Space
-    supports_vary: bool | None
-    known: dict[float, PeriodicSystem]
+    model: LinearModel
+    unit: Terms = field(default_factory=dict)
+    factor: float = 0.0
+    between: Callable[[float], PeriodicSystem] | None = None
+    known: dict[float, PeriodicSystem] = field(default_factory=dict)
 
-    def at(self, speed: float) -> PeriodicSystem:
+    def system(self, speed: float) -> PeriodicSystem:
+        """Return the equations at a speed [rad/s], without what is added."""
         if speed not in self.known:
-            self.known[speed] = self.space.at(speed)
+            if self.between is not None:
+                return self.between(speed)
+            system, basis = self.model.at(speed), self.model.moving_basis
+            self.known[speed] = system if basis is None else system.projected(basis)
         return self.known[speed]
 
-    def step(self, limit: float | None) -> int:
-        """Return how many harmonics apart the equations couple motions; 0 for none."""
-        try:
-            return self.at(0.0).step
-        except NO_EQUATIONS:  # films carry nothing at rest
-            what = "a scene" if self.supports_vary is None else _VARIES
-            return self.at(_needed(limit, what)).step
+    def __call__(self, speed: float, multiples: np.ndarray) -> np.ndarray:
+        """Return H at a speed for frequencies `multiples` (h,) of it, (h·k, h·k)."""
+        system, h = self.system(speed), len(multiples)
+        K = dict(system.K)
+        if self.factor:
+            add(K, self.unit, self.factor)
+        H = _blocks(multiples, K)
+        for b, f in enumerate(multiples):
+            for a, n in enumerate(_orders(multiples)[:, b]):
+                if n in system.D and f:
+                    H[a, :, b] += (1j * f * speed) * system.D[n]
+            H[b, :, b] -= (f * speed) ** 2 * system.M
+        H = H.reshape(h * system.size, -1)
+        # what damps and what drives a motion is the other part
+        return 0.5 * (H + H.conj().T)
 
-    def vary(self, stiffness: _Stiffness, limit: float | None) -> bool:
-        """Return whether anything but the spin itself depends on the speed."""
-        if self.supports_vary is not None:
-            return self.supports_vary
-        limit = _needed(limit, "a scene")
-        try:
-            at_rest = stiffness(0.0)
-        except NO_EQUATIONS:  # films carry nothing at rest
-            return True
-        half, full = stiffness(0.5 * limit), stiffness(limit)
-        expected = 0.75 * at_rest + 0.25 * full
-        return np.abs(half - expected).max() > _QUADRATIC * np.abs(at_rest).max()
+    def motions(self, vector: np.ndarray, multiples: np.ndarray) -> np.ndarray:
+        """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
+        basis = self.model.moving_basis
+        harmonics = vector.reshape(len(multiples), -1, *vector.shape[1:])
+        return harmonics if basis is None else np.einsum("ck,hk...->hc...", basis, harmonics)
 
-    def scale(self, at_rest: np.ndarray, limit: float | None) -> float:
-        """Return a speed at which inertia and stiffness are alike, within a scene's range."""
-        if self.supports_vary is None:
-            return limit
-        return np.sqrt(np.abs(at_rest).max() / np.abs(self.at(0.0).M[0]).max()) or 1.0
+    def coordinates(self, vectors: np.ndarray) -> np.ndarray:
+        """Return harmonics (h, c) in the coordinates of H, (h, k)."""
+        basis = self.model.moving_basis
+        return vectors if basis is None else vectors @ basis
 
 
-def _direct(A: np.ndarray, B: np.ndarray) -> list[tuple[float, np.ndarray]]:
+def _orders(multiples: np.ndarray) -> np.ndarray:
+    """Return the differences (h, h) of frequencies, whole numbers."""
+    return np.subtract.outer(multiples, multiples).round().astype(int)
+
+
+def _blocks(multiples: np.ndarray, terms: Terms) -> np.ndarray:
+    """Return Fourier terms (k, k) as the matrix that couples frequencies, (h, k, h, k)."""
+    orders, k = _orders(multiples), len(terms[0])
+    H = np.zeros((len(orders), k, len(orders), k), dtype=complex)
+    for a, row in enumerate(orders):
+        for b, n in enumerate(row):
+            if n in terms:
+                H[a, :, b] = terms[n]
+    return H
+
+
+@dataclass(eq=False)
+class Search:
+    """The search for critical speeds of an undamped model.
+
+    Attributes
+    ----------
+    stiffness : Stiffness
+    content : Content
+    order : float
+        p ≥ 0.
+    diameters : sequence of int
+        Nodal diameters that may be excited.
+    limit : float or None
+        Largest speed [rad/s]; needed where the stiffness varies with it.
+    tolerance : float
+        Largest relative change of a speed by further harmonics.
+    is_exact : bool
+        Whether films are solved at each critical speed, too, not at some 200 speeds only.
+    lost : list of float
+        Speeds that did not settle.
+    """
+
+    stiffness: Stiffness
+    content: Content
+    order: float
+    diameters: Sequence[int]
+    limit: float | None
+    tolerance: float
+    is_exact: bool = True
+    lost: list[float] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.limit is None and self.stiffness.model.stiffness_varies:
+            raise ValueError(
+                "max_speed: a system that varies with the speed needs the largest speed of "
+                "interest [rad/s]"
+            )
+
+    @one_thread()
+    def resonances(self, factor: float = 0.0) -> list[Resonance]:
+        """Return all critical speeds up to the limit, with `factor` times what is added.
+
+        Raises
+        ------
+        ValueError
+            Where a support has a negative stiffness.
+        """
+        varies, step = self.stiffness.model.stiffness_varies, self._step
+        exact = replace(self.stiffness, factor=factor)
+        stiffness = replace(exact, between=self._between) if varies else exact
+        found: list[Resonance] = []
+        for center in self._centers(step):
+            few = center + step * np.arange(-_FEW, _FEW + 1) if step else np.array([center])
+            met = Excitation(self.content, self.order, self.diameters, few)
+            pairs = self._zeros(stiffness, met) if varies else _direct(*_quadratic(stiffness, few))
+            pairs = [
+                (speed, stiffness.motions(x, few))
+                for speed, x in pairs
+                if self.limit is None or speed <= self.limit
+            ]
+            answers = [Resonance(speed, x, few) for speed, x in met.answering(pairs)]
+            if step:
+                settled = [_settled(stiffness, one, step, self.tolerance) for one in answers]
+                self.lost += [a.speed for a, b in zip(answers, settled, strict=True) if b is None]
+                answers = [one for one in settled if one is not None]
+            found += answers
+        if stiffness.between is not None and self.is_exact:
+            found = [_polished(exact, stiffness, one) for one in found]
+        return found
+
+    @cached_property
+    def _step(self) -> int:
+        varies = self.stiffness.model.stiffness_varies
+        return self.stiffness.system(self.known[0][-1] if varies else 1.0).step
+
+    def _centers(self, step: int) -> list[float]:
+        """Return the frequencies over Ω at which waves answer; of those that are coupled, one."""
+        model = self.stiffness.model
+        ratios = {model.ratios[body.name] for body in rotors_of(model.bodies)}
+        shifts = []
+        for n in self.diameters:
+            for sign in (1, -1) if n and self.order else (1,):  # at order 0 they are conjugates
+                # waves of more diameters stay in the axes of their rotor
+                shifts += [sign * n * r for r in ratios] if n > 1 else [sign * n * model.turns]
+        centers = sorted({self.order - shift for shift in shifts}, key=lambda f: (abs(f), f))
+        first: dict[float, float] = {}
+        for f in centers:
+            first.setdefault(round(f % step, 9) % step if step else f, f)
+        return list(first.values())
+
+    @cached_property
+    def known(self) -> tuple[list[float], list[Pair]]:
+        """Speeds with equations, and those of them that are neighbours. Others cost a warning."""
+        model = self.stiffness.model
+        count = _BRACKETS // (1 + model.turns)
+        first = self.limit / count
+        kinks = model.table_speeds
+        kinks = kinks[(kinks > first) & (kinks < self.limit)]
+        slow = first * _RATIO ** np.arange(-_SLOW, _SLOW)
+        wanted = np.unique([*np.linspace(first, self.limit, count), *slow[slow > first], *kinks])
+        wanted = wanted[np.diff(wanted, prepend=0.0) > _SAME * first]
+        refused = self._refused(wanted)
+        if len(refused) == len(wanted):
+            raise refused[wanted[0]]
+        if refused:
+            _warn(
+                f"none are looked for at {len(refused)} of {len(wanted)} speeds from "
+                f"{min(refused):.4g} to {max(refused):.4g} rad/s: {next(iter(refused.values()))}"
+            )
+        else:  # as far down as there are equations
+            lower = slow[slow < first]
+            wanted = np.r_[lower[lower > max(self._refused(lower), default=0.0)], wanted]
+        near = [pair for pair in pairwise(wanted.tolist()) if refused.keys().isdisjoint(pair)]
+        return [speed for speed in wanted.tolist() if speed not in refused], near
+
+    def _refused(self, speeds: np.ndarray) -> dict[float, Exception]:
+        """Return the speeds without equations, and why they have none."""
+        refused = {}
+        for speed in speeds.tolist():
+            try:
+                self.stiffness.system(speed)
+            except NO_EQUATIONS as error:
+                refused[speed] = error
+        return refused
+
+    @cached_property
+    def _between(self) -> Callable[[float], PeriodicSystem] | None:
+        """Equations between the speeds at which films are solved, which are smooth over the speed.
+
+        None for tables, which have kinks.
+        """
+        grid, near = self.known
+        if self.stiffness.model.table_speeds.size or len(near) + 1 < max(len(grid), 4):
+            return None
+        systems = [self.stiffness.system(speed) for speed in grid]
+        orders = {n for system in systems for n in system.K}
+        K = {n: CubicSpline(np.log(grid), [s.K.get(n, 0.0 * s.M) for s in systems]) for n in orders}
+        last = systems[-1]
+
+        def between(speed: float) -> PeriodicSystem:
+            D = {n: X * (speed / last.speed) for n, X in last.D.items()}
+            stiffness = {n: curve(np.log(speed)) for n, curve in K.items()}
+            return PeriodicSystem(speed, last.M, D, stiffness)
+
+        return between
+
+    @cached_property
+    def _samples(self) -> dict[bytes, tuple]:
+        """H over the grid for given frequencies."""
+        return {}
+
+    def _sampled(self, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return a basis without motions that are free at every speed, H in it, and the unit.
+
+        Their signs are rounding. Real where the frequencies lie on both sides of zero alike.
+        """
+        key = multiples.tobytes()
+        if key not in self._samples:
+            plain, grid = self.stiffness, self.known[0]
+            H = np.array([plain(speed, multiples) for speed in grid])
+            unit = _blocks(multiples, plain.unit or {0: 0.0 * plain.system(grid[0]).M})
+            unit, h = unit.reshape(H[0].shape), len(multiples)
+            basis, is_real = np.eye(len(unit)), False
+            if h % 2 and np.array_equal(multiples, -multiples[::-1]):
+                basis, is_real = np.kron(real_waves(h), np.eye(len(unit) // h)), True
+            within, unit = (basis.conj().T @ X @ basis for X in (H, unit))
+            if is_real:
+                within, unit = within.real, unit.real
+            looked = [within[i] for i in (0, len(grid) // 2, -1)] + [unit]
+            stack = np.vstack([X / (np.linalg.norm(X) or 1.0) for X in looked])
+            _, sizes, rows = np.linalg.svd(stack, full_matrices=False)
+            held = rows[sizes > _FREE * len(rows)].conj().T
+            within, unit = (held.conj().T @ X @ held for X in (within, unit))
+            self._samples[key] = basis @ held, within, unit
+        return self._samples[key]
+
+    def _zeros(self, stiffness: Stiffness, met: Excitation) -> list[Pair]:
+        """Return the speeds at which H is singular, each with its null vector.
+
+        Only those with a part that the excitation meets, as far as is seen close to them.
+        """
+        multiples, (grid, near) = met.multiples, self.known
+        held, within, unit = self._sampled(multiples)
+        within = within + stiffness.factor * unit
+        place = {speed: i for i, speed in enumerate(grid)}
+        signs = np.linalg.eigvalsh(within)
+
+        def matrix(speed: float) -> np.ndarray:
+            H = held.conj().T @ stiffness(speed, multiples) @ held
+            return H if np.iscomplexobj(within) else H.real
+
+        places = []
+        for low, high in near:
+            before, after = signs[place[low]], signs[place[high]]
+            for j in np.flatnonzero((before < 0.0) != (after < 0.0)).tolist():
+                ends = {low: before[j], high: after[j]}
+                at = low + (high - low) * before[j] / (before[j] - after[j])
+                beside = np.linalg.eigh(matrix(at))[1][:, max(j - 1, 0) : j + 2]
+                share, _ = met.shares(stiffness.motions(held @ beside, multiples))
+                if share.max() < 0.5 * _SHARE:
+                    continue
+
+                def value(speed: float, ends: dict = ends, j: int = j) -> float:
+                    return ends[speed] if speed in ends else np.linalg.eigvalsh(matrix(speed))[j]
+
+                places.append((brentq(value, low, high, xtol=_FINE * self.limit, rtol=_FINE), j))
+        places.sort()
+        found: list[Pair] = []
+        for group in same_speed([speed for speed, _ in places]):
+            _, vectors = np.linalg.eigh(matrix(places[group[0]][0]))
+            found += [(places[i][0], held @ vectors[:, places[i][1]]) for i in group]
+        return found
+
+    def warn(self) -> None:
+        """Warn of critical speeds that are left out."""
+        if self.lost:
+            shown = ", ".join(f"{speed:.5g}" for speed in sorted(self.lost)[:5])
+            _warn(
+                f"near {shown}{' …' * (len(self.lost) > 5)} rad/s they still change with harmonics "
+                f"up to the {_MOST * self._step}th, and are left out"
+            )
+
+
+def _warn(what: str) -> None:
+    warnings.warn(f"critical speeds: {what}", UserWarning, stacklevel=user_level())
+
+
+def same_speed(speeds: Sequence[float]) -> list[list[int]]:
+    """Return places of ascending speeds in groups of one speed."""
+    groups: list[list[int]] = []
+    for i, speed in enumerate(speeds):
+        if groups and speed - speeds[groups[-1][-1]] <= _SAME * speed:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return groups
+
+
+def _quadratic(stiffness: Stiffness, multiples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return K0 and B of ``H = K0 − Ω² B``."""
+    K0 = stiffness(_AT_REST, multiples)
+    M = stiffness.system(_AT_REST).M
+    speed = float(np.sqrt(np.abs(K0).max() / np.abs(M).max())) if len(M) else 0.0
+    speed = speed or 1.0
+    return K0, (K0 - stiffness(speed, multiples)) / speed**2
+
+
+def _direct(A: np.ndarray, B: np.ndarray) -> list[Pair]:
     """Solve ``A φ = Ω² B φ`` for positive Ω²; A Hermitian, not negative, B Hermitian.
 
     Free motions, the null space R of A, follow the others by their inertia: ``Rᴴ B φ = 0``. Those
-    without any, like the spin, stay at rest.
+    without any stay at rest.
     """
-    values, vectors = np.linalg.eigh(A)
-    if values[0] < -1e-8 * values[-1]:
-        raise ValueError("critical speeds: a support has a negative stiffness; see campbell")
-    held = values > 1e-12 * values[-1]
-    R, W = vectors[:, ~held], vectors[:, held] / np.sqrt(values[held])
-    inertia, turn = np.linalg.eigh(R.conj().T @ B @ R)
-    moving = np.abs(inertia) > _NO_INERTIA * np.abs(B).max()
-    R = R @ turn[:, moving]
-    basis = W - R @ ((R.conj().T @ B @ W) / inertia[moving, None])
-    inverse, shapes = np.linalg.eigh(basis.conj().T @ B @ basis)
-    positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
-    pairs = zip(1.0 / np.sqrt(inverse[positive]), (basis @ shapes[:, positive]).T, strict=True)
-    return [(float(speed), vector) for speed, vector in pairs]
-
-
-def _turning(
-    candidates: list[Resonance], content: WhirlContent, order: float, waves: Sequence[int]
-) -> list[Resonance]:
-    """Keep motions that turn with the excitation; of a motion and its conjugate, one."""
-    if not candidates:
+    if not len(A):
         return []
-    ascending = sorted(candidates, key=lambda entry: entry.speed)
-    multiples = ascending[0].multiples
-    vectors = np.stack([entry.vectors for entry in ascending], axis=2).astype(complex)
-    vectors = vectors / np.linalg.norm(vectors.reshape(-1, len(ascending)), axis=0)
-    for group in same_speed(list(range(len(ascending))), lambda i: ascending[i].speed):
-        if len(group) > 1:
-            vectors[:, :, group] = content.polarised(vectors[None, :, :, group], multiples)[0]
-    seen = multiples[:, None] + content.orders[None, :]
-    energy = content.energies(vectors)
-    total = np.maximum(content.whole_energy(vectors), 1e-300)
-    meets = (np.abs(np.abs(seen) - order) < 1e-9) & np.isin(np.abs(content.orders), np.abs(waves))
-    turning = np.sum(energy * meets[..., None], axis=(0, 1))
-    if 0 not in waves:  # what stands still beside the rotor answers to all
-        answers = np.abs(np.abs(multiples) - order) < 1e-9
-        turning += answers @ content.beside(vectors)
-    conjugate = np.einsum("ho,hok->k", seen, energy) < -_CONJUGATE * order * total
-    return [
-        Resonance(ascending[column].speed, multiples, vectors[:, :, column])
-        for column in np.flatnonzero((turning >= _SHARE * total) & ~conjugate)
-    ]
+    values, vectors = np.linalg.eigh(A)
+    if values[0] < -1e-9 * values[-1]:
+        raise ValueError("critical speeds: a support has a negative stiffness; see campbell")
+    held = values > _FREE * len(A) * values[-1]
+    R, W = vectors[:, ~held], vectors[:, held] / np.sqrt(values[held])
+    if R.shape[1]:
+        inertia, turn = np.linalg.eigh(R.conj().T @ B @ R)
+        moving = np.abs(inertia) > _NO_INERTIA * np.abs(B).max()
+        R = R @ turn[:, moving]
+        W = W - R @ ((R.conj().T @ B @ W) / inertia[moving, None])
+    inverse, shapes = np.linalg.eigh(W.conj().T @ B @ W)
+    positive = inverse > 1e-12 * np.abs(inverse).max(initial=0.0)
+    speeds = 1.0 / np.sqrt(inverse[positive])
+    return list(zip(speeds.tolist(), (W @ shapes[:, positive]).T, strict=True))
 
 
-def _joined(critical: list[Resonance], content: WhirlContent) -> list[Resonance]:
-    """Return resonances, of each pair that an asymmetric rotor splits the lower one.
-
-    Those of a pair are two phases of one motion: combined, all that is seen from outside turns one
-    way in time, ``exp(ipΩt)``, or the other, which independent motions cannot do.
-    """
-    joined: list[Resonance] = []
-    taken: set[int] = set()
-    pairs = _pairs(critical, content)
-    for index, entry in enumerate(critical):
-        if index in taken:
-            continue
-        other = next((j for i, j in pairs if i == index and j not in taken), None)
-        if other is not None:
-            taken.add(other)
-            entry = Resonance(entry.speed, entry.multiples, entry.vectors, critical[other])
-        joined.append(entry)
-    return joined
+# ------------------------------------------------------------------ which motions answer
 
 
-def _pairs(critical: list[Resonance], content: WhirlContent) -> list[tuple[int, int]]:
-    """Return which of them are close and pairs, each the lower one first, ascending."""
-    alike: dict[bytes, list[tuple[int, int]]] = {}
-    for index, entry in enumerate(critical):
-        for other in range(index + 1, len(critical)):
-            upper = critical[other]
-            if upper.speed > (1.0 + PAIR) * entry.speed:
-                break
-            if 0.0 in entry.multiples and np.array_equal(entry.multiples, upper.multiples):
-                alike.setdefault(entry.multiples.tobytes(), []).append((index, other))
-    result = []
-    for close in alike.values():
-        lower, upper = (
-            np.stack([critical[i].vectors for i in side], axis=2)
-            for side in zip(*close, strict=True)
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """Which motions an excitation of the order p meets, at frequencies `multiples` (h,) of Ω."""
+
+    content: Content
+    order: float
+    diameters: Sequence[int]
+    multiples: np.ndarray
+
+    @property
+    def seen(self) -> np.ndarray:
+        """Frequencies over Ω with which harmonics of each wave are seen from outside, (h, w)."""
+        return self.multiples[:, None] + self.content.shifts[None, :]
+
+    def shares(self, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the share of energy of motions (h, k, n) that turns so, and the mean order, (n,).
+
+        The mean order is over p; it is negative of the conjugate of another motion.
+        """
+        content, p = self.content, self.order
+        energy = _energy(content.forms, vectors)
+        standing, total = (
+            _energy(F[None], vectors)[:, 0] for F in (content.standing, content.whole)
         )
-        turning = content.turn_both_ways(lower, upper, critical[close[0][0]].multiples)
-        result += [pair for pair, turns in zip(close, turning, strict=True) if turns]
-    return sorted(result)
+        total = np.maximum(total.sum(axis=0), 1e-300)
+        meets = (np.abs(np.abs(self.seen) - p) < 1e-9) & np.isin(
+            np.abs(content.waves), self.diameters
+        )
+        turning = np.sum(energy * meets[..., None], axis=(0, 1))
+        # what stands still beside the rotor answers to all
+        turning += (np.abs(np.abs(self.multiples) - p) < 1e-9) @ standing
+        mean = np.einsum("hw,hwn->n", self.seen, energy)
+        return turning / total, mean / (total * (p or 1.0))
+
+    def answering(self, pairs: list[tuple[float, np.ndarray]]) -> list[tuple[float, np.ndarray]]:
+        """Return those of speeds and harmonics (h, k) whose motions turn with the excitation.
+
+        Of a motion and its conjugate, one.
+        """
+        if not pairs:
+            return []
+        pairs = sorted(pairs, key=lambda pair: pair[0])
+        speeds = [speed for speed, _ in pairs]
+        vectors = np.stack([vector for _, vector in pairs], axis=2).astype(complex)
+        vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
+        for group in same_speed(speeds):
+            if len(group) > 1:
+                vectors[:, :, group] = _one_sense(vectors[:, :, group], self.seen, self.content)
+        share, mean = self.shares(vectors)
+        kept = np.flatnonzero((share >= _SHARE) & (mean >= -_CONJUGATE))
+        return [(speeds[i], vectors[:, :, i]) for i in kept]
 
 
-def _needed(limit: float | None, what: str) -> float:
-    if limit is None:
-        raise ValueError(f"max_speed: {what} needs the largest speed of interest [rad/s]")
-    return limit
+def _energy(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return the energies (h, w, n) of harmonics (h, k, n) in forms (w, k, k)."""
+    moved = forms[None] @ vectors[:, None]
+    return np.sum((vectors[:, None].conj() * moved).real, axis=2)
+
+
+def _one_sense(vectors: np.ndarray, seen: np.ndarray, content: Content) -> np.ndarray:
+    """Return motions (h, k, g) of one speed so that each turns one way in time, then in space."""
+    flat = vectors.reshape(-1, vectors.shape[2])
+    span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
+    if lengths[-1] < 1e-3 * lengths[0]:
+        return vectors
+    span = span.reshape(vectors.shape)
+    weights = 10.0 * np.sign(np.where(np.abs(seen) < 1e-9, 0.0, seen)) + content.waves
+    mean = np.tensordot(weights, content.forms, axes=(1, 0)) + 0.4 * content.axial
+    whole = content.whole + content.standing
+    form, size = (
+        sum(x.conj().T @ (F @ x) for F, x in zip(forms, span, strict=True))
+        for forms in (mean, [whole] * len(span))
+    )
+    floor = 1e-12 * max(np.trace(size).real, 1e-300)
+    form, size = (0.5 * (F + F.conj().T) for F in (form, size))
+    _, turn = la.eigh(form, size + floor * np.eye(len(size)))
+    turned = span @ turn
+    return turned / np.linalg.norm(turned, axis=(0, 1))
+
+
+# ------------------------------------------------------------------ one motion by itself
+
+
+def refined(
+    stiffness: Stiffness,
+    found: Resonance,
+    smooth: Stiffness | None = None,
+    tolerance: float = 1e-9,
+) -> Resonance:
+    """Return the critical speed next to one, and its motion, by inverse iteration.
+
+    The slope of H may be that of a `smooth` one. The speed is NaN where it does not converge.
+    """
+    speed, multiples, smooth = found.speed, found.multiples, smooth or stiffness
+    x = stiffness.coordinates(found.vectors).ravel()
+    for _ in range(_ITERATIONS):
+        H, later, earlier = (
+            one(s, multiples)
+            for one, s in ((stiffness, speed), (smooth, speed), (smooth, speed * (1.0 - _STEP)))
+        )
+        try:
+            moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
+        except np.linalg.LinAlgError:  # there already
+            break
+        change = (np.vdot(x, x) / np.vdot(x, moved)).real
+        x, speed = moved / np.linalg.norm(moved), speed - change
+        if not 0.0 < speed < np.inf:
+            return found._replace(speed=np.nan)
+        if abs(change) <= tolerance * speed:
+            break
+    else:
+        speed = np.nan
+    return Resonance(float(speed), stiffness.motions(x, multiples), multiples)
+
+
+def _settled(
+    stiffness: Stiffness, found: Resonance, step: int, tolerance: float
+) -> Resonance | None:
+    """Add harmonics to a motion until its critical speed does not change; None where it does."""
+    for _ in range(_FEW, _MOST):
+        last, multiples = found.speed, found.multiples
+        multiples = np.r_[multiples[0] - step, multiples, multiples[-1] + step]
+        wider = Resonance(last, np.pad(found.vectors, ((1, 1), (0, 0))), multiples)
+        try:
+            found = refined(stiffness, wider)
+        except NO_EQUATIONS:
+            return None
+        if np.isnan(found.speed) or abs(found.speed - last) <= tolerance * last:
+            break
+    else:
+        return None
+    return None if np.isnan(found.speed) else found
+
+
+def _polished(stiffness: Stiffness, smooth: Stiffness, found: Resonance) -> Resonance:
+    """Return a critical speed with the films that are there."""
+    try:
+        better = refined(stiffness, found, smooth, 1e-7)
+    except NO_EQUATIONS:
+        return found
+    return better if abs(better.speed - found.speed) < _OFF * found.speed else found
+
+
+def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance], Names]:
+    """Return critical speeds, ascending, those of one speed from backward to forward waves."""
+    rotor = np.zeros(len(found))
+    codes, diameters = np.zeros((2, len(found)), dtype=np.int64)
+    alike: dict[tuple, list[int]] = {}
+    for i, one in enumerate(found):
+        alike.setdefault(tuple(one.multiples), []).append(i)
+    for multiples, places in alike.items():
+        center = multiples[len(multiples) // 2]
+        orders = np.round(np.array(multiples) - center).astype(int)
+        vectors = np.stack([found[i].vectors for i in places], axis=2)
+        vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
+        # all frequencies go with the speed, so that one speed stands for all
+        values = np.full(len(places), 1j * center)
+        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
+        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+    ascending = np.argsort([one.speed for one in found], kind="stable")
+    senses = signed_diameters(codes, diameters)[ascending]
+    groups = same_speed([found[i].speed for i in ascending])
+    row = [ascending[i] for group in groups for i in sorted(group, key=senses.__getitem__)]
+    return [found[i] for i in row], Names(*(each[row] for each in (rotor, codes, diameters)))

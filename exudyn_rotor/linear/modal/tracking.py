@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.modal.whirl_new import Named
+from exudyn_rotor.linear.modal.whirl import Named
 from exudyn_rotor.linear.solve.motions import Motions
 
 # how strongly jumps of the frequency seen from outside, and of the growth, count against a likeness

@@ -55,7 +55,8 @@ class RotorAlone:
         Largest share of stiffness and centrifugal matrix that differs around the circumference,
         in slow motions.
     left_out : mapping of str to float
-        Of each interface the share of its lateral flexibility by motions that are half of a pair.
+        Of each interface the share of its lateral flexibility by motions that are half of a pair;
+        of '' their share in all slow lateral motions.
     complete_up_to : float
         Frequency of the lowest of these halves [rad/s].
     spin : Spin or None
@@ -80,10 +81,20 @@ class RotorAlone:
 
     def unevenness(self, places: tuple[str, ...]) -> float:
         """Return the unevenness of the rotor and of the places that something acts on."""
-        shares = [self.turning.place_share(self.motion(name)) for name in places]
-        lost = [self.left_out.get(name, 0.0) for name in places]
+        shares = [self._place_share(name) for name in places]
+        lost = [self.left_out.get(name, 0.0) for name in places or ("",)]
         return max([self.uneven, *shares, *lost])
 
+    @kept
+    def _place_share(self, name: str) -> float:
+        return self.turning.place_share(self.motion(name))
+
+    @cached_property
+    def bodies(self) -> dict[tuple, RotorBody]:
+        """What :func:`rotor_body` has made of it: maps and searches make many models of a rotor."""
+        return {}
+
+    @kept
     def motion(self, name: str) -> np.ndarray:
         """Return the motion (6, k) of an interface along (n1, n2, e) in the rotor frame."""
         return interface_motion(self.rotor, name) @ self.Q
@@ -100,6 +111,9 @@ def rotor_alone(rotor: ReducedRotor, stiffening: str, whole: bool) -> RotorAlone
     if turning.halves.shape[1]:
         squares = np.linalg.eigvalsh(turning.halves.T @ invariants.K @ turning.halves)
         lowest = float(np.sqrt(max(squares[0], 0.0)))
+        halves = np.linalg.norm(turning.halves.T @ turning.T, axis=0) > 0.5
+        slow = np.where(halves | (turning.waves != 0), turning.weights**2, 0.0)
+        left_out[""] = float(slow[halves].sum() / slow.sum())
         for name in rotor.interfaces:
             left_out[name] = turning.halves_share(interface_motion(rotor, name))
         if not whole:
@@ -230,6 +244,7 @@ class RotorBody(Body):
             terms = {0: terms[0]}
         return turned(terms, self.turns)
 
+    @kept
     def supported(self, name: str) -> dict[int, np.ndarray]:
         """Return the motion of an interface that a support acts on, seen from outside, (6, k)."""
         U = self.motion(name)
@@ -251,6 +266,15 @@ def rotor_body(
     name: str, alone: RotorAlone, ratio: float, turns: int, *, is_apart: bool = True
 ) -> RotorBody:
     """Return a rotor in axes that turn with `turns` times Ω."""
+    key = name, ratio, turns, is_apart
+    if key not in alone.bodies:
+        alone.bodies[key] = _rotor_body(name, alone, ratio, turns, is_apart)
+    return alone.bodies[key]
+
+
+def _rotor_body(
+    name: str, alone: RotorAlone, ratio: float, turns: int, is_apart: bool
+) -> RotorBody:
     inv, terms, w = alone.invariants, alone.terms, ratio - turns
     spin = alone.spin
     if spin is not None and w != 0.0:

@@ -15,6 +15,10 @@ from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.model.body import EVEN
 from exudyn_rotor.linear.model.linear_model import AXES, ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.model.scene.linear_scene import ABOUT, LinearScene
+from exudyn_rotor.linear.model.scene.scene_model import SceneModel
+from exudyn_rotor.linear.model.scene.scene_train import scene_train
+from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.prestress.carrying import with_chosen_prestress
 from exudyn_rotor.reduction.driven import without_spin
@@ -104,6 +108,7 @@ def linear_model(
         checks.instance(foundation, "foundation", Foundation)
     if given or foundation is not None:
         _check_takes_supports(target)
+    checks.choice(about, "about", ABOUT)
     if isinstance(target, exudyn.MainSystem):
         return _of_scene(target, body, about, axes)
     if body is not None:
@@ -184,7 +189,10 @@ def _of_scene(
     about: str,
     axes: str,
 ) -> LinearModel:
-    raise NotImplementedError
+    if isinstance(body, list | tuple):
+        return _of_train(*scene_train(mbs, body), axes)
+    how = "the rotor in the scene, which add_rotor returned; a list of several"
+    return SceneModel.of(LinearScene.of(mbs, reduced_body(body, how=how), about=about), axes)
 
 
 def warn_of_structural_damping(model: LinearModel, what: str) -> None:

@@ -61,6 +61,8 @@ class Element:
         Ω at the points of its tables [rad/s], where coefficients have kinks.
     holding : callable, optional
         Gives a stiffness that tells which motions it holds, where it may have none at rest.
+    law : ControlledSupport or another with coordinates of its own, optional
+        What it was made from.
     """
 
     ends: tuple[End, ...]
@@ -71,6 +73,7 @@ class Element:
     stiffness_varies: bool = False
     table_speeds: np.ndarray = field(default_factory=lambda: np.zeros(0))
     holding: Callable[[], np.ndarray] | None = None
+    law: Controlled | None = None
 
     @property
     def what(self) -> str:
@@ -86,7 +89,7 @@ class Element:
 
     def is_isotropic(self, speed: float) -> bool:
         """Return whether the coefficients at a speed are the same in all directions."""
-        return all(_is_isotropic(X) for X in self.matrices(speed))
+        return all(is_isotropic_matrix(X) for X in self.matrices(speed))
 
     def terms(self, speed: float, U: Terms, turns: int) -> tuple[dict, dict]:
         """Return the Fourier terms of damping and stiffness, each (k, k), at a speed Ω [rad/s].
@@ -105,7 +108,7 @@ class Element:
         return damping, stiffness
 
 
-def _is_isotropic(X: np.ndarray) -> bool:
+def is_isotropic_matrix(X: np.ndarray) -> bool:
     quarter = axial_skew(len(X))
     return bool(np.abs(X @ quarter - quarter @ X).max() <= _ROUNDING * np.abs(X).max())
 
@@ -181,7 +184,7 @@ def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
     return Element(ends, lambda _: gears.matrices(), lambda seen: stacked([*map(seen, ends)]))
 
 
-def _with_own(
+def with_own(
     one: Controlled, end: End, base: End | None, rate: float, own: OwnBody
 ) -> list[Element]:
     """Return the elements of a support with coordinates of its own."""
@@ -206,7 +209,7 @@ def _with_own(
 
     ends = (end, (end[0], one.sensor))
     if isinstance(one, ControlledSupport):
-        return [Element(ends, matrices, motion)]
+        return [Element(ends, matrices, motion, law=one)]
     return [Element((end,), of_film, motion, varies=True, stiffness_varies=True)]
 
 
@@ -271,7 +274,7 @@ def elements_of(
         for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
             own.append(own_body(one, len(own) + 1, turns))
             end, base = (name, one.interface), bases.get(one.interface)
-            elements += _with_own(one, end, base, ratio, own[-1])
+            elements += with_own(one, end, base, ratio, own[-1])
     for link in links:
         first, second = link.ends
         if isinstance(link.connection, GearMesh):

@@ -546,12 +546,12 @@ class LinearModel:
     @cached_property
     def held_basis(self) -> np.ndarray | None:
         """Motions without a free spin as orthonormal columns; None where no spin is free."""
-        return _beside(self.free_spins)
+        return beside(self.free_spins)
 
     @cached_property
     def moving_basis(self) -> np.ndarray | None:
         """Motions without :attr:`neutral_motions` as orthonormal columns; None for all."""
-        return _beside(self._neutral[1])
+        return beside(self._neutral[1])
 
     @property
     def for_responses(self) -> LinearModel:
@@ -577,7 +577,7 @@ class LinearModel:
         return "\n".join(lines)
 
 
-def _beside(momenta: np.ndarray) -> np.ndarray | None:
+def beside(momenta: np.ndarray) -> np.ndarray | None:
     """Return motions orthogonal to others, coordinates kept where they can be; None for all."""
     if not momenta.shape[1]:
         return None

@@ -28,7 +28,7 @@ import scipy.linalg
 
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts, depth_under
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.response.contact_rest import Harmonics, Rest
 
 _MOST_ITERATIONS = 30

@@ -3,11 +3,11 @@
 Beside the motion (1) of :mod:`contact_balance` the contacts are springs that change with the ball
 pass and the spin, on the rest that is linear:
 
-    M δẍ + D δẋ + K δx = Cᵀ (k₀ − k(ψ, θ)) C δx,    C = T(θ) U − B                            (1)
+    M δẍ + D δẋ + K δx = Cᵀ (k₀ − k(ψ, θ)) C δx                                              (1)
 
-with U the inner rings in the rotor's axes, B the outer ones on a foundation, k the stiffness of the
-contacts at the steady motion, and k₀ the springs that K holds in their place. The steady motion is
-stable where the largest exponent of (1) is below zero.
+with C(θ) the motion of the inner rings against the outer ones, k the stiffness of the contacts at
+the steady motion, and k₀ the springs that K holds in their place. The steady motion is stable where
+the largest exponent of (1) is below zero.
 
 Ball pass and spin need no common period. One has nearby spin speeds at which m balls pass in n
 revolutions, m/n close to Zκ. The frequency of the ball pass is kept, so that such a speed changes
@@ -22,13 +22,13 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import scipy.linalg
 
 from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.whole_space import WholeSpace
-from exudyn_rotor.linear.periodic.impulses import ChangingEquations
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.contact_balance import ContactBalance
+from exudyn_rotor.linear.response.contact_rest import resisted, ring_motions
+from exudyn_rotor.linear.solve.impulses import ChangingEquations
 
 _PER_CYCLE = 12  # steps in a cycle of the fastest motion on the contacts
 _PER_WAVE = 8  # and in the shortest wave of the steady motion, as its grid has points
@@ -40,10 +40,10 @@ _HALVINGS = 2  # of a step
 _ROUNDED = -30.0  # logarithm of a multiplier that may be rounding
 _SLOW = 400  # cycles in a ball pass, from which on the bearings are looked at as they stand
 _ANGLES = 16  # of the cage, there, and for means
-_MOST_COORDINATES = 60
+_DEPENDENT = 1e-10  # of singular values of motions of unit length
 
 
-def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[float, float]:
+def growth(balance: ContactBalance, c: np.ndarray, model: LinearModel) -> tuple[float, float]:
     """Return the largest exponent of motions beside a steady one, and its error [1/s].
 
     Parameters
@@ -51,8 +51,8 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
     balance : ContactBalance
     c : ndarray, shape (h, d)
         Harmonics of the steady motion.
-    space : WholeSpace
-        Equations of the rest at any spin speed, the spin held.
+    model : LinearModel
+        The rest at any spin speed.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
         cage.
     """
     rest = balance.rest
-    beside = _Beside(balance, c, space, rest.speed)
+    beside = _Beside(balance, c, model, rest.speed)
     cycle = 2.0 * np.pi / beside.fastest
     if rest.passing * cycle * _SLOW < 2.0 * np.pi:
         angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
@@ -76,7 +76,7 @@ def growth(balance: ContactBalance, c: np.ndarray, space: WholeSpace) -> tuple[f
     ratio, value, error, last, by_step = rest.passing / rest.speed, np.nan, np.inf, np.nan, np.nan
     for m, n in _near(ratio, int(_MOST_STEPS * step * rest.speed / (2.0 * np.pi))):
         period = 2.0 * np.pi * m / rest.passing
-        near = _Beside(balance, c, space, 2.0 * np.pi * n / period).equations()
+        near = _Beside(balance, c, model, 2.0 * np.pi * n / period).equations()
         if np.isnan(by_step):
             step, found, by_step = _small_enough(near, period, step)
         else:
@@ -127,104 +127,91 @@ class _Beside:
 
     balance: ContactBalance
     c: np.ndarray
-    space: WholeSpace
+    model: LinearModel
     speed: float
 
     @cached_property
-    def rest(self) -> PeriodicSystem:
-        """The rest without a spin that nothing holds."""
-        return self.space.at(self.speed)
-
-    @cached_property
-    def rings(self) -> list[tuple[int, float, np.ndarray, bool]]:
-        """Bearing, sign, motion (2, k) and whether it stands, of every ring."""
-        return [
-            (b, sign, ring.motion[:2], ring.stands)
-            for b, seat in enumerate(self.balance.rest.seats)
-            for ring, sign in seat
-        ]
-
-    @cached_property
-    def _all_places(self) -> np.ndarray:
-        """Motions (r, k) of the rings, each in its own axes."""
-        places = np.vstack([motion for *_, motion, _ in self.rings])
-        return places if self.space.others is None else places @ self.space.others
-
-    @cached_property
-    def _basis(self) -> np.ndarray | None:
-        """Slow motions, and those by forces on the rings, of a rest with many coordinates."""
-        if self.rest.size <= _MOST_COORDINATES:
-            return None
-        M, K = self.rest.M[0].real, self.rest.K[0].real
-        slow = scipy.linalg.eigh(K + K.T, 2.0 * M, subset_by_index=[0, _MOST_COORDINATES - 1])[1]
-        pushed = np.linalg.lstsq(K, self._all_places.T, rcond=1e-12)[0]
-        return np.linalg.qr(np.hstack([slow, pushed / np.linalg.norm(pushed, axis=0)]))[0]
-
-    @cached_property
     def system(self) -> PeriodicSystem:
-        """The rest, in not too many coordinates."""
-        return self.rest if self._basis is None else self.rest.projected(self._basis)
+        """The rest without motions that nothing holds."""
+        return self.model.at(self.speed).projected(resisted(self.model))
+
+    @cached_property
+    def rings(self) -> Terms:
+        """C: Fourier terms (d, r)."""
+        basis = resisted(self.model)
+        moved = ring_motions(self.model, self.balance.rest.bearings, self.speed)
+        return {n: np.delete(U, slice(2, None, 3), axis=0) @ basis for n, U in moved.items()}
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Motions of the rings by these coordinates."""
-        return self._all_places if self._basis is None else self._all_places @ self._basis
+        """Motions (p, r), orthonormal, that contacts and varying coefficients act on."""
+        system = self.system
+        varying = [X for terms in (system.D, system.K) for n, X in terms.items() if n > 0]
+        if not system.speed:
+            varying = []
+        rows = [*self.rings.values(), *varying]
+        rows = [part / max(np.abs(X).max(), 1e-300) for X in rows for part in (X.real, X.imag)]
+        _, sizes, V = np.linalg.svd(np.vstack(rows), full_matrices=False)
+        return V[sizes > _DEPENDENT * sizes[0]]
+
+    def _turned(self, theta: np.ndarray) -> np.ndarray:
+        """Return C at angles, by motions of the places, (t, d, p)."""
+        terms = {n: C @ self.places.T for n, C in self.rings.items()}
+        return sum(np.exp(1j * n * theta)[:, None, None] * C for n, C in terms.items()).real
 
     @cached_property
     def fastest(self) -> float:
         """Largest frequency of the places on the stiffest contacts [rad/s]."""
         slopes = self.balance.contacts(self.balance.values(self.c))[2]
         stiffest = (np.abs(slopes).max(axis=(0, 1, 3, 4)) + self.balance.springs[::2]).max()
-        moved = self.places @ np.linalg.solve(self.system.M[0].real, self.places.T)
+        C = self._turned(np.zeros(1))[0] @ self.places
+        moved = C @ np.linalg.solve(self.system.M, C.T)
         return float(np.sqrt(stiffest * np.linalg.norm(moved, 2)))
 
     def equations(self, psi: float | None = None) -> ChangingEquations:
         """Return the equations over time; with balls that stand at an angle ψ, if it is given."""
-        system, rings = self.system, self.places
-        M, D, K = (terms[0].real for terms in (system.M, system.D, system.K))
-        K = K + rings.T @ self._mean @ rings
-        others = np.zeros((0, system.size)) if system.is_constant else system.ports.T
-        changes = partial(self._changes, others, psi)
-        return ChangingEquations(M, D, K, np.vstack([rings, others]), changes, self.fastest)
+        M, D, K = self.system.M, *(self._mean_of(X) for X in (self.system.D, self.system.K))
+        P = self.places
+        K = K + P.T @ self._mean @ P
+        return ChangingEquations(M, D, K, P, partial(self._changes, psi), self.fastest)
+
+    def _mean_of(self, terms: Terms) -> np.ndarray:
+        return terms[0] if self.speed else sum(terms.values()).real
 
     def _changes(
-        self, others: np.ndarray, psi: float | None, times: np.ndarray
+        self, psi: float | None, times: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray | None]:
         """Return changes of stiffness and damping (t, p, p) at the places, see (1)."""
-        p = len(self.places)
         passed = self.balance.rest.passing * times if psi is None else np.full(len(times), psi)
         theta = self.speed * times
-        size = p + len(others)
-        stiffness = np.zeros((len(times), size, size))
-        stiffness[:, :p, :p] = self._of_contacts(passed, theta) - self._mean
-        if not len(others):
+        stiffness = self._of_contacts(passed, theta) - self._mean
+        if self.system.is_constant:
             return stiffness, None
-        stiffness[:, p:, p:] = _varying(self.system.K, others, theta)
-        damping = np.zeros_like(stiffness)
-        damping[:, p:, p:] = _varying(self.system.D, others, theta)
-        return stiffness, damping
+        stiffness += self._varying(self.system.K, theta)
+        return stiffness, self._varying(self.system.D, theta)
+
+    def _varying(self, terms: Terms, theta: np.ndarray) -> np.ndarray:
+        """Return the part of Fourier terms that varies with θ, (t, p, p)."""
+        found = np.zeros((len(theta), len(self.places), len(self.places)))
+        for n, X in terms.items():
+            if n:
+                part = self.places @ X @ self.places.T
+                found += (np.exp(1j * n * theta)[:, None, None] * part).real
+        return found
 
     @cached_property
     def _mean(self) -> np.ndarray:
-        """Mean (r, r) of the contacts' part: what is constant needs no small steps."""
+        """Mean (p, p) of the contacts' part: what is constant needs no small steps."""
         angles = 2.0 * np.pi * np.arange(_ANGLES) / _ANGLES
         both = np.meshgrid(angles, angles)
         return self._of_contacts(both[0].ravel(), both[1].ravel()).mean(axis=0)
 
     def _of_contacts(self, psi: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Return ``−Cᵀ(k₀ − k)C`` by the rings' motions in their axes, (t, r, r)."""
+        """Return ``−Cᵀ(k₀ − k)C``, (t, p, p)."""
+        C = self._turned(theta)
+        pairs = C.reshape(len(theta), -1, 2, C.shape[2])
         slopes = self._slopes(psi, theta)
-        cos, sin = np.cos(theta), np.sin(theta)
-        turned = np.moveaxis(np.array([[cos, -sin], [sin, cos]]), -1, 0)
-        still = np.broadcast_to(np.eye(2), turned.shape)
-        into = [sign * (still if stands else turned) for _, sign, _, stands in self.rings]
-        found = np.zeros((len(psi), len(self.places), len(self.places)))
-        for i, (b, *_) in enumerate(self.rings):
-            for j, (other, *_) in enumerate(self.rings):
-                if b == other:
-                    block = np.swapaxes(into[i], 1, 2) @ slopes[:, b] @ into[j]
-                    found[:, 2 * i : 2 * i + 2, 2 * j : 2 * j + 2] = -block
-        return found
+        return -np.einsum("tbip,tbij,tbjq->tpq", pairs, slopes, pairs, optimize=True)
 
     def _slopes(self, psi: np.ndarray, theta: np.ndarray) -> np.ndarray:
         """Return ``k₀ − k`` of the bearings at the steady motion, shape (t, B, 2, 2)."""
@@ -234,13 +221,3 @@ class _Beside:
         spun = np.exp(1j * np.outer(theta, np.arange(-N, N + 1)))
         q = np.einsum("tn,tnd->td", spun, passed.reshape(len(psi), 2 * N + 1, -1)).real
         return self.balance.contacts(q.reshape(len(psi), -1, 2), psi)[2]
-
-
-def _varying(terms: dict[int, np.ndarray], motions: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Return the part of Fourier terms that varies with θ, by orthonormal motions, (t, p, p)."""
-    found = np.zeros((len(theta), len(motions), len(motions)))
-    for n, X in terms.items():
-        if n:
-            part = motions @ X @ motions.T
-            found += (np.exp(1j * n * theta)[:, None, None] * part).real
-    return found

@@ -13,14 +13,12 @@ from functools import partial
 import numpy as np
 
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.cached import cached_property
-from exudyn_rotor.linear.models.protocol import LinearModel
-from exudyn_rotor.linear.models.rotor.rotor_on_foundation import ON_FOUNDATION
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.contact_balance import ContactBalance, unknowns
 from exudyn_rotor.linear.response.contact_rest import Rest
 from exudyn_rotor.linear.response.contact_stability import growth
-from exudyn_rotor.linear.response.places import Place, place
 
 _Balances = Callable[[tuple[int, int]], ContactBalance]
 
@@ -51,35 +49,34 @@ class SteadyMotion:
 
 @dataclass(frozen=True, eq=False)
 class RollingProblem:
-    """Rotor, bearings with their springs k₀ (d,), and loads at any speed, rotor frame."""
+    """Rotor, bearings with their springs k₀ (d,), and loads at any speed."""
 
     model: LinearModel
     bearings: Sequence[RollingBearing]
     springs: np.ndarray
     passes: float
-    static: Mapping[int, np.ndarray]
-    unbalance: np.ndarray  # per Ω²
+    static: Callable[[float], dict[int, np.ndarray]]  # harmonics (k,) at a speed
+    unbalance: Mapping[int, np.ndarray]  # per Ω²
 
-    @cached_property
-    def seats(self) -> list[list[tuple[Place, float]]]:
-        """Rings of each bearing, see :class:`Rest`."""
-        found = []
-        for one in self.bearings:
-            rings = {one.interface: 1.0, ON_FOUNDATION.format(one.interface): -1.0}
-            known = [name for name in rings if name in self.model.interfaces]
-            found.append([(place(self.model, name), rings[name]) for name in known])
-        return found
+    def swept(
+        self, speeds: np.ndarray, tolerance: float
+    ) -> tuple[list[SteadyMotion | None], Exception | None]:
+        """Return the motions, each beginning with the one before, and why the first is lacking.
 
-    def swept(self, speeds: np.ndarray, tolerance: float) -> list[SteadyMotion]:
-        """Return the motions, each beginning with the one before."""
-        found: list[SteadyMotion] = []
+        None where no motion is found.
+        """
+        found: list[SteadyMotion | None] = []
+        near, first = None, None
         for speed in speeds:
             try:
-                near = found[-1] if found else None
-                found.append(self.solved(float(speed), near, tolerance))
-            except UnconvergedError as error:
-                raise UnconvergedError(f"rolling bearings at {speed:g} rad/s: {error}") from error
-        return found
+                near = self.solved(float(speed), near, tolerance)
+                found.append(near)
+            except (UnconvergedError, NoCoefficientsError) as error:
+                found.append(None)
+                if first is None:
+                    first = type(error)(f"rolling bearings at {speed:g} rad/s: {error}")
+                    first.__cause__ = error
+        return found, first
 
     def solved(self, speed: float, near: SteadyMotion | None, tolerance: float) -> SteadyMotion:
         """Return the steady motion, beginning with one near it."""
@@ -99,15 +96,19 @@ class RollingProblem:
         if mean is not None:
             linear = balance.linear(balance.padded(mean, (0, 0)))
             linear_error = balance.distance(linear, q)
-        grown = growth(balance, q, self.model.space(1, speed, held=True))
+        try:
+            grown = growth(balance, q, self.model)
+        except NoCoefficientsError:  # at a speed nearby
+            grown = np.nan, np.inf
         return SteadyMotion(balance, q, error, linear_error, grown)
 
     def _balances(self, speed: float, more: float = 1.0) -> _Balances:
         """Return the equations by the harmonics that they have, with so much more unbalance."""
-        loads = dict(self.static)
-        loads[0] = loads.get(0, 0.0) + more * speed**2 * self.unbalance
-        space = self.model.space(1, speed, held=True).prepared([speed])
-        rest = Rest(space, speed, self.passes * speed, self.seats, loads)
+        loads = self.static(speed)
+        for n, load in self.unbalance.items():
+            loads[n] = loads.get(n, 0.0) + more * speed**2 * load
+        names = [one.interface for one in self.bearings]
+        rest = Rest(self.model, names, speed, self.passes * speed, loads)
         if not rest.presses():
             raise ValueError(
                 f"loads, unbalances: press no element at {speed:g} rad/s: all loads are along the "

@@ -21,13 +21,8 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.linear_model import (
-    DENSE_SIZE,
-    linear_model,
-    warn_of_left_out_stiffening,
-)
-from exudyn_rotor.linear.models.rotor.extended_rotor import ExtendedRotor
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError
+from exudyn_rotor.linear.model.build import linear_model, warn_of_left_out_stiffening
+from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.contact_rest import Harmonics
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
@@ -35,10 +30,9 @@ from exudyn_rotor.linear.response.harmonic_loads import (
     total,
     unbalance_load,
 )
-from exudyn_rotor.linear.response.places import At, Place, checked_places, in_frame, places
+from exudyn_rotor.linear.response.places import At, Place, checked_places, places
 from exudyn_rotor.linear.response.rolling_motion import RollingProblem, SteadyMotion
 from exudyn_rotor.linear.response.rolling_result import RollingBearingResponse
-from exudyn_rotor.linear.response.run_start import kept_basis
 from exudyn_rotor.linear.response.unbalance import Unbalance
 from exudyn_rotor.reduction.mode_kind import ModeKind
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
@@ -51,6 +45,11 @@ _SAME_PASS = 1e-9  # relative distance of ball pass frequencies that is rounding
 _DEPTH = 1e-3  # of the radius of the elements, at which a contact has the stiffness of k₀
 _NOT_ACROSS = (ModeKind.AXIAL.value, ModeKind.SPIN.value)
 _ROUND = 1e-12  # share of the largest harmonic
+_ALONG = 1e-9  # share of the largest static load that counts as none along the axis
+_UNPRESSED = (
+    "gravity: lies along the axis, where it presses no element; give a load across it, or an "
+    "unbalance that is not small"
+)
 
 
 def rolling_bearing_response(
@@ -77,7 +76,7 @@ def rolling_bearing_response(
     Parameters
     ----------
     target : ReducedRotor or SolidRotor
-        A SolidRotor of up to 600 degrees of freedom; reduce a larger one.
+        A SolidRotor is reduced first, see :func:`linear_model`.
     speeds : array_like, shape (s,)
         Ascending spin speeds [rad/s], ≥ 0.
     unbalances : sequence of Unbalance, optional
@@ -113,12 +112,13 @@ def rolling_bearing_response(
         For bad input, no rolling bearing, two ball pass frequencies, no load at all, and a load
         on a motion that no support holds.
     UnconvergedError
-        Where no steady motion of these two frequencies is found.
+        Where no steady motion of these two frequencies is found at any speed.
 
     Warns
     -----
     UserWarning
-        Where a steady motion is unstable, or lacks more harmonics than `tolerance` allows.
+        Where a steady motion is unstable, lacks more harmonics than `tolerance` allows, or is not
+        found: then its row is NaN.
 
     Notes
     -----
@@ -146,7 +146,6 @@ def rolling_bearing_response(
     [[200.  40.]
      [460.  70.]]
     """
-    _check_target(target)
     values = ascending_from_zero(speeds, "speeds")
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)
@@ -154,6 +153,7 @@ def rolling_bearing_response(
     tolerance = options.accuracy(tolerance, "tolerance")
     checks.flag(own, "own")
     checks.flag(downwards, "downwards")
+    checks.instance(target, "target", (ReducedRotor, SolidRotor))
     given = given_supports(supports)
     bearings = [one for one in given if isinstance(one, RollingBearing)]
     passes = _passes(bearings)
@@ -164,68 +164,83 @@ def rolling_bearing_response(
     ]
     model = linear_model(target, supports=linear, foundation=foundation, stiffening=stiffening)
     warn_of_left_out_stiffening(model, values.max())
-    observed = places(model, checked_places(at))
+    model = model.for_responses
+    asked = checked_places(at)
+    observed = {moves: places(model, asked, float(moves)) for moves in (False, True)}
     across = parts_across(axes_of(target.axis), gravity)
-    weight = [BaseAcceleration(-across)] if np.any(across) else []
-    static = total([*weight, *loads], model) if weight or loads else {}
-    whirls = bool(unbalances) or (own and not model.is_balanced)
-    # a balanced rotor is strained by centrifugal loads, too
-    unbalance = (unbalance_load(model, unbalances, own) if whirls
-                 else own * np.array(model.unit_unbalance, dtype=float))  # fmt: skip
-    _check_loaded(static, whirls * values[0] * unbalance)
+    steady = [*([BaseAcceleration(-across)] if np.any(across) else []), *loads]
+    unbalance, whirls = _unbalance(model, unbalances, own)
+
+    def static(speed: float) -> dict[int, np.ndarray]:
+        return _two_sided(total(steady, model, speed)) if steady else {}
+
+    _check_loaded(static(values[0]), whirls and values[0] > 0.0)
+    _check_held(model, given, static(0.0))
     problem = RollingProblem(model, bearings, np.repeat(springs, 2), passes, static, unbalance)
-    try:
-        with one_thread():
-            solved = problem.swept(values[::-1] if downwards else values, tolerance)
-    except ValueError as error:
-        pressed = bool(weight or loads) or not np.any(gravity)
-        raise _explained(error, model.free_motions, given, pressed) from error
+    pressed = bool(steady) or not np.any(gravity)
+    with one_thread():
+        solved, lost = problem.swept(values[::-1] if downwards else values, tolerance)
     solved = solved[::-1] if downwards else solved
-    _warn_of_left_out(max(solved, key=lambda one: one.error), tolerance)
+    if not any(solved):
+        raise lost if pressed else type(lost)(f"{_UNPRESSED} ({lost})") from lost
+    if lost is not None:
+        _warn_of_lost(values[[one is None for one in solved]], lost)
+    _warn_of_left_out(max(filter(None, solved), key=lambda one: one.error), tolerance)
     found = _result(problem, observed, values, solved)
     _warn_of_instability(found)
     return found
 
 
-def _check_target(target: ReducedRotor | SolidRotor) -> None:
-    checks.instance(target, "target", (ReducedRotor, SolidRotor))
-    if isinstance(target, SolidRotor) and 3 * target.node_count > DENSE_SIZE:
-        raise ValueError(
-            f"target: needs a SolidRotor of up to {DENSE_SIZE} degrees of freedom, got "
-            f"{3 * target.node_count}; give the reduced rotor, rotor.reduce(…)"
-        )
+def _unbalance(
+    model: LinearModel, unbalances: Sequence[Unbalance], own: bool
+) -> tuple[dict[int, np.ndarray], bool]:
+    """Return the load per Ω² as harmonics (k,), and whether any unbalance is there."""
+    try:
+        return unbalance_load(model, unbalances, own), True
+    except ValueError:
+        if unbalances:
+            raise
+    # a balanced rotor is strained by centrifugal loads, too
+    return model.unbalance() if own else {}, False
 
 
-def _explained(
-    error: ValueError, free: Sequence[str], supports: Sequence[Given], pressed: bool
-) -> ValueError:
-    """Return the error with what the rotor lacks, where that is known: a support or a load."""
-    across = [name for name in free if name not in _NOT_ACROSS]
-    ends = ", ".join(dict.fromkeys(repr(one.interface) for one in supports))
+def _two_sided(load: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
+    """Return harmonics F of both signs of ``Re Σ F_n exp(inθ)``."""
+    return {
+        n: 0.5 * (load.get(n, 0.0) + np.conj(load.get(-n, 0.0))) for n in {*load, *(-n for n in load)}
+    }
+
+
+def _check_held(model: LinearModel, given: Sequence[Given], static: Mapping) -> None:
+    """Refuse a rotor that supports leave free across its axis, or along it where a load acts."""
+    ends = ", ".join(dict.fromkeys(repr(one.interface) for one in given))
+    across = [name for name in model.free_motions if name not in _NOT_ACROSS]
     if across:
         motion = "tilting" if any("tilt" in name for name in across) else "lateral motion"
-        lacking = (
+        raise ValueError(
             f"supports: nothing holds the rotor against {motion}: all stand at {ends}; add one at "
             "another interface"
         )
-    elif ModeKind.AXIAL.value in free and not isinstance(error, UnconvergedError):
-        lacking = (
-            f"supports: nothing holds the rotor along its axis, with supports at {ends}; add "
-            "a stiffness along the axis, or leave out loads along it"
+    spins = model.free_spins.shape[1]
+    shifts = model.neutral_motions[:, : model.neutral_motions.shape[1] - spins]
+    largest = max((np.abs(F).max() for F in static.values()), default=0.0)
+    if any(np.abs(F @ shifts).max(initial=0.0) > _ALONG * largest for F in static.values()):
+        raise ValueError(
+            f"supports: nothing holds the rotor along its axis, with supports at {ends}; add a "
+            "stiffness along the axis, or leave out loads along it"
         )
-    elif not pressed:
-        lacking = (
-            "gravity: lies along the axis, where it presses no element; give a load across it, or "
-            "an unbalance that is not small"
-        )
-    else:
-        return error
-    return type(error)(f"{lacking} ({error})")
 
 
-def _check_loaded(static: Mapping[int, np.ndarray], unbalance: np.ndarray) -> None:
+def _warn_of_lost(speeds: np.ndarray, first: Exception) -> None:
+    shown = ", ".join(f"{speed:g}" for speed in speeds[:5]) + ", …" * (speeds.size > 5)
+    warnings.warn(
+        f"no values at {shown} rad/s, which are NaN: {first}", UserWarning, stacklevel=user_level()
+    )
+
+
+def _check_loaded(static: Mapping[int, np.ndarray], whirls: bool) -> None:
     """Refuse a rotor that nothing presses into its bearings."""
-    if not static and not np.any(unbalance):
+    if not static and not whirls:
         raise ValueError(
             "gravity, loads, unbalances: need one that is not zero: without a load no element "
             "carries, and preloaded ones do not move; unbalance alone needs speeds above zero"
@@ -283,58 +298,72 @@ def _linear_support(bearing: RollingBearing, spring: float) -> Support:
 
 def _result(
     problem: RollingProblem,
-    observed: Sequence[Place],
+    observed: Mapping[bool, Sequence[Place]],
     speeds: np.ndarray,
-    solved: Sequence[SteadyMotion],
+    solved: Sequence[SteadyMotion | None],
 ) -> RollingBearingResponse:
-    """Return the motions (s, p, h, 6) of places, and loads of elements."""
-    kept = [one.balance.rest.coordinates(one.balance.forces(one.q)) for one in solved]
-    motions = [_seen(answer, observed, speed) for speed, answer in zip(speeds, kept, strict=True)]
+    """Return the motions (s, p, h, 6) of places, and loads of elements; NaN where there is none."""
+    model = problem.model
+    kept = [one and one.balance.rest.coordinates(one.balance.forces(one.q)) for one in solved]
+    motions = [
+        None if each is None else _seen(each, observed[bool(speed)])
+        for speed, each in zip(speeds, kept, strict=True)
+    ]
     orders, motion = _stacked(motions)
     motion = np.swapaxes(motion, 1, 2)
-    motion[:, [one.is_node for one in observed], :, 3:] = np.nan
+    motion[:, [one.is_node for one in observed[True]], :, 3:] = np.nan
     coordinate_orders, coordinates = _stacked(kept)
-    loads = [one.balance.contacts(one.balance.values(one.q))[0] for one in solved]
+    lost = np.full(len(problem.bearings), np.nan)
+    loads = [one and one.balance.contacts(one.balance.values(one.q))[0] for one in solved]
+    numbers = [
+        (np.nan,) * 4 if one is None else (one.linear_error, one.error, *one.growth)
+        for one in solved
+    ]
+    rotor = model.bodies[0]
     return RollingBearingResponse(
-        tuple(one.label for one in observed),
+        tuple(one.label for one in observed[True]),
         speeds,
         orders,
         motion,
         problem.passes,
         tuple(one.interface for one in problem.bearings),
-        np.array([[each.max() for each in one] for one in loads]),
-        np.array([[np.mean(~each.any(axis=-1)) for each in one] for one in loads]),
-        np.array([one.linear_error for one in solved]),
-        np.array([one.error for one in solved]),
-        *np.array([one.growth for one in solved]).T,
+        np.array([lost if one is None else [each.max() for each in one] for one in loads]),
+        np.array(
+            [lost if one is None else [np.mean(~e.any(axis=-1)) for e in one] for one in loads]
+        ),
+        *np.array(numbers).T,
         coordinate_orders,
         coordinates=coordinates,
-        basis=kept_basis(problem.model),
-        beside=problem.model.beside if isinstance(problem.model, ExtendedRotor) else (),
+        basis="rotor",
+        beside=model.coordinates[rotor.size :],
     )
 
 
-def _seen(coordinates: Harmonics, observed: Sequence[Place], speed: float) -> Harmonics:
+def _seen(coordinates: Harmonics, observed: Sequence[Place]) -> dict[tuple[int, int], np.ndarray]:
     """Return the harmonics of places in the inertial frame, (p, 6) each; with k = 0, n ≥ 0."""
-    rows = np.array([one.motion for one in observed])
-    stands = np.array([one.stands for one in observed])
     motion: dict[tuple[int, int], np.ndarray] = {}
     for k in {k for k, _ in coordinates}:
-        seen = {n: rows @ x for (j, n), x in coordinates.items() if j == k}
-        for n, a in (in_frame(seen, stands, "inertial") if speed else seen).items():
+        part = {n: x for (j, n), x in coordinates.items() if j == k}
+        seen = [one.motion(part, "inertial") for one in observed]
+        for n in sorted({n for each in seen for n in each}):
+            a = np.array([each.get(n, np.zeros(6)) for each in seen])
             turned = k == 0 and n < 0
             order = (0, -n) if turned else (k, n)
             motion[order] = motion.get(order, 0.0) + (a.conj() if turned else a)
     return motion
 
 
-def _stacked(motions: Sequence[Harmonics]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the orders (h, 2) that matter, and harmonics (s, h, …), zero where one has none."""
+def _stacked(motions: Sequence[Harmonics | None]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the orders (h, 2) that matter, and harmonics (s, h, …); NaN where there is none."""
     sizes: dict[tuple[int, int], float] = {}
-    for motion in motions:
+    known = [motion for motion in motions if motion is not None]
+    for motion in known:
         for order, a in motion.items():
             sizes[order] = max(sizes.get(order, 0.0), np.abs(a).max())
     orders = sorted(order for order, size in sizes.items() if size > _ROUND * max(sizes.values()))
-    zero = np.zeros_like(next(iter(motions[0].values())))
-    stacked = [[motion.get(order, zero) for order in orders] for motion in motions]
+    zero = np.zeros_like(next(iter(known[0].values())))
+    stacked = [
+        [zero + np.nan if motion is None else motion.get(order, zero) for order in orders]
+        for motion in motions
+    ]
     return np.array(orders), np.array(stacked)

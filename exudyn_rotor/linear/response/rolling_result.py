@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.models.basis.basis_error import in_table
+from exudyn_rotor.linear.basis_error import in_table
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState
 from exudyn_rotor.results import numbers, storable, words
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _POINTS = 64  # over a ball pass and over a revolution, where the largest motion is looked for
 
@@ -79,10 +82,10 @@ class RollingBearingResponse(RunStart):
     motion: np.ndarray = numbers("abscissa", "places", "orders", 6, dtype=complex, finite=False)
     passes: float
     bearings: tuple[str, ...] = words("bearings")
-    element_loads: np.ndarray = numbers("abscissa", "bearings", least=0.0)
-    open_shares: np.ndarray = numbers("abscissa", "bearings", least=0.0, most=1.0)
+    element_loads: np.ndarray = numbers("abscissa", "bearings", least=0.0, finite=False)
+    open_shares: np.ndarray = numbers("abscissa", "bearings", least=0.0, most=1.0, finite=False)
     linear_errors: np.ndarray = numbers("abscissa", finite=False)
-    errors: np.ndarray = numbers("abscissa", least=0.0)
+    errors: np.ndarray = numbers("abscissa", least=0.0, finite=False)
     exponents: np.ndarray = numbers("abscissa", finite=False)
     exponent_errors: np.ndarray = numbers("abscissa", finite=False)
     coordinate_orders: np.ndarray = numbers("harmonics", 2, dtype=int)

@@ -21,8 +21,9 @@ from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
 from exudyn_rotor.linear.model.element import WORDS
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.models.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.model.scene.scene_model import SceneModel
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
@@ -267,26 +268,31 @@ def kept_coordinates(
 ) -> dict[str, object]:
     """Return what a response keeps for runs, given harmonics (k,) of coordinates at each value.
 
-    Of one rotor in its own axes, all of its columns are coordinates; else nothing is kept.
+    Of one rotor in its own axes, all of its columns are coordinates, and of a scene its unknowns;
+    else nothing is kept.
     """
+    if isinstance(model, SceneModel):
+        found = [model.unknowns(one, speed) for one in found]
+        return {"coordinates": _in_array(found, model.scene.size), "basis": "scene"}
     assembly = model.assembly(speed)
     rotor = assembly.bodies[0]
     if len(model.rotors) > 1 or model.turns != 1 or model.ratios[rotor.name] != 1.0:
         return {}
-    top = max(abs(n) for one in found for n in one)
-    kept = np.zeros((len(found), 2 * top + 1, model.size), dtype=complex)
-    for row, one in zip(kept, found, strict=True):
-        for n, x in one.items():
-            row[top + n] = x
+    kept = _in_array(found, model.size)
     if rotor.is_apart:  # the spin is a rotation about the axis
         spin = np.pad(rotor.spin.turn - rotor.spin.momentum, (0, model.size - rotor.size))
         kept += (kept[..., : rotor.size] @ rotor.spin.momentum)[..., None] * spin
     return {"coordinates": kept, "basis": "rotor", "beside": model.coordinates[rotor.size :]}
 
 
-def kept_basis(model: object) -> str | None:
-    """Return the basis of a model's coordinates that a response keeps; None to keep none."""
-    return "rotor" if isinstance(model, LinearModel) else "scene"
+def _in_array(found: Sequence[Mapping[int, np.ndarray]], size: int) -> np.ndarray:
+    """Return harmonics −N … N as an array (s, h, k)."""
+    top = max(abs(n) for one in found for n in one)
+    kept = np.zeros((len(found), 2 * top + 1, size), dtype=complex)
+    for row, one in zip(kept, found, strict=True):
+        for n, x in one.items():
+            row[top + n] = x
+    return kept
 
 
 def _in_body(body: RotorBody, x: np.ndarray) -> tuple[np.ndarray, float]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
+from exudyn_rotor.linear.model.scene.linear_scene import LinearScene
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import StartState, spin_at_start
@@ -119,7 +119,11 @@ class SteadyState:
 
 
 def steady_state(
-    body: RotorBody, speed: float | None = None, *, tolerance: float = 1e-8
+    body: RotorBody,
+    speed: float | None = None,
+    *,
+    tolerance: float = 1e-8,
+    start: SteadyState | StartState | None = None,
 ) -> SteadyState:
     """Find the periodic motion of a scene at a constant spin speed, under the loads that it has.
 
@@ -137,6 +141,11 @@ def steady_state(
         Largest change in the last iteration, relative to the motion, and largest share of its
         highest harmonics; a contact that opens in every revolution is found to 1e-3, with a
         warning that tells the share.
+    start : SteadyState or StartState, optional
+        Motion of this scene near which the search begins, at this speed or another one: where
+        there are several steady motions, it finds the one beside it. A StartState counts as a
+        motion that turns with the rotor, as its whirl by unbalance does. By default the search
+        begins with journals in the equilibria under their static loads.
 
     Returns
     -------
@@ -198,7 +207,8 @@ def steady_state(
     body.check_assembled()
     scene = LinearScene.of(body.mbs, body)
     speed = spin_at_start(body)[1] if speed is None else checks.number(speed, "speed", "rad/s")
-    found = SteadyState(scene, speed, *scene.steady_motion(speed, tolerance))
+    begin = None if start is None else _begin(scene, start)
+    found = SteadyState(scene, speed, *scene.steady_motion(speed, tolerance, begin))
     if speed and found.left_out > tolerance:
         warnings.warn(
             f"rotor {body.name!r}: a contact that opens or closes in every revolution leaves "
@@ -208,3 +218,26 @@ def steady_state(
             stacklevel=2,
         )
     return found
+
+
+def _begin(scene: LinearScene, start: SteadyState | StartState) -> tuple[np.ndarray, np.ndarray]:
+    """Return orders and harmonics of the motion with which a search begins."""
+    how = "steady_state(body) makes one, and its state()"
+    checks.instance(start, "start", (SteadyState, StartState), how)
+    if isinstance(start, SteadyState):
+        given = start.scene.size, start.scene.count
+        _check_same(given, (scene.size, scene.count))
+        return start.orders, start.harmonics
+    _check_same((len(start.q), scene.count), (len(scene.rest), scene.count))
+    T = scene.turn(start.angle)[0]
+    y = np.linalg.lstsq(T, (start.q - scene.rest)[scene.free])[0]
+    return np.array([0]), y[None].astype(complex)
+
+
+def _check_same(given: tuple[int, int], wanted: tuple[int, int]) -> None:
+    """Compare the numbers of coordinates and of translations of two scenes."""
+    if given != wanted:
+        raise ValueError(
+            f"start: has {given[0]} coordinates with {given[1]} translations of the rotor, this "
+            f"scene {wanted[0]} with {wanted[1]}; it is of another scene"
+        )

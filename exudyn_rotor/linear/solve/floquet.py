@@ -3,8 +3,9 @@
 The second way beside Hill's method, with nothing in common but the equations. The state is followed
 over a period by exponentials of a Magnus series of fourth order; the multipliers μ = exp(λT) are
 the eigenvalues of the result, and the motion over the period tells which of the frequencies
-``Im λ + n·2π/T`` is the one whose harmonics lie around zero. Source of the series: Blanes, Casas,
-Oteo, Ros, Phys. Rep. 470 (2009), Sect. 5.
+``Im λ + n·2π/T`` is the one whose harmonics lie around zero. Steps are halved until slow motions
+stand still; motions that do not, as those that are over within a period, are NaN. Source of the
+series: Blanes, Casas, Oteo, Ros, Phys. Rep. 470 (2009), Sect. 5.
 """
 
 from __future__ import annotations
@@ -12,12 +13,18 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.linear.equations import PeriodicSystem, at_angle
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.solve.hill import Exponents, one_of_each_family
 from exudyn_rotor.linear.solve.state import States
 
 GAUSS_POINTS = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
-_STEPS = 64  # of a period
+_STEPS = (64, 128, 256, 512, 1024)  # of a period
+_SLOW = 20.0  # |λ| over Ω up to which motions are waited for
+_STILL = 1e-6  # relative change of an exponent by twice the steps
+_LEAST = 1e-10  # of the largest multiplier: one below is rounding
+_FEWEST, _MOST = 16, 64  # steps of a period by which growth is sought
+_ROUNDING = 1e-12  # of a multiplier, by every step
+_SMALL = 1e-2  # share of Ω that a growth counts as at least
 
 
 def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -26,35 +33,106 @@ def magnus_exponent(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return 0.5 * (first + second) + np.sqrt(3.0) / 12.0 * commutator
 
 
-def floquet_motions(
-    system: PeriodicSystem, made: States, steps: int = _STEPS
-) -> Exponents:
-    """Return the motions of a system."""
+def _followed(system: PeriodicSystem, made: States, steps: int) -> list[np.ndarray]:
+    """Return the matrices that take the state to the ends of so many steps of a period."""
     period = 2.0 * np.pi / (system.step * abs(system.speed))
-    h, turn = period / steps, 2.0 * np.pi / system.step * np.sign(system.speed)
-    size = len(made.A[0])
-    followed = [np.eye(size)]
-    for number in range(steps):
-        angles = turn * (number + GAUSS_POINTS) / steps
-        first, second = (h * at_angle(made.A, angle) for angle in angles)
-        followed.append(la.expm(magnus_exponent(first, second)) @ followed[-1])
+    turn = 2.0 * np.pi / system.step * np.sign(system.speed)
+    angles = turn * (np.arange(steps)[:, None] + GAUSS_POINTS) / steps
+    first, second = (
+        period / steps
+        * sum(
+            np.real(np.multiply.outer(np.exp(1j * n * at), A)) if n else A
+            for n, A in made.A.items()
+        )
+        for at in angles.T
+    )  # fmt: skip
+    followed = [np.eye(len(made.A[0]))]
+    exponents = magnus_exponent(first, second)
+    for step in la.expm(exponents) if np.all(np.isfinite(exponents)) else np.nan * exponents:
+        followed.append(step @ followed[-1])
+    return followed
+
+
+def floquet_growth(
+    system: PeriodicSystem, made: States, tolerance: float, begin: int = 0
+) -> tuple[np.ndarray, float, int]:
+    """Return the growth of all motions, what rounding can change of it, and how many steps it took.
+
+    It begins with half of the steps that were needed last, `begin`.
+
+    The growth of those that matter: NaN where the largest one, of motions that are not neutral,
+    changes by more than the `tolerance` of its own, or of a hundredth of Ω, with twice the steps.
+    """
+    period = 2.0 * np.pi / (system.step * abs(system.speed))
+    before, steps = np.nan, max(_FEWEST, begin // 2)
+    while True:
+        with np.errstate(all="ignore"):  # too few steps of a stiff film overflow
+            last = _followed(system, made, steps)[-1]
+        multipliers = np.full(len(last), np.nan)
+        if np.all(np.isfinite(last)):
+            multipliers = np.linalg.eigvals(last)
+        growth = np.log(np.maximum(np.abs(multipliers), 1e-300)) / period
+        bound = _ROUNDING * steps / period
+        largest = growth[np.abs(growth) > bound].max(initial=-np.inf)
+        largest = np.nan if np.any(np.isnan(growth)) else largest
+        if largest == before or abs(largest - before) <= tolerance * max(
+            abs(largest), _SMALL * abs(system.speed)
+        ):
+            return growth, bound, steps
+        if steps >= _MOST:
+            return np.full_like(growth, np.nan), bound, steps
+        before, steps = largest, 2 * steps
+
+
+def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
+    """Return the motions of a system."""
+    before = _with_steps(system, made, _STEPS[0])[0]
+    for steps in _STEPS[1:]:
+        values, states, orders, upper = _with_steps(system, made, steps)
+        away = np.abs(values[:, None] - before)
+        least = np.maximum(np.abs(values), abs(system.speed))
+        still = np.fmin.reduce(away, axis=1, initial=np.inf) <= _STILL * least
+        still[upper + 1] = still[upper]
+        if np.all(still | np.isnan(values) | (np.abs(values) > _SLOW * abs(system.speed))):
+            break
+        before = values
+    found, lost = np.flatnonzero(still), np.flatnonzero(~still)
+    chosen = found[
+        one_of_each_family(values[found], states[:, :, found], orders, system, made)
+    ]
+    chosen = np.r_[chosen, lost][: system.size]
+    values = np.where(still, values, np.nan)
+    return Exponents(values[chosen], states[:, :, chosen], orders)
+
+
+def _with_steps(
+    system: PeriodicSystem, made: States, steps: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return exponents, states and harmonics with so many steps of a period.
+
+    And which multipliers are the upper ones of conjugate pairs, whose lower ones follow them.
+    """
+    period = 2.0 * np.pi / (system.step * abs(system.speed))
+    h, followed = period / steps, _followed(system, made, steps)
     multipliers, vectors = np.linalg.eig(followed[-1])
-    values = np.log(multipliers.astype(complex)) / period
+    size = np.abs(multipliers)
+    upper = np.flatnonzero(multipliers.imag > 0.0)
+    with np.errstate(divide="ignore"):
+        values = np.log(multipliers.astype(complex)) / period
+    values = np.where(size > _LEAST * size.max(), values, np.nan)
     times = h * np.arange(steps)
     courses = np.array(followed[:-1]) @ vectors  # (steps, 2k, 2k)
-    periodic = courses * np.exp(-np.outer(times, values))[:, None, :]
-    spectrum = np.fft.fft(periodic, axis=0) / steps
+    periodic = courses * np.exp(-np.outer(times, np.nan_to_num(values)))[:, None, :]
     top = steps // 4
+    spectrum = np.fft.fft(periodic, axis=0) / steps
     spectrum = np.concatenate([spectrum[-top:], spectrum[: top + 1]])
-    orders = system.step * np.arange(-top, top + 1)
+    numbers = np.arange(-top, top + 1)
     energy = np.sum(np.abs(spectrum) ** 2, axis=1)
-    energy = energy / energy.sum(axis=0)
-    shift = np.round((np.arange(-top, top + 1) @ energy)).astype(int)
+    shift = np.round(numbers @ (energy / energy.sum(axis=0))).astype(int)
+    shift[upper + 1] = -shift[upper]
     states = np.zeros_like(spectrum)
     for column, by in enumerate(shift):
         states[:, :, column] = np.roll(spectrum[:, :, column], -by, axis=0)
+    sense = int(np.sign(system.speed))
     values = values + 1j * shift * 2.0 * np.pi / period
-    if system.speed < 0.0:
-        states, orders = states[::-1], -orders[::-1]
-    chosen = one_of_each_family(values, states, orders, system)
-    return Exponents(values[chosen], states[:, :, chosen], orders)
+    return values, states[::sense], system.step * numbers, upper

@@ -258,8 +258,25 @@ def _coupled(
 ) -> dict[int, np.ndarray]:
     """Return the harmonics that are coupled, from one matrix."""
     h, k = len(orders), system.size
+    A, nu = coupled_stiffness(system, rate, orders)
+    F = np.array([loads.get(int(m), np.zeros(k)) for m in orders], dtype=complex)
+    constant = 0.0 in nu
+    momenta = None
+    if constant and driven is not None and driven.shape[1]:
+        momenta = np.zeros((h, k, driven.shape[1]))
+        momenta[nu.index(0.0)] = driven
+        momenta = momenta.reshape(h * k, -1)
+    given = A[None], F.reshape(1, -1)
+    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
+    return {int(n): x for n, x in zip(orders, X, strict=True)}
+
+
+def coupled_stiffness(
+    system: PeriodicSystem, rate: float, orders: Sequence[int]
+) -> tuple[np.ndarray, list[float]]:
+    """Return the dynamic stiffness between harmonics, (h k, h k), and their frequencies [rad/s]."""
+    h, k = len(orders), system.size
     A = np.zeros((h, k, h, k), dtype=complex)
-    F = np.zeros((h, k), dtype=complex)
     nu = [_rate(rate, int(n), system.speed) for n in orders]
     for a, m in enumerate(orders):
         for b, n in enumerate(orders):
@@ -269,13 +286,4 @@ def _coupled(
         A[a, :, a] -= nu[a] ** 2 * system.M
         for n, H in system.H:
             A[a, :, a] += 1j * np.sign(_rate(nu[a], -n, system.speed)) * H
-        F[a] = loads.get(int(m), 0.0)
-    constant = 0.0 in nu
-    momenta = None
-    if constant and driven is not None and driven.shape[1]:
-        momenta = np.zeros((h, k, driven.shape[1]))
-        momenta[nu.index(0.0)] = driven
-        momenta = momenta.reshape(h * k, -1)
-    given = A.reshape(1, h * k, h * k), F.reshape(1, -1)
-    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
-    return {int(n): x for n, x in zip(orders, X, strict=True)}
+    return A.reshape(h * k, h * k), nu

@@ -20,9 +20,8 @@ _LARGEST = 420  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
 # energy at the edge of the sum that counts as none, over the tolerance: the error of λ is the
 # product of that and of the small part of λ that changes in a turn; and energy that is too much
-_EDGE, _LOST = 1e2, 3e-2
-# of pΩ and λ, and of a shape: how near a copy of a motion is that has nothing at its edge
-_COPY, _ALIKE = 1e-7, 0.7
+_EDGE, _LOST = 1e2, 3e-3
+_COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 
 class Exponents(NamedTuple):
@@ -54,7 +53,7 @@ def hill_motions(
     while True:
         orders = system.step * np.arange(-_SIZES[place], _SIZES[place] + 1)
         values, states = _solved(made, orders, system.speed)
-        chosen = one_of_each_family(values, states, orders, system)
+        chosen = one_of_each_family(values, states, orders, system, made)
         values, states = values[chosen], states[:, :, chosen]
         energy = np.sum(np.abs(states) ** 2, axis=1)
         energy = energy / energy.sum(axis=0)
@@ -71,7 +70,11 @@ def hill_motions(
 
 
 def one_of_each_family(
-    values: np.ndarray, states: np.ndarray, orders: np.ndarray, system: PeriodicSystem
+    values: np.ndarray,
+    states: np.ndarray,
+    orders: np.ndarray,
+    system: PeriodicSystem,
+    made: States,
 ) -> np.ndarray:
     """Return which of many exponents stand for all, k.
 
@@ -80,8 +83,9 @@ def one_of_each_family(
     """
     step, base = system.step, system.step * system.speed
     energy = np.sum(np.abs(states) ** 2, axis=1)
-    sizes = np.sqrt(energy.sum(axis=0))
-    states, energy = states / sizes, energy / sizes**2
+    energy = energy / energy.sum(axis=0)
+    shapes = made.shape @ states
+    shapes = shapes / np.linalg.norm(shapes, axis=(0, 1))
     mean, edges = orders @ energy / step, energy[0] + energy[-1]
     # the small number decides between two copies half a step from zero; copies of what is not
     # resolved do not tell that they are copies, and come last
@@ -92,10 +96,10 @@ def one_of_each_family(
             break
         if not left[i]:
             continue
-        near = (_COPY + edges + edges[i]) * abs(base) + _COPY * abs(values[i])
-        own = _copies(values, states, values[i], states[:, :, i], base, near)
-        mirrored = states[::-1, :, i].conj()
-        mirrored = _copies(values, states, values[i].conj(), mirrored, base, near)
+        near = (_COPY + edges + edges[i]) * abs(base) + 1e-6 * abs(values[i])
+        own = _copies(values, shapes, values[i], shapes[:, :, i], base, near)
+        mirrored = shapes[::-1, :, i].conj()
+        mirrored = _copies(values, shapes, values[i].conj(), mirrored, base, near)
         left[own] = left[mirrored] = left[i] = False
         if i in mirrored:
             single.append(i)
@@ -107,9 +111,9 @@ def one_of_each_family(
 
 def _copies(
     values: np.ndarray,
-    states: np.ndarray,
+    shapes: np.ndarray,
     value: complex,
-    state: np.ndarray,
+    shape: np.ndarray,
     base: float,
     allowed: np.ndarray,
 ) -> np.ndarray:
@@ -120,12 +124,11 @@ def _copies(
     apart = values - value
     steps = np.round(apart.imag / base).astype(int)
     near = np.abs(apart - 1j * steps * base) <= allowed
-    found, h = [], len(state)
+    found, h = [], len(shape)
     for j in np.flatnonzero(near & (np.abs(steps) < h)):
         n = steps[j]
-        a, b = (state[n:], states[: h - n, :, j]) if n >= 0 else (state[:n], states[-n:, :, j])
-        seen = np.linalg.norm(a) * np.linalg.norm(b)
-        if seen > 0.1 and abs(np.vdot(a, b)) > _ALIKE * seen:
+        a, b = (shape[n:], shapes[: h - n, :, j]) if n >= 0 else (shape[:n], shapes[-n:, :, j])
+        if abs(np.vdot(a, b)) > _ALIKE:
             found.append(j)
     return np.array(found, dtype=int)
 
@@ -139,14 +142,14 @@ def _solved(made: States, orders: np.ndarray, speed: float) -> tuple[np.ndarray,
             if m - n in made.A:
                 matrix[a, :, b] = made.A[m - n]
         matrix[a, np.arange(size), a, np.arange(size)] -= 1j * m * speed
-    turn = _real_waves(h)  # exp(imΩt) from 1, cosines and sines
+    turn = real_waves(h)  # exp(imΩt) from 1, cosines and sines
     real = np.einsum("ap,aibj,bq->piqj", turn.conj(), matrix, turn, optimize=True).real
     values, vectors = np.linalg.eig(real.reshape(h * size, h * size))
     states = np.tensordot(turn, vectors.reshape(h, size, -1), (1, 0))
     return values, states
 
 
-def _real_waves(h: int) -> np.ndarray:
+def real_waves(h: int) -> np.ndarray:
     """Return the unitary matrix (h, h) from 1, √2 cos and √2 sin to exponentials."""
     top = h // 2
     turn = np.zeros((h, h), dtype=complex)

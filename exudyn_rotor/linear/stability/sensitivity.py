@@ -20,24 +20,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
+from exudyn_rotor.bearings.controlled_support import ControlledSupport
 from exudyn_rotor.bearings.given import Given, given_supports
 from exudyn_rotor.bearings.magnetic import MagneticBearing
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.linear_model import linear_model
-from exudyn_rotor.linear.models.protocol import Space
-from exudyn_rotor.linear.models.rotor.controlled_rotor import ControlledRotor
-from exudyn_rotor.linear.models.trains.linear_train import LinearTrain
-from exudyn_rotor.linear.models.trains.rotor_train import RotorTrain
-from exudyn_rotor.linear.periodic.periodic_system import Terms
-from exudyn_rotor.linear.stability.growth import Growth, GrowthAt, held_space
+from exudyn_rotor.linear.equations import Terms
+from exudyn_rotor.linear.modal.whirl import Content, Named
+from exudyn_rotor.linear.model.build import linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.model.rotor_train import RotorTrain
+from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.solve.forced import forced_motions
 from exudyn_rotor.linear.stability.sensitivity_result import Sensitivity
+from exudyn_rotor.linear.stability.stability import least_stable_of
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 from exudyn_rotor.solid_rotor import SolidRotor
-from exudyn_rotor.theory.rotating_axes import into_inertial_frame, into_rotor_frame
 
-_TOLERANCE = 1e-9  # of the harmonics
-_RESIDUAL = 1e-7  # of no influence here: all motions are found
+_SENSOR, _OWN = slice(3, 6), slice(6, None)  # ports of a controller; the bearing's come first
 
 
 def sensitivity(
@@ -108,16 +107,22 @@ def sensitivity(
     if not bearings:
         raise ValueError("supports: needs a MagneticBearing, whose loop has a sensitivity")
     model = linear_model(rotor, supports=supports, foundation=foundation, stiffening=stiffening)
-    held = held_space(model, speed, None, _RESIDUAL)
-    found = GrowthAt(held, "auto", _TOLERANCE, WhirlContent.of(model))(speed)
-    if found.excess > 0.0:
-        raise _unstable(found, model, [name for name, _ in bearings], speed)
-    space = model.space(len(values), values[-1])
-    own = np.abs(found.names[0][np.abs(found.values.real) > found.bounds])
+    assembly = model.assembly(speed)
+    loops = [
+        (element.matrices(speed), motion)
+        for element, motion in zip(assembly.elements, assembly.motions, strict=True)
+        if isinstance(element.law, ControlledSupport)
+    ]
+    motions = motions_over(model, [speed], held=True)[0]
+    named = Content.of(model).named(motions)
+    growth = motions.values.real
+    if np.nanmax(growth) > motions.bound:
+        raise _unstable(named, [motion for _, motion in loops], [n for n, _ in bearings], speed)
+    own = named.inertial[np.abs(growth) > motions.bound]
     values = np.union1d(values, own[(own > values[0]) & (own < values[-1])])
     rows = [
-        _of_axis(model, space, index, axis, values, speed)
-        for index, (_, bearing) in enumerate(bearings)
+        _of_axis(model, *loop, axis, values, speed)
+        for (_, bearing), loop in zip(bearings, loops, strict=True)
         for axis in bearing.control_axes
     ]
     names = [f"{name}, {number}" for name, _ in bearings for number in (1, 2)]
@@ -140,53 +145,44 @@ def _bearings(
 
 
 def _unstable(
-    found: Growth, model: ControlledRotor | LinearTrain, names: Sequence[str], speed: float
+    named: Named, loops: Sequence[Terms], names: Sequence[str], speed: float
 ) -> ValueError:
     """Return the error of an unstable loop: frequency, growth, and the controller that moves most.
 
-    `names` are those of the bearings, in the order of the model's coordinates.
+    `loops` are the motions of the controllers of bearings of the `names`.
     """
-    heard, where = found.names[0][found.least_stable], ""
-    if found.critical is not None:
-        shape = found.critical.vectors
-        moves = [np.linalg.norm(shape[:, model.own_rows(index)]) for index in range(len(names))]
-        where = f", in which most moves the controller of {names[np.argmax(moves)]!r},"
+    which = least_stable_of(named.motions)
+    shape = named.motions.main[:, which]
+    moves = [np.linalg.norm([U[_OWN] @ shape for U in loop.values()]) for loop in loops]
     return ValueError(
-        f"supports: unstable at {speed:g} rad/s: a motion of {heard:.4g} rad/s{where} grows by "
-        f"{found.values.real.max():.4g} 1/s, and there is no sensitivity of an unstable loop; "
-        "see stability(…), change the controller"
+        f"supports: unstable at {speed:g} rad/s: a motion of {named.inertial[which]:.4g} rad/s, in "
+        f"which most moves the controller of {names[np.argmax(moves)]!r}, grows by "
+        f"{named.motions.values.real[which]:.4g} 1/s, and there is no sensitivity of an unstable "
+        "loop; see stability(…), change the controller"
     )
 
 
 def _of_axis(
-    model: ControlledRotor | LinearTrain,
-    space: Space,
-    index: int,
+    model: LinearModel,
+    matrices: tuple[np.ndarray, np.ndarray],
+    motion: Terms,
     axis: np.ndarray,
     frequencies: np.ndarray,
     speed: float,
 ) -> np.ndarray:
-    """Return S of a bearing's control axis, given along (n1, n2)."""
-    one, rows = model.own.supports[index], model.own_rows(index)
-    drive = np.zeros((one.size // 2, 3))
-    drive[:, :2] = (-one.stiffness[4:, 2:4] @ axis).reshape(-1, 2)
-    loads = {}
-    for n, turned in into_rotor_frame(drive.ravel()).items():
-        loads[n] = np.zeros(model.size, dtype=complex)
-        loads[n][rows] = turned.reshape(-1, 3)[:, :2].ravel()
-    sensed, found = model.sensed(index), []
-    for frequency in frequencies:
-        motion = space.steady_motion(speed, loads, frequency, _TOLERANCE)
-        seen = into_inertial_frame(_seen(sensed, motion))
-        place = seen[0][0] if speed else sum(seen.values())[0]
-        found.append(1.0 + place[:2] @ axis)
-    return np.array(found)
+    """Return S of a bearing's control axis, given along (n1, n2).
 
-
-def _seen(sensed: Terms, motion: Terms) -> dict[int, np.ndarray]:
-    """Return the harmonics (1, 3) of what a sensor shows of a motion."""
-    seen: dict[int, np.ndarray] = {}
-    for m, U in sensed.items():
-        for n, X in motion.items():
-            seen[m + n] = seen.get(m + n, 0.0) + (U @ X)[None]
-    return seen
+    A signal at the sensor loads the ports of the loop, of `motion`, by its stiffness and damping.
+    """
+    stiffness, damping = (X[:, _SENSOR] @ np.append(axis, 0.0) for X in matrices)
+    loads = [
+        {n: -U.T @ (stiffness + 1j * frequency * damping) for n, U in motion.items()}
+        for frequency in frequencies
+    ]
+    systems = [model.at(speed)] * len(frequencies)
+    found = forced_motions(systems, loads, frequencies, held=model.held_basis)
+    values = []
+    for harmonics in found:
+        place = sum(U[_SENSOR] @ harmonics[-n] for n, U in motion.items() if -n in harmonics)
+        values.append(1.0 + place[:2] @ axis)
+    return np.array(values)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ZONES = {"A": 3.0, "B": 4.0, "C": 5.0, "D": np.inf}  # largest |S|, ISO 14839-3:2006
 
@@ -43,7 +46,7 @@ class Sensitivity(Result):
 
     axes: tuple[str, ...] = words("axes")
     frequencies: np.ndarray = numbers("frequencies")
-    values: np.ndarray = numbers("axes", "frequencies", dtype=complex)
+    values: np.ndarray = numbers("axes", "frequencies", dtype=complex, finite=False)
     speed: float
 
     def __post_init__(self) -> None:
@@ -53,12 +56,12 @@ class Sensitivity(Result):
     @property
     def peaks(self) -> np.ndarray:
         """Largest ``|S|`` of each axis, shape (axes,)."""
-        return np.abs(self.values).max(axis=1)
+        return np.nanmax(np.abs(self.values), axis=1)
 
     @property
     def peak_frequencies(self) -> np.ndarray:
         """Where that is [rad/s], shape (axes,)."""
-        return self.frequencies[np.abs(self.values).argmax(axis=1)]
+        return self.frequencies[np.nanargmax(np.abs(self.values), axis=1)]
 
     @property
     def zones(self) -> tuple[str, ...]:
@@ -76,8 +79,8 @@ class Sensitivity(Result):
             "zone": np.array(self.zones),
         }
 
-    def table(self, *, units: str = "Hz") -> str:
-        """Return peaks and zones as text; `units` are 'Hz', 'rpm' or 'SI'."""
+    def table(self, *, units: str = "rpm") -> str:
+        """Return peaks and zones as text; `units` are 'rpm', 'Hz' or 'SI'."""
         columns = self.columns(units)
         names, rows = list(columns), list(zip(*columns.values(), strict=True))
         width = max(map(len, (*self.axes, "axis"))) + 2
@@ -87,7 +90,7 @@ class Sensitivity(Result):
             lines.append(f"{name:<{width}}{peak:>8.4g}{decibel:>11.1f}{where:>{at}.4g}  {zone}")
         return "\n".join(lines)
 
-    def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw ``|S|`` of each axis over the frequency, with the limits of the zones."""
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)

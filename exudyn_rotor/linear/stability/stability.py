@@ -1,94 +1,90 @@
 """Stability of a rotor on its supports over the spin speed.
 
-The exponents λ are eigenvalues where the equations are constant in the rotor frame (isotropic
-supports, or none at rest), else Floquet exponents
-(:mod:`exudyn_rotor.linear.periodic.exponents`). Growth is the largest real part; exact zeros of it,
-as without damping, count as stable.
+The exponents λ of all motions are eigenvalues where the equations are constant, as of a round rotor
+on any supports, or of an uneven one on supports alike in all directions, else Floquet exponents
+(:mod:`exudyn_rotor.linear.solve`). A rotor is stable where no motion grows by more than rounding.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
-from concurrent.futures import Executor
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.modal.whirl import WhirlContent
-from exudyn_rotor.linear.models.basis.basis_error import BasisError
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.stability.growth import (
-    GrowthAt,
-    check_options,
-    constant_growths,
-    held_space,
+from exudyn_rotor import checks
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear import basis_error, options
+from exudyn_rotor.linear.modal.tracking import track
+from exudyn_rotor.linear.modal.whirl import UNKNOWN, Content, Named
+from exudyn_rotor.linear.model.build import (
+    Target,
+    linear_model,
+    warn_of_left_out_stiffening,
+    warn_of_structural_damping,
 )
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.solve.motions import METHODS, Motions
 from exudyn_rotor.linear.stability.stability_result import Stability
-from exudyn_rotor.linear.stability.uneven_mesh import warn_of_uneven_mesh
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
-from exudyn_rotor.sweep import ascending_from_zero, sweep
-from exudyn_rotor.threads import meanwhile
+from exudyn_rotor.sweep import ascending_from_zero
 from exudyn_rotor.units import Units
+
+WHAT = "stability finds exponents"  # of structural damping, for the warning
 
 
 def stability(
     target: Target,
     speeds: ArrayLike,
     *,
-    supports: Sequence[Support] = (),
+    supports: Sequence[Given] | Given = (),
     body: RotorBody | Sequence[RotorBody] | None = None,
     stiffening: str = "auto",
+    axes: str = "auto",
     method: str = "auto",
-    tolerance: float = 1e-9,
-    modes: int | None = None,
-    residual: float = 1e-7,
+    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
-    executor: Executor | None = None,
     progress: bool = False,
 ) -> Stability:
     """Compute the exponents of a rotor over the spin speed.
 
     Parameters
     ----------
-    target : ReducedRotor, SolidRotor, exudyn.MainSystem or linear model
-        See :func:`linear_model`. Of a SolidRotor with more than 600 degrees of freedom only the
-        lowest `modes` are looked at, each checked by the residual of the full equations.
+    target : ReducedRotor, SolidRotor, RotorTrain, exudyn.MainSystem or LinearModel
+        See :func:`linear_model`.
     speeds : array_like, shape (s,)
         Spin speeds [rad/s], not negative, ascending.
-    supports : sequence of Support
+    supports : sequence of Support or bearings
         For a rotor. A spin that no support holds follows θ = Ωt and gives no exponent, see the
         notes of :func:`campbell`.
     body : RotorBody or sequence of these, optional
         The rotor in a ``MainSystem``, or all of several, see :func:`linear_model`.
     stiffening : {'auto', 'none', 'tilt', 'full'}
         For a rotor; 'full' needs one with prestress.
-    method : {'auto', 'floquet', 'hill', 'eigen'}
-        ``'auto'``: eigenvalues where the system is constant, else Hill's method, and Floquet's
-        where that does not converge. A large SolidRotor takes 'auto' only, without Floquet's.
+    axes : {'auto', 'inertial', 'rotor'}
+        Of the equations, see :func:`linear_model`.
+    method : {'auto', 'hill', 'floquet'}
+        For periodic equations, as of uneven rotors on uneven supports: sums of harmonics ('hill',
+        by default), or integration over a period, which finds motions up to some 20 Ω only.
     tolerance : float
-        Error of periodic exponents relative to Ω, or to a faster decay; those beyond 100 Ω are
-        not waited for.
-    modes : int, optional
-        How many modes of a large SolidRotor, those of smallest ``|λ|`` in the rotor frame; 10 by
-        default. The growth of modes above them is not looked at.
-    residual : float, optional
-        Largest relative residual of those modes; see :meth:`Subspace.modes`.
+        Largest relative error of λ by harmonics of periodic equations that are left out.
     accuracy : float, optional
         Relative error of the least stable motion's growth by the basis of a reduced rotor,
         estimated, above which a warning is given: see :attr:`Stability.basis_errors`. None for no
         estimate.
-    executor : concurrent.futures.Executor, optional
-        Where the exponents are computed; see :func:`exudyn_rotor.sweep.sweep`. A large
-        SolidRotor does not use it: its speeds share one subspace.
     progress : bool
+        Show a progress bar.
 
     Raises
     ------
+    TypeError
+        If the target, the body or a support is of another kind.
     ValueError
-        For bad input, and where `tolerance` or `residual` is not reached.
+        For bad input, and where there are values at none of the speeds. A single speed without
+        values is NaN, with a warning.
 
     Examples
     --------
@@ -107,54 +103,111 @@ def stability(
     [True, False]
     """
     values = ascending_from_zero(speeds, "speeds")
-    check_options(method, tolerance, modes, residual)
-    options.check_basis_accuracy(accuracy)
-    options.check_sweep(executor, progress)
-    model = linear_model(target, supports=supports, body=body, stiffening=stiffening)
-    space = held_space(model, values[-1], modes, residual)
-    if executor is not None:
-        space = space.prepared(values)
-    with (
-        meanwhile(partial(BasisError.of, held=True), model, accuracy) as basis_made,
-        meanwhile(WhirlContent.of, model) as content,
-    ):
-        solved = None
-        if executor is None and not progress and method != "floquet":
-            solved = constant_growths(space, values, content)
-        if solved is None:
-            task = GrowthAt(space, method, tolerance, content())
-            workers = None if space.is_shared else executor
-            solved = sweep(task, values, executor=workers, progress=progress, label="stability")
-    exponents, base = (np.array([getattr(s, name) for s in solved]) for name in ("values", "base"))
-    names = ("frequencies_inertial", "whirl_codes", "nodal_diameters")
-    basis = basis_made()
-    result = Stability(
-        speeds=values,
-        exponents=exponents,
-        multipliers=_multipliers(exponents, np.where(base > 0.0, base, values)),
-        growth=exponents.real.max(axis=1),
-        stable=np.array([entry.excess for entry in solved]) <= 0.0,
-        base=base,
-        bounds=np.array([entry.bounds for entry in solved]),
-        **{name: np.array([s.names[i] for s in solved]) for i, name in enumerate(names)},
-        tolerance=tolerance,
-        basis_shifts=basis.shifts_of(values, [entry.critical for entry in solved]),
-        stiffening=model.stiffening,
-    )
-    _warn_of_basis(basis, result)
-    warn_of_uneven_mesh(model, result)
+    check_options(method, tolerance, accuracy)
+    checks.flag(progress, "progress")
+    model = linear_model(target, supports=supports, body=body, stiffening=stiffening, axes=axes)
+    warn_of_structural_damping(model, WHAT)
+    warn_of_left_out_stiffening(model, values[-1])
+    motions = motions_over(
+        model, values, held=True, method=method, tolerance=tolerance, progress=progress,
+        label="stability",
+    )  # fmt: skip
+    content = Content.of(model)
+    named = [None if each is None else content.named(each) for each in motions]
+    result = _collected(values, named, model, tolerance, accuracy)
+    _warn_of_basis(result, model, accuracy)
     return result
 
 
-def _multipliers(exponents: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """Return the factors of motions over a period of the frequencies `base`; NaN without one."""
-    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-        multipliers = np.exp(2.0 * np.pi * exponents / base[:, None])
-    multipliers[base == 0.0] = np.nan
-    return multipliers
+def check_options(method: str, tolerance: float, accuracy: float | None) -> None:
+    """Check the options that all analyses of stability have."""
+    checks.choice(method, "method", METHODS)
+    options.accuracy(tolerance, "tolerance")
+    options.check_basis_accuracy(accuracy)
 
 
-def _warn_of_basis(basis: BasisError, result: Stability) -> None:
+def least_stable_of(motions: Motions) -> int:
+    """Return which motion is the least stable one of those that are not neutral."""
+    growth = motions.values.real
+    return int(np.argmax(np.where(np.abs(growth) > motions.bound, growth, -np.inf)))
+
+
+def warn_of_refused(refused: Sequence[tuple[str, Exception]], count: int) -> None:
+    """Warn of points without values; raise the first error where all of `count` have none."""
+    if len(refused) == count:
+        raise refused[0][1]
+    if refused:
+        shown = ", ".join(point for point, _ in refused[:5]) + (" …" if len(refused) > 5 else "")
+        warnings.warn(
+            f"no values at {shown}, which are NaN: {refused[0][1]}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
+
+
+def _collected(
+    speeds: np.ndarray,
+    named: list[Named | None],
+    model: LinearModel,
+    tolerance: float,
+    accuracy: float | None,
+) -> Stability:
+    """Return the result, in each row the least stable motion first."""
+    shape = len(speeds), next(len(each.inertial) for each in named if each is not None)
+    exponents, inertial = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan)
+    codes, diameters = np.full(shape, UNKNOWN, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
+    bounds = np.full(len(speeds), np.nan)
+    for row, found in enumerate(named):
+        if found is None:
+            continue
+        growth, bounds[row] = found.motions.values.real, found.motions.bound
+        order = np.lexsort((found.inertial, -growth))
+        found, growth = found.columns(order), growth[order]
+        exponents[row] = growth + 1j * np.where(np.isnan(growth), np.nan, found.rotor)
+        inertial[row] = np.where(np.isnan(growth), np.nan, found.inertial)
+        codes[row], diameters[row] = found.codes, found.diameters
+    growth = np.fmax.reduce(exponents.real, axis=1, initial=np.nan)
+    return Stability(
+        speeds=speeds,
+        exponents=exponents,
+        growth=growth,
+        stable=growth <= bounds,
+        bounds=bounds,
+        frequencies_inertial=inertial,
+        whirl_codes=codes,
+        nodal_diameters=diameters,
+        tolerance=tolerance,
+        basis_shifts=_shifts(model, speeds, named, accuracy),
+        stiffening=model.stiffening,
+        axes=model.axes,
+        unevenness=model.unevenness,
+    )
+
+
+def _shifts(
+    model: LinearModel, speeds: np.ndarray, named: list[Named | None], accuracy: float | None
+) -> np.ndarray | None:
+    """Return the shifts (s,) of the least stable motions by what the basis leaves out."""
+    if not basis_error.is_known(model, accuracy):
+        return None
+    if model.is_full:
+        return np.zeros(len(speeds), dtype=complex)
+    columns, _ = track(named, speeds, model.mass_matrix)
+    tracked = [
+        None if each is None else each.columns(row)
+        for each, row in zip(named, columns, strict=True)
+    ]
+    shifts = basis_error.shifts_over(model, speeds, tracked, held=True)
+    return np.array(
+        [
+            np.nan if each is None else row[least_stable_of(each.motions)]
+            for each, row in zip(tracked, shifts, strict=True)
+        ],
+        dtype=complex,
+    )
+
+
+def _warn_of_basis(result: Stability, model: LinearModel, accuracy: float | None) -> None:
     """Warn where the basis leaves out too much for the growth of a least stable motion."""
     errors = result.basis_errors
     if errors is None or np.all(np.isnan(errors)):
@@ -165,4 +218,4 @@ def _warn_of_basis(basis: BasisError, result: Stability) -> None:
     heard = shown.frequencies(result.frequencies_inertial[row, column])
     motion = f"the least stable motion ({result.whirl[row, column]}, {heard:.4g} Hz)"
     speed = shown.speeds(result.speeds[row])
-    basis.warn(np.nan_to_num(errors), f"{motion} at {speed:.5g} rpm")
+    basis_error.warn(errors, f"{motion} at {speed:.5g} rpm", model, accuracy)

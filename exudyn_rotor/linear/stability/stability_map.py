@@ -3,52 +3,67 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
-from exudyn_rotor.linear import options
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, BasisError, relative_errors
-from exudyn_rotor.linear.models.linear_model import Target, linear_model
-from exudyn_rotor.linear.periodic.exponents import motions
-from exudyn_rotor.linear.periodic.periodic_system import PeriodicSystem
-from exudyn_rotor.linear.stability.growth import (
-    Growth,
-    GrowthAt,
-    check_method,
-    growth_of,
-    held_space,
+from exudyn_rotor.linear import basis_error
+from exudyn_rotor.linear.basis_error import NOT_KNOWN
+from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.modal.whirl import (
+    UNKNOWN,
+    WHIRLS,
+    Content,
+    Named,
+    damping_of,
+    families,
+)
+from exudyn_rotor.linear.model.build import Target, linear_model
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import motions_over
+from exudyn_rotor.linear.solve.motions import Motions, motions_of
+from exudyn_rotor.linear.stability.stability import (
+    check_options,
+    least_stable_of,
+    warn_of_refused,
 )
 from exudyn_rotor.results import Result, numbers, storable, words
-from exudyn_rotor.sweep import sweep
+from exudyn_rotor.threads import one_thread
 from exudyn_rotor.units import Units
 
-_RESIDUAL = 1e-7  # of a large SolidRotor
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_EVEN = 1e-6  # relative difference of ratios of values that are spaced logarithmically
 
 
 @storable
 @dataclass(frozen=True, eq=False)
 class StabilityMap(Result):
-    """Growth over two parameters.
+    """Growth over two parameters; a point without values is NaN and not stable.
 
     Attributes
     ----------
     x, y : ndarray, shapes (a,), (b,)
     growth : ndarray, shape (a, b)
-        Largest real part of the exponents [1/s].
+        Largest real part of the exponents [1/s], 0 where a free motion is neutral.
     stable : ndarray of bool, shape (a, b)
     labels : tuple of str
         Names of x and y.
     basis_errors : ndarray, shape (a, b), or None
         Estimated relative error of the least stable motion by the basis of a reduced rotor, as
-        :attr:`Stability.basis_errors`; NaN where it is not known, None where it is nowhere.
+        :attr:`Stability.basis_errors`, at the corners and in the middle; NaN elsewhere, None where
+        nothing is known.
+    frequencies_inertial : ndarray, shape (a, b), or None
+        Of the least stable motion that is not neutral, seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (a, b), or None
+        Of that motion, as those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
+    log_decrement : ndarray, shape (a, b), or None
+        Of that motion; NaN where it does not oscillate.
 
     Examples
     --------
@@ -65,52 +80,111 @@ class StabilityMap(Result):
 
     x: np.ndarray = numbers("x")
     y: np.ndarray = numbers("y")
-    growth: np.ndarray = numbers("x", "y")
+    growth: np.ndarray = numbers("x", "y", finite=False)
     stable: np.ndarray = numbers("x", "y", dtype=bool)
     labels: tuple[str, ...] = words(2, default=("x", "y"))
     basis_errors: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+    frequencies_inertial: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+    whirl_codes: np.ndarray | None = numbers(
+        "x", "y", dtype=int, least=0, most=len(WHIRLS) - 1, optional=True
+    )
+    nodal_diameters: np.ndarray | None = numbers("x", "y", dtype=int, least=-1, optional=True)
+    log_decrement: np.ndarray | None = numbers("x", "y", finite=False, optional=True)
+
+    @property
+    def whirl(self) -> np.ndarray:
+        """Sense of the least stable motion at each point, shape (a, b); as Campbell.whirl."""
+        return np.array(WHIRLS)[self._codes]
+
+    @property
+    def families(self) -> np.ndarray:
+        """Kind of the least stable motion at each point, shape (a, b); as Stability.families."""
+        diameters = np.full(self.growth.shape, -1)
+        return families(
+            self._codes, diameters if self.nodal_diameters is None else self.nodal_diameters
+        )
+
+    @property
+    def _codes(self) -> np.ndarray:
+        unknown = np.full(self.growth.shape, UNKNOWN)
+        return unknown if self.whirl_codes is None else self.whirl_codes
 
     def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
-        """Return the table as columns, one row for each point; `units` change nothing."""
-        Units.of(units)
+        """Return the table as columns, one row for each point.
+
+        `units` are those of the frequency; x and y are as they were given.
+        """
+        shown = Units.of(units)
         first, second = self.labels
+        unknown = np.full(self.growth.shape, np.nan)
+        heard, decrement, errors = (
+            unknown if each is None else each
+            for each in (self.frequencies_inertial, self.log_decrement, self.basis_errors)
+        )
         return {
             first: np.repeat(self.x, len(self.y)),
             second: np.tile(self.y, len(self.x)),
             "growth [1/s]": self.growth.ravel(),
             "stable": self.stable.ravel(),
-            "basis error": self._errors.ravel(),
+            f"inertial [{shown.frequency}]": shown.frequencies(heard).ravel(),
+            "log decrement": decrement.ravel(),
+            "whirl": self.whirl.ravel(),
+            "kind": self.families.ravel(),
+            "basis error": errors.ravel(),
         }
-
-    @property
-    def _errors(self) -> np.ndarray:
-        unknown = np.full(self.growth.shape, np.nan)
-        return unknown if self.basis_errors is None else self.basis_errors
 
     def table(self) -> str:
         """Return the growth [1/s] at every point as lines of text; '*' marks instability."""
         first, second = self.labels
         lines = [f"growth [1/s]; columns: {second}", f"{first:>24}"]
         lines[-1] += "".join(f"{value:13.5g} " for value in self.y).rstrip()
-        for value, growth, stable in zip(self.x, self.growth, self.stable, strict=True):
-            entries = (f"{g:13.5g}{' ' if s else '*'}" for g, s in zip(growth, stable, strict=True))
+        marks = np.where(self.stable | np.isnan(self.growth), " ", "*")
+        for value, growth, marked in zip(self.x, self.growth, marks, strict=True):
+            entries = (f"{g:13.5g}{mark}" for g, mark in zip(growth, marked, strict=True))
             lines.append(f"{value:24.6g}" + "".join(entries).rstrip())
-        worst = np.nanmax(self._errors, initial=0.0)
-        if worst > 0.0:
-            lines.append(f"basis error up to {worst:.1e}")
-        elif np.any(np.isnan(self._errors)):
+        lines += self._worst_line()
+        if self.basis_errors is None:
             lines.append(NOT_KNOWN)
+        elif np.nanmax(self.basis_errors, initial=0.0) > 0.0:
+            lines.append(f"basis error up to {np.nanmax(self.basis_errors):.1e}")
         return "\n".join(lines)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
+    def _worst_line(self) -> list[str]:
+        """Return which motion grows most, where that is known."""
+        if self.whirl_codes is None or np.all(np.isnan(self.growth)):
+            return []
+        at = np.unravel_index(np.nanargmax(self.growth), self.growth.shape)
+        parts = [f"{self.growth[at]:.4g} 1/s at ({self.x[at[0]]:.5g}, {self.y[at[1]]:.5g})"]
+        parts.append(f"{Units.of('Hz').frequencies(self.frequencies_inertial[at]):.5g} Hz")
+        parts.append(self.whirl[at])
+        if np.isfinite(self.log_decrement[at]):
+            parts.append(f"log decrement {self.log_decrement[at]:.3g}")
+        return [f"least stable: {self.families[at]} motion, " + ", ".join(parts)]
+
+    def plot(
+        self, ax: Axes | None = None, *, log_x: bool | None = None, log_y: bool | None = None
+    ) -> Axes:
         """Draw the growth as a contour plot, with the limit of stability as a line.
 
         Where one parameter has one value, as a curve over the other one.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+        log_x, log_y : bool, optional
+            Whether an axis is logarithmic; by default where its values are spaced so.
         """
         ax = plotting.axes_or_new(ax)
+        logarithmic = [
+            _is_geometric(values) if given is None else checks.flag(given, name)
+            for values, given, name in ((self.x, log_x, "log_x"), (self.y, log_y, "log_y"))
+        ]
         if min(self.growth.shape) == 1:
-            return self._plot_curve(ax)
-        growth = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth).T
+            return self._plot_curve(ax, logarithmic)
+        from matplotlib.ticker import MaxNLocator
+
+        neutral = np.where(self.stable, np.minimum(self.growth, 0.0), self.growth)
+        growth = np.ma.masked_invalid(neutral).T
         largest = np.abs(growth).max() or 1.0
         levels = MaxNLocator(20, symmetric=True).tick_values(-largest, largest)
         filled = ax.contourf(self.x, self.y, growth, levels, cmap="RdBu_r")
@@ -119,27 +193,39 @@ class StabilityMap(Result):
             verdict = np.where(self.stable, -1.0, 1.0).T
             crossing = growth if growth.min() < -1e-6 * largest else verdict
             ax.contour(self.x, self.y, crossing, [0.0], colors="black", linewidths=1.2)
+        ax.set_xscale("log" if logarithmic[0] else "linear")
+        ax.set_yscale("log" if logarithmic[1] else "linear")
         ax.set_xlabel(self.labels[0])
         ax.set_ylabel(self.labels[1])
         return ax
 
-    def _plot_curve(self, ax: Axes) -> Axes:
+    def _plot_curve(self, ax: Axes, logarithmic: list[bool]) -> Axes:
         """Draw the growth over one parameter, at the one value of the other."""
         along = int(len(self.y) > 1)
         values, fixed = (self.y, self.x) if along else (self.x, self.y)
-        growth, unstable = self.growth.ravel(), ~self.stable.ravel()
+        growth, unstable = self.growth.ravel(), (~self.stable & np.isfinite(self.growth)).ravel()
         ax.axhline(0.0, color="0.6", lw=0.8)
         ax.plot(values, growth, ".-", color=plotting.COLORS[0])
         if unstable.any():
             marks = {"color": plotting.COLORS[1], "label": "unstable"}
             ax.plot(values[unstable], growth[unstable], "x", **marks)
             ax.legend()
+        ax.set_xscale("log" if logarithmic[along] else "linear")
         ax.set_title(f"{self.labels[1 - along]} = {fixed[0]:g}")
         ax.set_xlabel(self.labels[along])
         ax.set_ylabel("growth [1/s]")
         return ax
 
 
+def _is_geometric(values: np.ndarray) -> bool:
+    """Return whether values have one ratio, and not one difference."""
+    if len(values) < 3 or values[0] <= 0.0:
+        return False
+    ratios = values[1:] / values[:-1]
+    return bool(np.ptp(ratios) <= _EVEN * ratios[0])
+
+
+@one_thread()
 def stability_map(
     build: Callable[[float, float], PeriodicSystem | tuple[Target, float]],
     x: ArrayLike,
@@ -147,9 +233,8 @@ def stability_map(
     *,
     labels: tuple[str, str] = ("x", "y"),
     method: str = "auto",
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-6,
     accuracy: float | None = 1e-2,
-    executor: Executor | None = None,
     progress: bool = False,
 ) -> StabilityMap:
     """Compute the growth over a grid of two parameters.
@@ -159,13 +244,22 @@ def stability_map(
     build : callable
         ``build(x, y)`` returns a target of :func:`stability` and the speed [rad/s], e.g.
         ``(linear_model(rotor, supports=[Support('left', x)]), y)``, or a
-        :class:`PeriodicSystem`, which is taken as it is; picklable for process pools.
+        :class:`PeriodicSystem`, which is taken as it is.
     x, y : array_like, shapes (a,), (b,)
         Ascending.
     labels : tuple of str
         Names of x and y with units, for the plot.
-    method, tolerance, accuracy, executor, progress
+    method, tolerance, progress
         See :func:`stability`.
+    accuracy : float, optional
+        Relative error of the growth by the basis of a reduced rotor above which a warning is given,
+        estimated at the corners and in the middle. None for no estimate.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, and where no point has values. A single point at which `build` or the
+        supports raise a ValueError is NaN, with a warning.
 
     Examples
     --------
@@ -174,7 +268,7 @@ def stability_map(
     >>> rod = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
     >>> nodes = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]]  # two masses of 2 kg on a rod
     >>> rotor = SolidRotor.from_matrices(2.0 * np.eye(6), rod, nodes, "z")
-    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1])
+    >>> rotor = rotor.with_interface("left", [0]).with_interface("right", [1]).reduce(1)
     >>> supports = [Support(name, 2e4, damping=10.0) for name in ("left", "right")]
     >>> def build(damping: float, speed: float) -> tuple:
     ...     inner = [Support(name, damping=damping, frame="rotor") for name in ("left", "right")]
@@ -184,57 +278,97 @@ def stability_map(
            [ True, False]])
     """
     checks.function(build, "build")
-    check_method(method, tolerance)
-    options.check_basis_accuracy(accuracy)
-    options.check_sweep(executor, progress)
+    check_options(method, tolerance, accuracy)
+    checks.flag(progress, "progress")
     names = checks.labels(labels, "labels")
     if len(names) != 2:
         raise ValueError(f"labels: needs two names, of x and of y, got {checks.shown(labels)}")
-    grid = [ascending(values, name).tolist() for values, name in ((x, "x"), (y, "y"))]
-    points = [(a, b) for a in grid[0] for b in grid[1]]
-    point = partial(_map_point, build=build, given=(method, tolerance, accuracy))
-    margins = sweep(point, points, executor=executor, progress=progress, label="stability map")
-    growth, excess, errors = np.array(margins).T.reshape(3, len(grid[0]), len(grid[1]))
-    if np.all(np.isnan(errors)):
-        return StabilityMap(*grid, growth, excess <= 0.0, names)
-    _warn_of_basis(points, errors, build, accuracy)
-    return StabilityMap(*grid, growth, excess <= 0.0, names, basis_errors=errors)
+    grid = [ascending(values, name) for values, name in ((x, "x"), (y, "y"))]
+    shape = len(grid[0]), len(grid[1])
+    growth, least, inertial, errors = (np.full(shape, np.nan) for _ in range(4))
+    stable, codes = np.zeros(shape, dtype=bool), np.full(shape, UNKNOWN, dtype=np.int64)
+    diameters = np.full(shape, -1, dtype=np.int64)
+    judged = {(a, b) for a in (0, shape[0] - 1) for b in (0, shape[1] - 1)}
+    judged.add((shape[0] // 2, shape[1] // 2))
+    refused, contents, worst = [], {}, (0.0, "", None)
+    places = list(np.ndindex(*shape))
+    if progress:
+        from tqdm import tqdm
+
+        places = tqdm(places, desc="stability map")
+    for at in places:
+        point = float(grid[0][at[0]]), float(grid[1][at[1]])
+        shown = f"({point[0]:.5g}, {point[1]:.5g})"
+        try:
+            built = _built(build, point)
+            motions = _motions(built, method, tolerance)
+        except ValueError as error:
+            refused.append((shown, error))
+            continue
+        growth[at], which = np.nanmax(motions.values.real), least_stable_of(motions)
+        least[at], stable[at] = motions.values[which].real, growth[at] <= motions.bound
+        inertial[at] = abs(motions.values[which].imag)
+        if isinstance(built, PeriodicSystem):
+            continue
+        named = _content_of(built[0], contents).named(motions)
+        inertial[at], codes[at], diameters[at] = (each[which] for each in named[1:2] + named[3:])
+        if at in judged and basis_error.is_known(built[0], accuracy):
+            errors[at] = _basis_error(*built, named, which)
+            one = np.nan_to_num(errors[at]), shown, built[0]
+            worst = max(worst, one, key=lambda each: each[0])
+    warn_of_refused(refused, growth.size)
+    if worst[2] is not None:
+        basis_error.warn(worst[0], f"the least stable motion at {worst[1]}", worst[2], accuracy)
+    return StabilityMap(
+        *grid,
+        growth,
+        stable,
+        names,
+        basis_errors=None if np.all(np.isnan(errors)) else errors,
+        frequencies_inertial=inertial,
+        whirl_codes=codes,
+        nodal_diameters=diameters,
+        log_decrement=damping_of(least, inertial)[1],
+    )
 
 
-def _map_point(
-    point: tuple[float, float], build: Callable, given: tuple[str, float, float | None]
-) -> tuple[float, float, float]:
-    built, (method, tolerance, accuracy) = build(*point), given
+def _built(
+    build: Callable, point: tuple[float, float]
+) -> PeriodicSystem | tuple[LinearModel, float]:
+    """Return the model and the speed of a point, or its equations."""
+    built = build(*point)
     if isinstance(built, PeriodicSystem):
-        growth, error = growth_of(motions(built, method, tolerance, False), built), np.nan
-    else:
-        if not isinstance(built, tuple) or len(built) != 2:
-            raise TypeError(
-                "build: needs to return a target of stability and the speed, or a PeriodicSystem, "
-                f"got {checks.shown(built)}"
-            )
-        speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
-        model = linear_model(built[0])
-        space = held_space(model, speed, None, _RESIDUAL)
-        growth = GrowthAt(space, method, tolerance)(speed)
-        error = _basis_error(BasisError.of(model, accuracy, held=True), growth, speed)
-    return growth.values.real.max(), growth.excess, error
+        return built
+    if not isinstance(built, tuple) or len(built) != 2:
+        raise TypeError(
+            "build: needs to return a target of stability and the speed, or a PeriodicSystem, "
+            f"got {checks.shown(built)}"
+        )
+    speed = checks.number(built[1], "build: the speed it returns", "rad/s", least=0.0)
+    return linear_model(built[0]), speed
 
 
-def _basis_error(basis: BasisError, growth: Growth, speed: float) -> float:
-    """Return the relative error of the least stable motion; NaN where it is not known."""
-    shifts = basis.shifts_of([speed], [growth.critical])
-    if shifts is None:
-        return np.nan
-    value = growth.values[[growth.least_stable]]
-    given = shifts[None], value.real[None], np.abs(value.imag)[None], np.array([speed])
-    return float(relative_errors(*given)[0, 0])
+def _motions(
+    built: PeriodicSystem | tuple[LinearModel, float], method: str, tolerance: float
+) -> Motions:
+    if isinstance(built, PeriodicSystem):
+        return motions_of([built], method, tolerance)[0]
+    model, speed = built
+    return motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
 
 
-def _warn_of_basis(
-    points: list[tuple[float, float]], errors: np.ndarray, build: Callable, accuracy: float
-) -> None:
-    """Warn where the basis leaves out too much for the worst of the points."""
-    worst = points[int(np.nanargmax(errors))]
-    basis = BasisError.of(linear_model(build(*worst)[0]), accuracy, held=True)
-    basis.warn(errors, f"the least stable motion at ({worst[0]:.5g}, {worst[1]:.5g})")
+def _content_of(model: LinearModel, contents: dict) -> Content:
+    """Return the forms of a model, the same for models of the same coordinates."""
+    key = (tuple(map(id, model.rotors.values())), tuple(model.ratios.values()), model.axes,
+           model.coordinates, id(model.foundation))  # fmt: skip
+    if key not in contents:
+        contents[key] = (Content.of(model), model)  # the model keeps the objects of the key alive
+    return contents[key][0]
+
+
+def _basis_error(model: LinearModel, speed: float, named: Named, which: int) -> float:
+    """Return the relative error of the least stable motion; NaN where it is not found again."""
+    at = np.array([speed])
+    shift = basis_error.shifts_over(model, at, [named], held=True)[:, [which]]
+    given = named.motions.values.real[None, [which]], named.inertial[None, [which]]
+    return float(basis_error.relative_errors(shift, *given, at)[0, 0])

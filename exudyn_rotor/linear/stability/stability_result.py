@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.modal.damping import damping_of
-from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, families
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
+from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.theory.stiffening import LEVELS
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _EXACT = 1e-8  # share of a motion's rate: bounds below it are rounding of the last digits
 _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reaches down to there
@@ -24,79 +27,78 @@ _SHOWN = 4.0  # times the strongest decay of lateral motions: what is drawn reac
 class Stability(Result):
     """Exponents over spin speed.
 
+    A speed without values, as beyond a table, has a row of NaN and is not stable.
+
     Attributes
     ----------
     speeds : ndarray, shape (s,)
         Spin speeds [rad/s].
-    exponents : ndarray, shape (s, 2k)
-        λ, the least stable first; real part [1/s], imaginary part [rad/s] in the rotor frame.
-        Where the system is periodic, frequencies are known but for multiples of `base` and lie in
-        (−base/2, base/2]. Of a large SolidRotor one of each conjugate pair, and of two real ones
-        the less damped, shape (s, modes).
-    multipliers : ndarray, as exponents
-        ``exp(2πλ/base)``; over one revolution where the system is constant; NaN at 0 rad/s.
+    exponents : ndarray, shape (s, k)
+        λ, the least stable first: growth [1/s], and i times the frequency of the motion's strongest
+        wave in the rotor frame [rad/s]. One of each conjugate pair, and of real ones the less
+        damped half. NaN where harmonics do not converge.
     growth : ndarray, shape (s,)
         Largest real part [1/s].
     stable : ndarray of bool, shape (s,)
-        No exponent has a real part above its bound.
-    base : ndarray, shape (s,)
-        Frequency of the coefficients [rad/s], 0 where they are constant.
-    bounds : ndarray, as exponents
-        Largest spurious real part [1/s], by rounding of the matrices and of the eigensolver and by
-        harmonics left out, from the condition of each exponent; of motions that stand still in
-        space also by what the equations neglect of a rotor off its axis.
-    frequencies_inertial : ndarray, as exponents
-        Frequency of the motion's strongest wave seen from outside [rad/s], not modulo `base`; by
-        Floquet's method, where Hill's does not converge, modulo `base`.
-    whirl_codes, nodal_diameters : ndarray of int, as exponents
+        No motion grows by more than :attr:`bounds`.
+    bounds : ndarray, shape (s,)
+        By how much rounding can change a real part [1/s]: motions that neither grow nor decay by
+        more are neutral.
+    frequencies_inertial : ndarray, shape (s, k)
+        Frequency of the motion's strongest wave seen from outside [rad/s].
+    whirl_codes, nodal_diameters : ndarray of int, shape (s, k)
         As those of :class:`Campbell`; see :attr:`whirl` and :attr:`families`.
     tolerance : float
+        Largest relative error of λ by harmonics that are left out.
     basis_shifts : ndarray, shape (s,), or None
         Estimated ``λ − λ_reduced`` of the least stable motion with λ of the full model, as
-        :attr:`Campbell.basis_shifts`; NaN by Floquet's method, but where the basis is complete.
+        :attr:`Campbell.basis_shifts`; NaN where the motion is not found again.
     stiffening : str or None
         Level of centrifugal stiffening, 'none', 'tilt' or 'full'; None where it is not known.
+    axes : {'inertial', 'rotor'}
+        Axes in which the equations were solved.
+    unevenness : float
+        Largest share of a rotor that differs around its axis and is averaged over a turn.
 
     Examples
     --------
-    >>> import numpy as np
     >>> from exudyn_rotor import Stability
-    >>> values = [[-1.0 + 100.0j, -1.0 - 100.0j]]
-    >>> names = {"frequencies_inertial": [[150.0, 150.0]], "whirl_codes": [[0, 0]]}
-    >>> names |= {"nodal_diameters": [[1, 1]], "bounds": [[1e-7, 1e-7]]}
-    >>> result = Stability([50.0], values, values, [-1.0], [True], [0.0], **names, tolerance=1e-9)
+    >>> names = {"frequencies_inertial": [[150.0]], "whirl_codes": [[0]], "nodal_diameters": [[1]]}
+    >>> result = Stability([50.0], [[-1.0 + 100.0j]], [-1.0], [True], [1e-9], **names)
     >>> print(result.table())
-    speed [rad/s]  lateral [1/s]    torsional        axial  frequency [rad/s]  n  whirl      verdict
-          50.0000             -1            -            -                150  1  forward    stable
-    least stable lateral motion: -1 1/s at 50 rad/s, 150 rad/s, forward, n = 1, log decrement 0.0419
+    speed [rpm]  lateral [1/s]    torsional        axial  frequency [Hz]  n  whirl      verdict
+        477.465             -1            -            -          23.873  1  forward    stable
+    least stable lateral motion: -1 1/s at 477.465 rpm, 23.873 Hz, forward, n = 1, log decrement ...
     error of the basis: not known
     """
 
     speeds: np.ndarray = numbers("speeds")
-    exponents: np.ndarray = numbers("speeds", "modes", dtype=complex)
-    multipliers: np.ndarray = numbers("speeds", "modes", dtype=complex, finite=False)
-    growth: np.ndarray = numbers("speeds")
+    exponents: np.ndarray = numbers("speeds", "modes", dtype=complex, finite=False)
+    growth: np.ndarray = numbers("speeds", finite=False)
     stable: np.ndarray = numbers("speeds", dtype=bool)
-    base: np.ndarray = numbers("speeds")
-    bounds: np.ndarray = numbers("speeds", "modes", least=0.0)
-    frequencies_inertial: np.ndarray = numbers("speeds", "modes")
+    bounds: np.ndarray = numbers("speeds", finite=False, least=0.0)
+    frequencies_inertial: np.ndarray = numbers("speeds", "modes", finite=False)
     whirl_codes: np.ndarray = numbers("speeds", "modes", dtype=int, least=0, most=len(WHIRLS) - 1)
     nodal_diameters: np.ndarray = numbers("speeds", "modes", dtype=int, least=-1)
-    tolerance: float
+    tolerance: float = 1e-6
     basis_shifts: np.ndarray | None = numbers("speeds", dtype=complex, finite=False, optional=True)
     stiffening: str | None = None
+    axes: str = "inertial"
+    unevenness: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.stiffening is not None:
             checks.choice(self.stiffening, "stiffening", LEVELS)
+        checks.choice(self.axes, "axes", AXES[1:])
         checks.number(self.tolerance, "tolerance", least=0.0)
+        checks.number(self.unevenness, "unevenness", least=0.0)
 
-    def plot(self, ax: Axes | None = None, *, units: str = "Hz") -> Axes:
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the growth over the spin speed, of each family and of the least stable motion.
 
         Unstable speeds are shaded; families that decay far faster than lateral motions, which would
-        hide these, are in the legend only. `units` are 'Hz', 'rpm' or 'SI', rad/s.
+        hide these, are in the legend only. `units` are 'rpm', 'Hz' or 'SI', rad/s.
         """
         shown = Units.of(units)
         ax = plotting.axes_or_new(ax)
@@ -105,7 +107,7 @@ class Stability(Result):
         moving = [growth for growth in found.values() if np.any(np.nan_to_num(growth))]
         if moving:  # others are free or rest at all speeds
             ax.plot(speeds, np.fmax.reduce(moving), color="0.8", lw=6.0, label="least stable")
-        lowest = _SHOWN * np.nanmin(found["lateral"], initial=0.0)
+        lowest = _SHOWN * np.fmin.reduce(found["lateral"], initial=0.0)
         for (family, growth), color in zip(found.items(), plotting.COLORS, strict=True):
             if np.all(np.isnan(growth)):
                 continue
@@ -115,7 +117,8 @@ class Stability(Result):
             ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
         low, high = ax.get_ylim()
         ax.fill_between(
-            speeds, low, high, where=~self.stable, color=plotting.COLORS[1], alpha=0.2, lw=0.0
+            speeds, low, high, where=~self.stable & self.known, color=plotting.COLORS[1],
+            alpha=0.2, lw=0.0,
         )
         ax.set_ylim(low, high)
         ax.axhline(0.0, color="0.3", lw=0.8)
@@ -149,14 +152,24 @@ class Stability(Result):
         return damping_of(self.exponents.real, self.frequencies_inertial)[1]
 
     @property
+    def known(self) -> np.ndarray:
+        """Whether a speed has values, shape (s,)."""
+        return np.isfinite(self.growth)
+
+    @property
+    def _moving(self) -> np.ndarray:
+        """Whether motions grow or decay by more than rounding, shape (s, k)."""
+        return np.abs(self.exponents.real) > self.bounds[:, None]
+
+    @property
     def least_stable(self) -> np.ndarray:
         """Column of the least stable motion at each speed, of those that are not neutral, (s,)."""
-        return np.argmax(np.abs(self.exponents.real) > self.bounds, axis=1)
+        return np.argmax(self._moving, axis=1)
 
     @property
     def neutral(self) -> np.ndarray:
-        """Whether all motions neither grow nor decay within :attr:`bounds`, shape (s,)."""
-        return np.all(np.abs(self.exponents.real) <= self.bounds, axis=1)
+        """Whether no motion grows or decays by more than :attr:`bounds`, shape (s,)."""
+        return ~np.any(self._moving, axis=1)
 
     @property
     def basis_errors(self) -> np.ndarray | None:
@@ -179,11 +192,12 @@ class Stability(Result):
 
         Parameters
         ----------
-        family : {'lateral', 'torsional', 'axial', 'disc', 'other'}
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
         """
         checks.choice(family, "family", FAMILIES)
-        growth = np.where(np.abs(self.exponents.real) <= self.bounds, 0.0, self.exponents.real)
-        largest = np.where(self.families == family, growth, -np.inf).max(axis=1)
+        growth = np.where(self._moving, self.exponents.real, 0.0)
+        own = (self.families == family) & ~np.isnan(self.exponents)
+        largest = np.where(own, growth, -np.inf).max(axis=1, initial=-np.inf)
         return np.where(np.isfinite(largest), largest, np.nan)
 
     def least_stable_of(self, family: str) -> tuple[int, int] | None:
@@ -194,13 +208,14 @@ class Stability(Result):
 
         Parameters
         ----------
-        family : {'lateral', 'torsional', 'axial', 'disc', 'other'}
+        family : {'lateral', 'torsional', 'axial', 'disc', 'other', 'foundation'}
         """
         checks.choice(family, "family", FAMILIES)
-        told = (self.families == family) & (np.abs(self.exponents.real) > self.bounds)
+        told = (self.families == family) & self._moving
         growth = np.where(told, self.exponents.real, -np.inf)
+        most = np.unravel_index(np.argmax(growth), growth.shape)
         # the first of those that only rounding tells apart
-        largest = growth.flat[np.argmax(growth)] - self.bounds.flat[np.argmax(growth)]
+        largest = growth[most] - np.nan_to_num(self.bounds[most[0]])
         row, column = np.unravel_index(np.argmax(growth >= largest), growth.shape)
         return (int(row), int(column)) if told[row, column] else None
 
@@ -222,9 +237,10 @@ class Stability(Result):
 
     def _written(self, family: str) -> list[str]:
         """Return the growth of a family for the table: '±' its bound where that hides it."""
-        own = (self.families == family) & (np.abs(self.exponents.real) <= self.bounds)
+        bounds = self.bounds[:, None]
+        own = (self.families == family) & ~self._moving
         rates = np.maximum(np.abs(self.exponents), self.speeds[:, None])
-        hidden = np.where(own & (self.bounds > _EXACT * rates), self.bounds, 0.0).max(axis=1)
+        hidden = np.where(own & (bounds > _EXACT * rates), bounds, 0.0).max(axis=1)
         growth = zip(self.growth_of(family), hidden, strict=True)
         return [
             "-" if np.isnan(g) else f"±{bound:.1g}" if g == 0.0 and bound else f"{g:.4g}"
@@ -243,7 +259,7 @@ class Stability(Result):
         growth = {f"{name} [1/s]": self.growth_of(name) for name in FAMILIES}
         return {
             f"speed [{shown.speed}]": shown.speeds(self.speeds),
-            "growth [1/s]": np.where(none, 0.0, self.exponents[rows].real),
+            "growth [1/s]": np.where(none & self.known, 0.0, self.exponents[rows].real),
             **growth,
             f"inertial [{shown.frequency}]": heard,
             "nodal diameters": np.where(none, -1, self.nodal_diameters[rows]),
@@ -252,7 +268,7 @@ class Stability(Result):
             "basis error": np.full(len(self.speeds), np.nan) if errors is None else errors,
         }
 
-    def table(self, *, units: str = "SI") -> str:
+    def table(self, *, units: str = "rpm") -> str:
         """Return speed, growth of the families, the least stable motion and verdict as text.
 
         Below, the least stable motion of each family over all speeds: an undamped torsion, say, is
@@ -269,8 +285,8 @@ class Stability(Result):
         reduced = errors is not None and np.any(errors > 0.0)
         growth = [self._written(name) for name in FAMILIES[:3]]
         lines = [
-            f"{speed:>13}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
-            f"{frequency:>17}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
+            f"{speed:>11}  {'lateral [1/s]':>13}  {'torsional':>11}  {'axial':>11}  "
+            f"{frequency:>14}  n  {'whirl':9}  {'verdict':8}" + ("  basis error" if reduced else "")
         ]
         for row, column in enumerate(self.least_stable):
             parts = [family[row] for family in growth]
@@ -279,9 +295,9 @@ class Stability(Result):
             whirl = self.whirl[row, column]
             if self.neutral[row]:
                 heard, n, whirl = "-", -1, "-"
-            verdict = "stable" if self.stable[row] else "unstable"
+            verdict = "stable" if self.stable[row] else "unstable" if self.known[row] else "-"
             lines.append(
-                f"{at:13.4f}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:>17}  "
+                f"{at:11.6g}  {parts[0]:>13}  {parts[1]:>11}  {parts[2]:>11}  {heard:>14}  "
                 f"{n if n >= 0 else '-'}  {whirl:9}  {verdict:8}"
             )
             if reduced:
@@ -290,4 +306,6 @@ class Stability(Result):
         lines += filter(None, (self._least_stable_line(family, shown) for family in FAMILIES))
         if self.stiffening:
             lines.append(f"stiffening: {self.stiffening}")
+        if self.unevenness > 0.0:
+            lines.append(f"unevenness of the mesh, averaged: {100.0 * self.unevenness:.2g} %")
         return "\n".join(lines if errors is not None else [*lines, NOT_KNOWN])

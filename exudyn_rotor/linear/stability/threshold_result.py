@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from exudyn_rotor import plotting
+from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.modal.whirl import WHIRLS, families
-from exudyn_rotor.linear.models.basis.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _SMALL = 0.1  # share of the range that a limit counts as at least
 _SPEED = "speed [rad/s]"  # how the names of parameters end that are shown in other units
@@ -44,19 +47,16 @@ class StabilityThresholds(Result):
         Name of the parameter with its unit.
     basis_shifts : ndarray, shape (t,), or None
         Estimated ``p − p_reduced`` with the limit p of the full model, to first order: the growth
-        that the mode gains by what the basis leaves out, over its slope. By Floquet's
-        method and where two modes meet, as at the ends of a range of parametric resonance or
-        between the critical speeds of an asymmetric rotor, the limit is searched again with the
-        shapes that the basis lacks first; NaN, with a warning, where none is within 5 % of the
-        range. None where it is not known at all.
+        that the motion gains by what the basis leaves out, over its slope. NaN where the motion is
+        not found again, None where nothing is known.
 
     Examples
     --------
     >>> from exudyn_rotor import StabilityThresholds
     >>> result = StabilityThresholds([300.0], [True], [100.0], [0], [1], 0.0, 400.0, False)
     >>> print(result.table())
-    speed [rad/s]   above      frequency [rad/s]  n  whirl      kind
-              300   unstable                 100  1  forward    lateral
+      speed [rpm]   above        frequency [Hz]  n  whirl      kind
+         2864.789   unstable              15.915  1  forward    lateral
     error of the basis: not known
     """
 
@@ -105,21 +105,21 @@ class StabilityThresholds(Result):
             "basis error": np.full(self.values.shape, np.nan) if errors is None else errors,
         }
 
-    def table(self, *, units: str = "SI") -> str:
+    def table(self, *, units: str = "rpm") -> str:
         """Return the thresholds with the modes that grow there as lines of text.
 
         The error of the basis is '-' where it is not estimated, see :attr:`basis_shifts`.
 
         Parameters
         ----------
-        units : {'SI', 'Hz', 'rpm'}
-            Of frequencies, and of the parameter where it is called a speed in rad/s: 'SI' has both
-            in rad/s, 'rpm' speeds in rpm and frequencies in Hz.
+        units : {'rpm', 'Hz', 'SI'}
+            Of frequencies, and of the parameter where it is called a speed in rad/s: 'rpm' has
+            speeds in rpm and frequencies in Hz, 'SI' both in rad/s.
         """
         shown = Units.of(units)
         label, factor = self._parameter(shown)
         width, frequency = max(13, len(label)), f"frequency [{shown.frequency}]"
-        lines = [f"{label:>{width}}   above   {frequency:>20}  n  whirl      kind"]
+        lines = [f"{label:>{width}}   above   {frequency:>19}  n  whirl      kind"]
         errors = self.basis_errors
         reduced = errors is not None and np.any(errors != 0.0)
         if reduced:
@@ -129,7 +129,7 @@ class StabilityThresholds(Result):
             n, word = self.nodal_diameters[row], WHIRLS[self.whirl_codes[row]]
             lines.append(
                 f"{value:{width}.7g}   {'unstable' if onset else 'stable':8}"
-                f"{shown.frequencies(self.frequencies_inertial[row]):20.5g}  {n if n >= 0 else '-'}"
+                f"{shown.frequencies(self.frequencies_inertial[row]):19.5g}  {n if n >= 0 else '-'}"
                 f"  {word:9}  {kinds[row]}"
             )
             if reduced:
@@ -148,7 +148,7 @@ class StabilityThresholds(Result):
     def _without_limit(self) -> str:
         return f"{'unstable' if self.unstable_at_low else 'stable'} in the whole range"
 
-    def plot(self, ax: Axes | None = None, *, units: str = "SI") -> Axes:
+    def plot(self, ax: Axes | None = None, *, units: str = "rpm") -> Axes:
         """Draw the frequencies of the modes at their thresholds; unstable ranges are shaded.
 
         `units` are those of :meth:`table`.

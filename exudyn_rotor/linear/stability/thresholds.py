@@ -1,39 +1,128 @@
-"""Limits of stability over the spin speed or any other parameter."""
+"""Limits of stability over the spin speed or any other parameter.
+
+The margin g(p) is the largest growth of a motion that is not neutral, less what rounding can make
+of it: positive where the rotor is unstable. It is computed at samples; each change of its sign is
+found by Brent's method, and where a peak of it comes near zero between samples a few values look
+whether it crosses.
+"""
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq, minimize_scalar
 
 from exudyn_rotor import checks
-from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.models.basis.basis_error import BasisError
-from exudyn_rotor.linear.models.linear_model import Target
-from exudyn_rotor.linear.periodic.periodic_system import UnconvergedError, fold
-from exudyn_rotor.linear.stability.growth_over import (
-    Finer,
-    GrowthOver,
-    Options,
-    OverParameter,
-    OverSpeed,
-    Supports,
+from exudyn_rotor.bearings.given import Given
+from exudyn_rotor.bearings.support import NoCoefficientsError
+from exudyn_rotor.linear import basis_error
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.modal.whirl import Content, Named
+from exudyn_rotor.linear.model.build import (
+    Target,
+    linear_model,
+    warn_of_left_out_stiffening,
+    warn_of_structural_damping,
+)
+from exudyn_rotor.linear.model.linear_model import LinearModel
+from exudyn_rotor.linear.over import margins_over, motions_over
+from exudyn_rotor.linear.stability.stability import (
+    WHAT,
+    check_options,
+    least_stable_of,
+    warn_of_refused,
 )
 from exudyn_rotor.linear.stability.threshold_result import StabilityThresholds, limit_errors
-from exudyn_rotor.linear.stability.threshold_search import ASIDE, STEP, Search
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.sweep import ascending_from_zero
 
-_ROOT = 1e-8  # of the largest parameter
-# share of λ or Ω, times the change by the basis: motions so near change with the root of it
-_NEAR, _TIMES = 5e-3, 10.0
-# of the range beside such a limit where it is searched again, in steps that grow, then at points
-_REACH, _STEPS, _POINTS = 0.05, 6, 9
-# of such a step: to which the distance is found
-_SHARE = 0.02
-_MOST = 100  # values looked at with the shapes that the basis lacks
+Supports = Sequence[Given] | Given
+_ROOT = 1e-8  # of the largest parameter: error of a limit
+_INNER, _PERIODIC = 3, 2  # parts of the interval between two samples; of periodic equations
+_PEAKS, _STEPS = 6, 6  # peaks that are looked at, each with so many values
+_ASIDE = 1e-4  # of the range, or half of an unstable one: where the growing motion is named
+_NONE = NoCoefficientsError, UnconvergedError
+
+
+class _Growth:
+    """Growth of the least stable motion over a parameter; values are computed once.
+
+    Made from a function that gives the model and the spin speed at a point, and options of
+    :func:`margins_over`. Where the parameter is the speed there is one model at all points.
+    """
+
+    def __init__(
+        self, model_at: Callable[[float], tuple[LinearModel, float]], is_speed: bool, **given
+    ) -> None:
+        self.model_at, self.is_speed, self.given = model_at, is_speed, given
+        self.known: dict[float, float] = {}
+
+    def at(self, points: Sequence[float]) -> None:
+        """Compute the margin at points; NaN where there are no coefficients, with one warning."""
+        points = [float(point) for point in points]
+        if self.is_speed:
+            margins = margins_over(self.model_at(points[0])[0], points, **self.given)
+            self.known.update(zip(points, margins.tolist(), strict=True))
+            return
+        refused = []
+        for point in points:
+            try:
+                model, speed = self.model_at(point)
+                self.known[point] = float(margins_over(model, [speed], **self.given)[0])
+            except _NONE as error:
+                self.known[point] = np.nan
+                refused.append((f"{point:.5g}", error))
+        warn_of_refused(refused, len(points))
+
+    def __call__(self, point: float) -> float:
+        """Return the margin at a point between two that have one; negative where it has none."""
+        if point not in self.known:
+            try:
+                self.at([point])
+            except _NONE:
+                self.known[point] = np.nan
+        margin = self.known[point]
+        return -1.0 if np.isnan(margin) else margin
+
+    @property
+    def course(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points with a margin, ascending, and the margins."""
+        points = np.array(sorted(p for p, margin in self.known.items() if not np.isnan(margin)))
+        return points, np.array([self.known[p] for p in points.tolist()])
+
+    def changes(self, root: float) -> list[tuple[float, bool]]:
+        """Return each limit between neighbouring points, and whether it is unstable above."""
+        points, margins = self.course
+        found = []
+        for (a, b), (low, high) in zip(
+            pairwise(points.tolist()), pairwise(margins.tolist()), strict=True
+        ):
+            if (low > 0.0) != (high > 0.0):
+                # −0.0 is stable, as brentq needs a sign
+                limit = brentq(lambda p: self(p) or -1e-300, a, b, xtol=root, rtol=1e-15)
+                found.append((float(limit), high > 0.0))
+        return found
+
+    def look_at_peaks(self) -> None:
+        """Look whether a margin that comes near zero between points crosses it."""
+        points, margins = self.course
+        candidates = []
+        for i in range(len(points)):
+            sign = 1.0 if margins[i] > 0.0 else -1.0  # a peak below zero, or a gap above
+            near = [j for j in (i - 1, i + 1) if 0 <= j < len(points)]
+            away = [sign * (margins[j] - margins[i]) for j in near]
+            if min(away) >= 0.0 and 0.0 < sign * margins[i] < max(away):
+                ends = float(points[max(i - 1, 0)]), float(points[min(i + 1, len(points) - 1)])
+                candidates.append((sign * margins[i], sign, ends))
+        for _, sign, ends in sorted(candidates)[:_PEAKS]:
+            minimize_scalar(
+                lambda p, sign=sign: sign * self(float(p)), bounds=ends, method="bounded",
+                options={"maxiter": _STEPS},
+            )  # fmt: skip
 
 
 def stability_threshold(
@@ -45,19 +134,20 @@ def stability_threshold(
     speed: float | None = None,
     samples: int = 24,
     label: str | None = None,
-    **given,
+    body: RotorBody | Sequence[RotorBody] | None = None,
+    stiffening: str = "auto",
+    axes: str = "auto",
+    method: str = "auto",
+    tolerance: float = 1e-6,
+    accuracy: float | None = 1e-2,
 ) -> StabilityThresholds:
-    """Find all thresholds of stability over the spin speed or another parameter.
+    """Find the limits of stability over the spin speed or another parameter.
 
-    Each to 1e-8 of the largest parameter, with the mode that grows there. Ranges between two
-    samples are found where the real part of a mode, followed by its rate of change, has a peak, or
-    where two lightly damped modes meet in frequency, as in a parametric resonance; gaps between two
-    unstable samples by a search of few steps, and what lies between samples of different verdict by
-    seven values. Of equations that turn, as of uneven rotors on uneven
-    supports, the largest growth is computed at 40 values between two samples, too. A range that is
-    narrower can be missed: take more `samples` where that matters. The growth counts from its bound
-    on, see :attr:`Stability.bounds`, so a threshold that is crossed slowly is found late by that
-    over the slope.
+    Each is found to 1e-8 of the largest parameter, with the motion that grows there. The range is
+    looked at in `samples` intervals with three steps each (two where equations are periodic, which
+    takes a hundred times longer), and closer where the growth has a peak
+    near zero. A range that is narrower than a step can be missed, as one of a parametric resonance
+    with little damping: take more `samples` where that matters.
 
     Parameters
     ----------
@@ -65,25 +155,26 @@ def stability_threshold(
         A callable takes the parameter and returns such a target.
     low, high : float
         Range of the parameter; spin speeds [rad/s] unless `target` or `supports` are callable.
-    supports : sequence of Support, or callable, optional
+    supports : sequence of Support or bearings, or callable, optional
         Of a rotor; a callable takes the parameter and returns them.
     speed : float, optional
         Spin speed [rad/s], where it is not the parameter.
     samples : int, optional
-        Number of steps in which the range is sampled. The speeds of supports' tables, at which
-        their coefficients have kinks, are samples, too.
+        Number of intervals in which the range is sampled. The speeds of supports' tables, at which
+        coefficients have kinks, are samples, too.
     label : str, optional
         Name of the parameter with its unit.
-    **given
-        Further arguments of :func:`stability`: `body`, `stiffening`, `method`, `tolerance`,
-        `modes`, `residual`, `accuracy`. The last is the relative error of a threshold by the basis
-        of a reduced rotor, estimated, above which a warning is given: see
-        :attr:`StabilityThresholds.basis_errors`.
+    body, stiffening, axes, method, tolerance
+        See :func:`stability`.
+    accuracy : float, optional
+        Relative error of a limit by the basis of a reduced rotor, estimated, above which a warning
+        is given: see :attr:`StabilityThresholds.basis_errors`. None for no estimate.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, and a `speed` that is missing or given where it is the parameter.
+        For bad input, and a `speed` that is missing or given where it is the parameter. Values at
+        which supports have no coefficients are left out with a warning.
 
     Examples
     --------
@@ -101,61 +192,77 @@ def stability_threshold(
     array([300.])
     >>> given = {"supports": damped, "speed": 300.0, "samples": 4}
     >>> print(stability_threshold(rotor, 2.0, 20.0, label="inner damping", **given).table())
-    inner damping   above      frequency [rad/s]  n  whirl      kind
-                5   unstable                 100  1  forward    lateral
+    inner damping   above        frequency [Hz]  n  whirl      kind
+                5   unstable              15.915  1  forward    lateral
     """
     low = checks.number(low, "low")
     high = checks.number(high, "high", above=low)
     samples = checks.count(samples, "samples", least=2)
+    check_options(method, tolerance, accuracy)
     is_speed = not callable(target) and not callable(supports)
     if label is None:
         label = "speed [rad/s]" if is_speed else "parameter"
     checks.label(label, "label")
+    made = {"body": body, "stiffening": stiffening, "axes": axes}
     if is_speed:
         checks.number(low, "low", "rad/s", least=0.0)
         if speed is not None:
             raise ValueError("speed: is the parameter, from low to high; leave it out")
-        made: GrowthOver = OverSpeed.of(target, high, given | {"supports": supports})
+        model = _checked_model(target, high, supports=supports, **made)
+        kinks = model.table_speeds
     else:
-        if speed is None:
-            given = "target" if callable(target) else "supports"
-            raise ValueError(
-                f"speed: needs the spin speed [rad/s], since {given}: a function, "
-                f"{checks.shown(target if callable(target) else supports)}, says that it is not "
-                "the parameter"
-            )
-        speed = checks.number(speed, "speed", "rad/s", least=0.0)
-        made = OverParameter(target, supports, speed, Options.of(given))
-    search = Search(made, high - low)
-    kinks = made.kinks[(made.kinks > low) & (made.kinks < high)]
-    for point in np.union1d(np.linspace(low, high, samples + 1), kinks):
-        search.at(float(point))
-    search.refine()
-    found = search.changes(_ROOT * max(abs(low), abs(high)))
-    limits = _limits(search, found, 0.5 * (low + high))
-    names = list(zip(*(limit.name for limit in limits), strict=True)) if limits else [(), (), ()]
-    values, shifts = np.array([value for value, _ in found]), _shifts(limits, made.accuracy)
-    _warn_of_basis(limits, shifts, values, high - low, label)
+        speed = _checked_speed(target, supports, speed)
+
+        kinks = np.zeros(0)
+
+    def model_at(point: float) -> tuple[LinearModel, float]:
+        if is_speed:
+            return model, point
+        chosen = target(point) if callable(target) else target
+        held = supports(point) if callable(supports) else supports
+        return linear_model(chosen, supports=held, **made), speed
+
+    growth = _Growth(model_at, is_speed, method=method, tolerance=tolerance)
+    parts = _INNER if _is_constant(*model_at(0.5 * (low + high))) else _PERIODIC
+    points = np.linspace(low, high, parts * samples + 1)
+    growth.at(np.union1d(points, kinks[(kinks > low) & (kinks < high)]))
+    growth.look_at_peaks()
+    found = growth.changes(_ROOT * max(abs(low), abs(high)))
+    limits = _limits(growth, found, high - low, accuracy)
+    _warn_of_basis(limits, high - low, label, accuracy)
+    shifts = [limit.shift for limit in limits]
     return StabilityThresholds(
-        values,
-        np.array([on for _, on in found], dtype=bool),
-        np.array(names[0], dtype=float),
-        *(np.array(column, dtype=np.int64) for column in names[1:]),
-        low,
-        high,
-        bool(search.at(low).excess > 0.0),
-        label,
-        basis_shifts=shifts,
+        values=[limit.value for limit in limits],
+        onset=np.array([limit.onset for limit in limits], dtype=bool),
+        frequencies_inertial=[limit.name[0] for limit in limits],
+        whirl_codes=np.array([limit.name[1] for limit in limits], dtype=np.int64),
+        nodal_diameters=np.array([limit.name[2] for limit in limits], dtype=np.int64),
+        low=low,
+        high=high,
+        unstable_at_low=bool(growth.course[1][0] > 0.0),
+        label=label,
+        basis_shifts=None if accuracy is None or None in shifts else np.array(shifts, dtype=float),
     )
 
 
-def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
+def unstable_ranges(
+    target: Target,
+    speeds: ArrayLike,
+    *,
+    supports: Supports = (),
+    body: RotorBody | Sequence[RotorBody] | None = None,
+    stiffening: str = "auto",
+    axes: str = "auto",
+    method: str = "auto",
+    tolerance: float = 1e-6,
+    accuracy: float | None = 1e-2,
+) -> np.ndarray:
     """Return the unstable speed ranges, shape (r, 2) [rad/s].
 
-    Every change between two neighbours of `speeds` is found to 1e-8 of the highest speed; a range
-    narrower than their spacing can be missed: :func:`stability_threshold` looks for those, too. A
-    range that is open at the first or last speed ends there. `given` are further arguments of
-    :func:`stability`; `accuracy` is that of :func:`stability_threshold`.
+    The search is that of :func:`stability_threshold` with `speeds` as samples; limits have an error
+    of 1e-8 of the highest speed, and a range narrower than the spacing can be missed. A range that
+    is open at the first or last speed ends there. For the other arguments see
+    :func:`stability_threshold`.
 
     Examples
     --------
@@ -171,115 +278,107 @@ def unstable_ranges(target: Target, speeds: ArrayLike, **given) -> np.ndarray:
     array([[300., 400.]])
     """
     values = ascending_from_zero(speeds, "speeds")
-    made = OverSpeed.of(target, values[-1], given)
-    search = Search(made, values[-1])
-    points = [float(value) for value in values]
-    search.known |= zip(points, made.task.at_all(points), strict=True)
-    unstable = [search.unstable(point) for point in points]
-    edges = [values[0]] if unstable[0] else []
-    found = search.changes(_ROOT * values[-1])
+    check_options(method, tolerance, accuracy)
+    model = _checked_model(
+        target, values[-1], supports=supports, body=body, stiffening=stiffening, axes=axes
+    )
+    growth = _Growth(lambda speed: (model, speed), True, method=method, tolerance=tolerance)
+    growth.at(values)
+    growth.look_at_peaks()
+    points, margins = growth.course
+    found = growth.changes(_ROOT * values[-1])
+    if basis_error.is_known(model, accuracy) and not model.is_full:
+        limits = _limits(growth, found, values[-1] - values[0], accuracy)
+        _warn_of_basis(limits, values[-1] - values[0], "speed [rad/s]", accuracy)
+    edges = [points[0]] if margins[0] > 0.0 else []
     edges += [value for value, _ in found]
-    edges += [values[-1]] if unstable[-1] else []
-    if made.checked.left_out is not None:
-        limits = _limits(search, found, 0.5 * (values[0] + values[-1]))
-        shifts, at = _shifts(limits, made.accuracy), np.array([value for value, _ in found])
-        _warn_of_basis(limits, shifts, at, values[-1] - values[0], "speed [rad/s]")
-    return np.array(edges).reshape(-1, 2)
+    edges += [points[-1]] if margins[-1] > 0.0 else []
+    return np.array(edges, dtype=float).reshape(-1, 2)
+
+
+def _is_constant(model: LinearModel, speed: float) -> bool:
+    """Return whether equations are constant, where they are known."""
+    try:
+        return model.at(speed).is_constant
+    except _NONE:
+        return True
+
+
+def _checked_model(target: Target, fastest: float, **made) -> LinearModel:
+    """Return the model of a search over the speed; warn of what it leaves out."""
+    model = linear_model(target, **made)
+    warn_of_structural_damping(model, WHAT)
+    warn_of_left_out_stiffening(model, fastest)
+    return model
+
+
+def _checked_speed(target: object, supports: object, speed: float | None) -> float:
+    """Return the spin speed where it is not the parameter."""
+    if speed is None:
+        name, given = ("target", target) if callable(target) else ("supports", supports)
+        raise ValueError(
+            f"speed: needs the spin speed [rad/s], since {name}: a function, "
+            f"{checks.shown(given)}, says that it is not the parameter"
+        )
+    return checks.number(speed, "speed", "rad/s", least=0.0)
 
 
 class _Limit(NamedTuple):
-    """The motion that grows beside a limit of stability, and what the basis does to the limit.
+    """A limit of stability, and the motion that grows beside it.
 
     `name` is inertial frequency, whirl code and n; `shift` as one of
-    :attr:`StabilityThresholds.basis_shifts`, None where it is not known.
+    :attr:`StabilityThresholds.basis_shifts`, None where nothing is known.
     """
 
+    value: float
+    onset: bool
     name: tuple[float, int, int]
     shift: float | None
-    basis: BasisError
+    model: LinearModel
 
 
-def _limits(search: Search, found: Sequence[tuple[float, bool]], middle: float) -> list[_Limit]:
+def _limits(
+    growth: _Growth, found: list[tuple[float, bool]], span: float, accuracy: float | None
+) -> list[_Limit]:
     """Return what grows beside each limit, within its unstable range however narrow that is."""
     ends, limits = [-np.inf, *(value for value, _ in found), np.inf], []
+    contents: dict[int, Content] = {}
     for place, (value, onset) in enumerate(found, start=1):
         width = ends[place + 1 if onset else place - 1] - value
-        away = np.sign(width) * min(ASIDE * search.span, 0.5 * abs(width))
-        limits.append(_limit(search, value, away, middle))
+        beside = value + np.sign(width) * min(_ASIDE * span, 0.5 * abs(width))
+        model, speed = growth.model_at(beside)
+        motions = motions_over(model, [speed], held=True, **growth.given)[0]
+        if id(model) not in contents:
+            contents[id(model)] = Content.of(model)
+        named = contents[id(model)].named(motions)
+        which = least_stable_of(motions)
+        name = named.inertial[which], int(named.codes[which]), int(named.diameters[which])
+        shift = None
+        if basis_error.is_known(model, accuracy):
+            slope = (growth(beside) - growth(value)) / (beside - value)
+            shift = _shift(model, speed, named, which, slope if onset else min(slope, 0.0))
+        limits.append(_Limit(value, onset, name, shift, model))
     return limits
 
 
-def _limit(search: Search, value: float, away: float, middle: float) -> _Limit:
-    """Return what grows `away` from a limit; the slope of its growth is told to the `middle`."""
-    onset, beside = away > 0.0, value + away
-    growth = search.known[beside] = search.made.growth(beside, named=True)
-    which = growth.least_stable
-    name = tuple(entries[which] for entries in growth.names)
-    basis, speed = search.made.basis(beside)
-    shifts = basis.shifts_of([speed], [growth.critical])
-    if shifts is None or shifts[0] == 0.0:
-        return _Limit(name, None if shifts is None else 0.0, basis)
-    step = STEP * search.span * (1.0 if beside < middle else -1.0)
-    slope = search.rate(beside, step)[which].real
-    apart = np.abs(fold(np.delete(growth.values, which) - growth.values[which], growth.base))
-    near = max(_NEAR * max(speed, abs(growth.values[which])), _TIMES * abs(shifts[0]))
-    meets = apart.min(initial=np.inf) < near
-    if np.isnan(shifts[0]) or meets or slope * away <= 0.0:
-        try:
-            return _Limit(name, _searched_again(search, value, onset), basis)
-        except UnconvergedError:  # the shapes that the basis lacks have high frequencies
-            return _Limit(name, np.nan, basis)
-    return _Limit(name, float(-shifts[0].real / slope), basis)
-
-
-def _searched_again(search: Search, value: float, onset: bool) -> float:
-    """Return the distance to the limit with the shapes that the basis lacks; NaN if none is near.
-
-    The growth of motions that meet changes with the root of the parameter: it has no slope there.
-    The verdict at the limit tells on which side the other lies.
-    """
-    # without damping all motions are followed, fast ones that the basis lacks, too
-    finer, reach = Search(Finer(search.made), search.span, most=_MOST), _REACH * search.span
-    low, high = min(search.known), max(search.known)
-    side = -1.0 if finer.unstable(value) == onset else 1.0
-    for distance in reach * 4.0 ** np.arange(1.0 - _STEPS, 1.0):
-        finer.at(float(np.clip(value + side * distance, low, high)))
-        found = finer.changes(max(ASIDE * search.span, _SHARE * distance))
-        if found:
-            return found[0][0] - value
-    for point in np.linspace(*np.clip([value - reach, value + reach], low, high), _POINTS):
-        finer.at(float(point))
-    finer.refine()
-    found = [at - value for at, on in finer.changes(ASIDE * search.span) if on == onset]
-    return min(found, key=abs, default=np.nan)
-
-
-def _shifts(limits: Sequence[_Limit], accuracy: float | None) -> np.ndarray | None:
-    shifts = [limit.shift for limit in limits]
-    return None if accuracy is None or None in shifts else np.array(shifts, dtype=float)
+def _shift(
+    model: LinearModel, speed: float, named: Named, which: int, slope: float
+) -> float:
+    """Return how far a limit moves by the shift of the growth over its slope."""
+    if model.is_full:
+        return 0.0
+    shift = basis_error.shifts_over(model, np.array([speed]), [named], held=True)[0, which].real
+    return float(-shift / slope) if slope else np.nan
 
 
 def _warn_of_basis(
-    limits: Sequence[_Limit],
-    shifts: np.ndarray | None,
-    values: np.ndarray,
-    span: float,
-    label: str,
+    limits: list[_Limit], span: float, label: str, accuracy: float | None
 ) -> None:
     """Warn where the basis leaves out too much for the worst of the limits."""
-    if shifts is None:
+    if accuracy is None or not limits or any(limit.shift is None for limit in limits):
         return
-    unknown = ", ".join(f"{value:.5g}" for value in values[np.isnan(shifts)])
-    if unknown:
-        warnings.warn(
-            f"the error of the limit of stability at {unknown}, {label}, by the basis of the "
-            "reduced rotor is not known; compare it with a rotor of more modes",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    if np.all(np.isnan(shifts)):
-        return
-    errors = limit_errors(shifts, values, span)
-    worst = int(np.nanargmax(errors))
-    what = f"the limit of stability at {values[worst]:.5g}, {label},"
-    limits[worst].basis.warn(errors[worst], what)
+    shifts, values = (np.array([each[i] for each in limits]) for i in (3, 0))
+    errors = np.nan_to_num(limit_errors(shifts, values, span))
+    worst = limits[int(np.argmax(errors))]
+    what = f"the limit of stability at {worst.value:.5g}, {label},"
+    basis_error.warn(errors, what, worst.model, accuracy)

@@ -1,0 +1,120 @@
+"""Where the search for the steady motion of a scene begins: journals in their equilibria.
+
+The film of a bearing without load is that of a centred journal, and from there Newton's method
+oversteps the clearance. Begun is therefore with the journals where their static loads hold them,
+and the rotor deformed as little as that allows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_rotor.bearings.bearing import Bearing
+from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
+from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.multibody.rotor.more_markers import interface_motion
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import spin_at_start
+from exudyn_rotor.theory.rotating_axes import into_rotor_frame, parts_across
+
+_SOFT = 1e-8  # of the stiffest mode: resistance of free motions, which are preferred
+
+
+def journal_start(scene: SceneCoordinates, speed: float, orders: np.ndarray) -> np.ndarray:
+    """Return harmonics (h, k) of the motion with all journals at rest in their equilibria.
+
+    Parameters
+    ----------
+    scene : SceneCoordinates
+    speed : float
+        Spin speed [rad/s].
+    orders : ndarray of int, shape (h,)
+        With −1, 0 and 1 among them.
+
+    Raises
+    ------
+    UnconvergedError
+        Where a bearing has no equilibrium under its load.
+    """
+    harmonics = np.zeros((len(orders), scene.size), dtype=complex)
+    at = {n: orders.tolist().index(n) for n in (-1, 0, 1)}
+    harmonics[at[0]] = scene.N.T @ _tilts(scene, speed)
+    # where the origin is the centre of mass, its displacement is from its place at rest
+    apart = scene.axes.T @ scene.body.axis.radial(scene.body.frame.origin)
+    for n, shift in {0: apart, **into_rotor_frame(-apart)}.items():
+        harmonics[at[n]] += scene.N[: scene.count].T @ shift[: scene.count]
+    places = journal_places(scene.body, speed)
+    if not places:
+        return harmonics
+    U = np.vstack([across(scene, name) for name in places])
+    resistance = np.zeros(len(scene.free))
+    resistance[scene.modal] = np.diag(scene.body.motion.invariants.K)
+    W = 1.0 / (resistance + _SOFT * max(resistance.max(), 1.0))
+    motion = scene.N.T @ (W[:, None] * U.T @ np.linalg.pinv((U * W) @ U.T))
+    turned = [into_rotor_frame(np.array([*place, 0.0])) for place in places.values()]
+    for n in (-1, 1):
+        target = np.concatenate([harmonic[n][:2] for harmonic in turned])
+        harmonics[at[n]] += motion @ target
+    return harmonics
+
+
+def _tilts(scene: SceneCoordinates, speed: float) -> np.ndarray:
+    """Return the tilts of pads in equilibrium [rad] by the free coordinates."""
+    found = np.zeros(len(scene.rest))
+    loads = dict(_loads(scene.body))
+    for one in scene.body.supports:
+        if isinstance(one.support, TiltingPadBearing) and np.any(loads.get(one.support, 0.0)):
+            tilts = one.support.tilts(speed, loads[one.support])
+            found[one.own_coordinates(scene.body.mbs)] = np.nan_to_num(tilts)
+    return found[scene.free]
+
+
+def across(scene: SceneCoordinates, name: str) -> np.ndarray:
+    """Return the motion of a journal across the axis by the free coordinates, turning axes."""
+    motion = np.zeros((3, len(scene.free)))
+    motion[: scene.count, : scene.count] = np.eye(scene.count)
+    modes = interface_motion(scene.body, name)[1][:3]
+    motion[:, scene.modal] = scene.axes.T @ scene.body.frame.B.T @ modes
+    return motion[:2]
+
+
+def journal_places(body: RotorBody, speed: float) -> dict[str, np.ndarray]:
+    """Return the equilibria of journals by interface, (2,) [m]; none of those in their centres."""
+    loads = _loads(body)
+    places, cage = {}, spin_at_start(body)[0]
+    for bearing, load in loads:
+        if np.any(load) and isinstance(bearing, RollingBearing):
+            places[bearing.interface] = bearing.equilibrium(speed, load, cage)
+        elif np.any(load) and speed != 0.0:
+            try:
+                places[bearing.interface] = bearing.equilibrium(speed, load)
+            except (ValueError, ArithmeticError) as error:
+                where = f"linear scene at {speed:g} rad/s, bearing at {bearing.interface!r}"
+                raise UnconvergedError(f"{where}: {error}") from error
+    return {name: place for name, place in places.items() if np.any(place)}
+
+
+def _loads(body: RotorBody) -> list[tuple[Bearing, np.ndarray]]:
+    """Return bearings and their static loads: on two the weight by the lever rule, or their own."""
+    bearings = [each.support for each in body.supports if isinstance(each.support, Bearing)]
+    bearings = [bearing for bearing in bearings if bearing.carries]
+    loads = [bearing.load for bearing in bearings]
+    if len(bearings) == 2:
+        weights = _weights(body, [bearing.interface for bearing in bearings])
+        pairs = zip(weights, loads, strict=True)
+        loads = [weight if np.any(weight) else load for weight, load in pairs]
+    pairs = zip(bearings, loads, strict=True)
+    return [(bearing, load) for bearing, load in pairs if load is not None]
+
+
+def _weights(body: RotorBody, names: list[str]) -> list[np.ndarray]:
+    source = body.selection.source
+    e = source.axis.direction
+    left, right = (source.interfaces[name].reference @ e for name in names)
+    if left == right:
+        return [np.zeros(2), np.zeros(2)]
+    share = (source.center_of_mass @ e - left) / (right - left)
+    weight = source.invariants.mass * parts_across(body.standing_axes, body.plan.setup.gravity)
+    return [(1.0 - share) * weight, share * weight]

@@ -1,0 +1,260 @@
+"""The unknowns of a scene with a rotor, and how they turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from exudyn_rotor.bearings.magnetic import MagneticBearing
+from exudyn_rotor.bearings.support import Support
+from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
+from exudyn_rotor.cached import cached_property
+from exudyn_rotor.multibody.rotor.marker_body import around
+from exudyn_rotor.multibody.rotor.plan import turned_origin
+from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
+from exudyn_rotor.multibody.rotor.start_state import StartState
+from exudyn_rotor.theory.axis import SpinAxis
+from exudyn_rotor.theory.nodal import skew
+from exudyn_rotor.theory.rotating_axes import axes_of, axial_rotation, axial_skew
+from exudyn_rotor.theory.stiffening import Stiffening, stiffening
+
+Motion = tuple[np.ndarray, np.ndarray]  # orders (h,) and harmonics (h, k)
+UNHELD = 1e-6  # m/s² by which loads may accelerate what nothing holds: round-off
+
+
+@dataclass(frozen=True, eq=False)
+class SceneCoordinates:
+    """The unknowns: the rotor's in axes that turn with it, those of everything else as they are.
+
+    Pairs of a magnetic bearing's controller turn, too: with control axes that are alike, all
+    coefficients are constant then.
+
+    Attributes
+    ----------
+    body : RotorBody
+    free : ndarray of int
+        Coordinates of the scene that are unknowns: the rotor's first.
+    N : ndarray, shape (len(free), k)
+        Motions that the scene's constraints allow.
+    rest : ndarray
+        All coordinates of the given state.
+    about : {'steady', 'equilibrium', 'given'}
+        Motion about which the scene is linearised, see :func:`linear_model`.
+    """
+
+    body: RotorBody
+    free: np.ndarray
+    N: np.ndarray
+    rest: np.ndarray
+    about: str = "steady"
+
+    @classmethod
+    def of(cls, body: RotorBody) -> SceneCoordinates:
+        """Return the unknowns of the rotor alone, everything else as it is now."""
+        rotor = np.asarray(body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"]), dtype=int)
+        rest = np.array(body.mbs.systemData.GetODE2Coordinates(), dtype=float)
+        free = rotor[without_spin(body)]
+        made = cls(body, free, np.eye(len(free)), rest)
+        rest[free[made.count :]] = 0.0
+        if made.spin_coordinate is not None:  # where the rotor is when it has turned back
+            angle = made.spin_sign * rest[made.spin_coordinate]
+            turned = turned_origin(body.selection, body.plan.setup.placement.rotation, angle)
+            rest[free[: made.count]] -= body.motion.free_directions.T @ turned
+        return made
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates k."""
+        return self.N.shape[1]
+
+    @property
+    def stiffening(self) -> str:
+        """Level of centrifugal stiffening."""
+        return self.body.stiffening
+
+    @cached_property
+    def second_order(self) -> Stiffening:
+        """Second-order terms of the rotor at this level."""
+        return stiffening(self.body.motion.invariants, self.body.stiffening)
+
+    @property
+    def mass(self) -> float:
+        """Mass of the rotor [kg]."""
+        return self.body.motion.invariants.mass
+
+    @property
+    def length(self) -> float:
+        """Size of the rotor: √(tr J / m) about the origin of its frame [m]."""
+        inertia = self.body.motion.invariants
+        return float(np.sqrt(np.trace(inertia.J) / inertia.mass))
+
+    @property
+    def modal(self) -> slice:
+        """Where the rotor's modal coordinates stand among the free ones."""
+        return slice(self.count, self.count + self.body.motion.invariants.size)
+
+    @property
+    def count(self) -> int:
+        """Number of the rotor's translations."""
+        return self.body.motion.formulation.translation_count
+
+    @property
+    def spin_coordinate(self) -> int | None:
+        """The scene's coordinate θ; None for a prescribed spin without the marker body."""
+        body = self.body
+        places = body.mbs.systemData.GetObjectLTGODE2(body.objects["physics"])
+        if "marker_body" in body.objects:
+            return int(places[body.locks.spin])
+        return int(places[self.count]) if body.formulation.has_spin else None
+
+    @property
+    def spin_sign(self) -> int:
+        """1, or −1 where the node's coordinate counts −θ."""
+        return self.body.locks.sign if "marker_body" in self.body.objects else 1
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """``(n1, n2, e)`` in mesh axes."""
+        return axes_of(SpinAxis(self.body.motion.invariants.direction))
+
+    @cached_property
+    def pairs(self) -> np.ndarray:
+        """Where controllers' coordinates along (n1, n2) stand among the free ones, shape (p, 2)."""
+        found = []
+        for one in self.body.supports:
+            if isinstance(one.support, MagneticBearing):
+                found.extend(one.own_coordinates(self.body.mbs))
+        places = [np.flatnonzero(self.free == number) for number in found]
+        return np.concatenate([*places, np.zeros(0)]).astype(int).reshape(-1, 2)
+
+    @cached_property
+    def _most(self) -> np.ndarray:
+        """The most of each coordinate that counts as a metre: of a pad's tilt, a metre of its bore.
+
+        A light pad moves as little as its journal.
+        """
+        most = np.full(len(self.rest), np.inf)
+        for one in self.body.supports:
+            if isinstance(one.support, TiltingPadBearing):
+                most[one.own_coordinates(self.body.mbs)] = 1.0 / one.support.film.radius
+        return np.array([most[self.free[column != 0.0]].min() for column in self.N.T])
+
+    @property
+    def table_speeds(self) -> np.ndarray:
+        """Speeds of the tables of its supports [rad/s]."""
+        supports = [one.support for one in self.body.supports if isinstance(one.support, Support)]
+        return np.concatenate([np.zeros(0), *(support.table_speeds for support in supports)])
+
+    def metre(self, mass: np.ndarray) -> np.ndarray:
+        """Return how much of each coordinate counts as a metre, from the mass matrix's diagonal.
+
+        What moves as much kinetic energy as the rotor by a metre.
+        """
+        return np.minimum(np.sqrt(self.mass / np.maximum(mass, 1e-300)), self._most)
+
+    @property
+    def interfaces(self) -> tuple[str, ...]:
+        """Names of the interfaces that have a marker."""
+        return tuple(self.body.markers)
+
+    @cached_property
+    def unit_unbalance(self) -> np.ndarray:
+        """Load of the rotor's own eccentricity per Ω², (66) and (87), shape (k,), rotor frame.
+
+        A moving frame has its origin in the centre of mass, which then carries the unbalance.
+        """
+        inv, body = self.body.motion.invariants, self.body
+        load = np.zeros(len(self.free))
+        across = body.axis.radial(body.frame.origin)
+        load[: self.count] = self.axes[:, : self.count].T @ (inv.mass * across)
+        load[self.modal] = inv.h
+        return self.N.T @ load
+
+    def interface_motion(self, name: str) -> np.ndarray:
+        """Return an interface's motion (6, k): displacement and rotation along (n1, n2, e).
+
+        In the rotor frame, as its marker moves, the marker's offset included.
+
+        Raises
+        ------
+        KeyError
+            For an interface without a marker.
+        """
+        motion = np.zeros((6, len(self.free)))
+        motion[: self.count, : self.count] = np.eye(self.count)
+        turn = np.kron(np.eye(2), self.axes.T @ self.body.frame.B.T)
+        motion[:, self.modal] = turn @ _marker_motion(self.body, name)
+        return motion @ self.N
+
+    def turn(self, theta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return T, T', T'' of the free scene coordinates ``T(θ) y``; ' is the derivative by θ."""
+        motion, c = self.body.motion, self.count
+        A = motion.orientation @ SpinAxis(motion.invariants.direction).rotation(theta)
+        e = skew(motion.invariants.direction)
+        R, quarter = axial_rotation(theta)[:2, :2], axial_skew(3)[:2, :2]
+        blocks = []
+        for full, turned, pair in (
+            (1.0, A, R),
+            (0.0, A @ e, R @ quarter),
+            (0.0, A @ e @ e, -R),
+        ):
+            T = full * np.eye(len(self.free))
+            T[:c, :c] = motion.free_directions.T @ turned @ self.axes[:, :c]
+            T[self.pairs[:, :, None], self.pairs[:, None]] = pair
+            blocks.append(T @ self.N)
+        return tuple(blocks)
+
+    def state(self, y: np.ndarray, y_t: np.ndarray, angle: float, speed: float) -> StartState:
+        """Return the state of the whole scene; what is no unknown is at rest.
+
+        Parameters
+        ----------
+        y, y_t : ndarray, shape (k,)
+            The unknowns and their rates.
+        angle, speed : float
+            Of the spin [rad], [rad/s].
+        """
+        T, T1, _ = self.turn(angle)
+        q, q_t = self.rest.copy(), np.zeros(len(self.rest))
+        q[self.free] += T @ y
+        q_t[self.free] = T @ y_t + speed * T1 @ y
+        spin = self.spin_coordinate
+        if spin is not None:
+            q[spin], q_t[spin] = self.spin_sign * angle, self.spin_sign * speed
+        return StartState(q, q_t, angle, speed)
+
+
+def without_spin(body: RotorBody) -> np.ndarray:
+    """Return the rotor's unknowns among its node coordinates: translations, then modes."""
+    count = body.motion.formulation.translation_count
+    return np.delete(body.layout.unknowns, [count] if body.formulation.has_spin else [])
+
+
+def nullspace(C: np.ndarray) -> np.ndarray:
+    """Return orthonormal motions that C allows; coordinates that it leaves alone stay as they are.
+
+    C has shape (constraints, coordinates).
+    """
+    size = C.shape[1]
+    touched = np.flatnonzero(np.abs(C).max(axis=0, initial=0.0) > 1e-14)
+    untouched = np.setdiff1d(np.arange(size), touched)
+    kernel = scipy.linalg.null_space(C[:, touched]) if touched.size else np.zeros((0, 0))
+    N = np.zeros((size, len(untouched) + kernel.shape[1]))
+    N[untouched, np.arange(len(untouched))] = 1.0
+    N[touched, len(untouched) :] = kernel
+    return N
+
+
+def _marker_motion(body: RotorBody, name: str) -> np.ndarray:
+    """Return displacement and rotation (6, m) of an interface, axes of the marker body."""
+    nodes = around(list(body.mbs.GetMarker(body.marker(name))["meshNodeNumbers"]))
+    marker_body = body.mbs.GetObject(body.objects["marker_body"])
+    columns = np.asarray(marker_body["modeBasis"])
+    points = np.reshape(marker_body["referencePositions"], (-1, 3))[nodes]
+    columns = columns.reshape(len(columns) // 3, 3, -1)[nodes]
+    mean = columns.mean(axis=0)
+    turning = np.vstack([-skew(arm) for arm in points - points.mean(axis=0)])  # φ × a = −ã φ
+    rotation = np.linalg.lstsq(turning, (columns - mean).reshape(9, -1), rcond=None)[0]
+    return np.vstack([mean, rotation])

@@ -1,1 +1,0 @@
-"""What the basis of a reduced rotor leaves out."""

@@ -1,1 +1,0 @@
-"""Full finite-element rotors."""

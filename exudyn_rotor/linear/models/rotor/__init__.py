@@ -1,1 +1,0 @@
-"""One rotor on supports, with or without a foundation."""

@@ -1,1 +1,0 @@
-"""Linear equations with periodic coefficients, and how they are solved."""

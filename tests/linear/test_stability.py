@@ -1,0 +1,141 @@
+"""Exponents over the spin speed against closed forms."""
+
+import warnings
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+from point_rotors import ring_rotor
+
+from exudyn_rotor import RotorTrain, SolidRotor, Support, linear_model, stability
+
+MASS, STIFFNESS, OUTER, INNER = 2.0, 2e4, 10.0, 5.0  # of each of two masses; ω = 100 rad/s
+
+
+@pytest.fixture(scope="module")
+def rod():
+    """Return two masses on a rod that is stiff along the axis, free otherwise."""
+    stiff = 1e8 * np.kron([[1, -1], [-1, 1]], np.diag([0.0, 0.0, 1.0]))
+    rotor = SolidRotor.from_matrices(
+        MASS * np.eye(6), stiff, [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]], "z"
+    )
+    return rotor.with_interface("left", [0]).with_interface("right", [1])
+
+
+def both(*given, **more) -> list[Support]:
+    return [Support(name, *given, **more) for name in ("left", "right")]
+
+
+def lateral(speed: float, inner: float = 0.0, cross: float = 0.0) -> np.ndarray:
+    """Return λ of ``m z̈ + (c_o + c_i) ż + (k − iΩ c_i − iq) z = 0``, z = x + iy standing still."""
+    return np.roots([MASS, OUTER + inner, STIFFNESS - 1j * (speed * inner + cross)])
+
+
+@pytest.mark.parametrize("speed", [0.0, 50.0, 299.0, 301.0, 800.0])
+@pytest.mark.parametrize("cross", [0.0, 500.0])
+def test_inner_damping_and_cross_coupling(rod, speed, cross):
+    supports = [
+        *both([[STIFFNESS, cross], [-cross, STIFFNESS]], OUTER),
+        *both(damping=INNER, frame="rotor"),
+    ]
+    result = stability(rod, [speed], supports=supports)
+    expected = lateral(speed, INNER, cross)
+    worst = expected[np.argmax(expected.real)]
+    assert result.growth_of("lateral")[0] == pytest.approx(worst.real, rel=1e-9)
+    assert result.stable[0] == (worst.real < 0.0)
+    row, column = result.least_stable_of("lateral")
+    assert result.frequencies_inertial[row, column] == pytest.approx(abs(worst.imag), rel=1e-9)
+    assert result.log_decrement[row, column] == pytest.approx(
+        -2.0 * np.pi * worst.real / abs(worst.imag), rel=1e-8
+    )
+    if speed or cross:
+        assert result.whirl[row, column] == "forward"
+        wanted = abs(worst.imag - speed) if worst.imag > 0.0 else abs(worst.imag + speed)
+        assert result.exponents[row, column].imag == pytest.approx(wanted, rel=1e-9)
+
+
+def test_gyroscopic_motion_of_rings():
+    """Tilting of a rotor with ``I_t θ̈ − iΩ I_p θ̇ + κ θ = 0``, supports on one plane."""
+    rings = ring_rotor(0.1, 0.05, MASS).with_interface("all", range(10)).reduce(0)
+    polar, transverse = MASS * 0.1**2, MASS * (0.1**2 / 2 + 0.05**2)
+    tilt, speed = 1e4, 400.0
+    supports = [Support("all", STIFFNESS, OUTER, np.diag([tilt, tilt, 0.0]))]
+    result = stability(rings, [speed], supports=supports)
+    expected = np.abs(np.roots([-transverse, speed * polar, tilt]).real)
+    for value in expected:
+        assert np.abs(result.frequencies_inertial[0] - value).min() < 1e-8 * value
+    assert result.stable[0]
+
+
+@pytest.mark.parametrize("ratio", [1.5, 2.0, 10.0])
+@pytest.mark.parametrize("damping", [0.0, 10.0, 1e3])
+def test_uneven_bearings_from_rest_on_take_the_eigenvalues_of_each_direction(rod, ratio, damping):
+    """Slow speeds too: a round rotor has constant equations in axes that stand still."""
+    K = np.diag([STIFFNESS, ratio * STIFFNESS])
+    result = stability(rod, [0.0, 0.1, 5.0, 60.0], supports=both(K, damping))
+    assert result.axes == "inertial"
+    expected = [np.roots([MASS, damping, k]) for k in np.diag(K)]
+    worst = max(value.real for roots in expected for value in roots)
+    assert result.growth_of("lateral") == pytest.approx([worst] * 4, rel=1e-9, abs=1e-9)
+    assert np.all(result.stable)
+
+
+@pytest.mark.parametrize("method", ["hill", "floquet"])
+def test_periodic_motion_has_frequencies_seen_from_outside(method):
+    """An asymmetric shaft on uneven bearings; the two methods share nothing but the equations."""
+    shaft = asymmetric_shaft()
+    supports = [Support(n, np.diag([3e4, 5e4]), 40.0) for n in list(shaft.interfaces)[:1]]
+    wanted = stability(shaft, [120.0], supports=supports, method="hill")
+    result = stability(shaft, [120.0], supports=supports, method=method)
+    known = np.isfinite(result.exponents[0])
+    assert np.count_nonzero(known) >= 2
+    for value, heard, decrement in zip(
+        result.exponents[0][known], result.frequencies_inertial[0][known],
+        result.log_decrement[0][known], strict=True,
+    ):  # fmt: skip
+        at = np.argmin(np.abs(wanted.exponents[0] - value))
+        assert abs(wanted.exponents[0][at] - value) < 1e-5 * max(abs(value), 120.0)
+        assert heard == pytest.approx(wanted.frequencies_inertial[0][at], rel=1e-5, abs=1e-6)
+        if np.isfinite(decrement):
+            assert decrement == pytest.approx(wanted.log_decrement[0][at], rel=1e-4, abs=1e-7)
+
+
+def test_a_rotor_and_a_train_of_it_are_one(rod):
+    reduced = rod.reduce(1)
+    supports = both(np.diag([STIFFNESS, 3.0 * STIFFNESS]), OUTER)
+    train = RotorTrain({"r": reduced}, {"r": 1.0}, {"r": supports})
+    speeds = [0.0, 30.0, 200.0]
+    one, other = (
+        stability(reduced, speeds, supports=supports),
+        stability(train, speeds),
+    )
+    scale = np.abs(one.exponents).max()
+    np.testing.assert_allclose(one.exponents, other.exponents, atol=1e-6 * scale)
+    np.testing.assert_array_equal(one.stable, other.stable)
+
+
+def test_speeds_beyond_a_table_are_nan_and_cost_no_other(rod):
+    K = np.array([STIFFNESS, 2.0 * STIFFNESS])
+    supports = both(([0.0, 100.0], K), OUTER)
+    with pytest.warns(UserWarning, match="no values at 150 rad/s") as heard:
+        result = stability(rod, [50.0, 100.0, 150.0], supports=supports)
+    assert len(heard) == 1
+    assert np.isfinite(result.growth).tolist() == [True, True, False]
+    assert result.stable.tolist() == [True, True, False]
+    assert result.table().splitlines()[3].split()[-1] == "-"
+    axes = result.plot()
+    assert axes.get_xlabel() == "spin speed [rpm]"
+
+
+def test_an_undamped_rotor_is_stable(rod):
+    result = stability(linear_model(rod, supports=both(STIFFNESS)), [0.0, 100.0, 1e3])
+    assert np.all(result.stable)
+    assert np.all(result.growth <= result.bounds)
+
+
+@pytest.mark.parametrize("stiffness", [1e5, 1e10, 1e13])
+def test_stiff_supports_do_not_make_a_rotor_unstable(rod, stiffness):
+    supports = both(np.diag([stiffness, 2.0 * stiffness]), 1e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.all(stability(rod, [10.0, 300.0], supports=supports, accuracy=None).stable)

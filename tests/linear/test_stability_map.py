@@ -1,0 +1,80 @@
+"""Stability over two parameters against closed forms."""
+
+import numpy as np
+import pytest
+
+from exudyn_rotor import SolidRotor, StabilityMap, Support, linear_model, stability_map
+from exudyn_rotor.linear.equations import PeriodicSystem
+
+MASS, STIFFNESS = 2.0, 2e4
+
+
+@pytest.fixture(scope="module")
+def point():
+    return SolidRotor.from_matrices(
+        MASS * np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"disc": [0]}
+    ).reduce(0)
+
+
+@pytest.fixture(scope="module")
+def result(point):
+    def build(cross: float, damping: float) -> tuple:
+        K = np.array([[STIFFNESS, cross, 0.0], [-cross, STIFFNESS, 0.0], [0.0, 0.0, 1e6]])
+        D = np.diag([damping, damping, 1e3])
+        return linear_model(point, supports=[Support("disc", K, D)]), 300.0
+
+    return stability_map(build, [10.0, 100.0, 1000.0], [2.0, 20.0], labels=("q", "c"))
+
+
+def test_growth_verdict_and_motion(result):
+    for a, q in enumerate(result.x):
+        for b, c in enumerate(result.y):
+            roots = np.roots([MASS, c, STIFFNESS - 1j * q])
+            worst = roots[np.argmax(roots.real)]
+            assert result.growth[a, b] == pytest.approx(worst.real, rel=1e-9)
+            assert result.stable[a, b] == (q < c * abs(worst.imag))
+            assert result.frequencies_inertial[a, b] == pytest.approx(abs(worst.imag), rel=1e-9)
+            decrement = -2.0 * np.pi * worst.real / abs(worst.imag)
+            assert result.log_decrement[a, b] == pytest.approx(decrement, rel=1e-7)
+    assert set(result.families.ravel()) == {"lateral"}
+    assert set(result.whirl.ravel()) == {"forward"}
+
+
+def test_axes_are_logarithmic_where_values_are(result):
+    axes = result.plot()
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert result.plot(log_x=False, log_y=True).get_yscale() == "log"
+
+
+def test_a_point_that_fails_is_nan(point):
+    def build(stiffness: float, speed: float) -> tuple:
+        if stiffness > 2e4:
+            raise ValueError("no such bearing")
+        return linear_model(point, supports=[Support("disc", stiffness, 1.0)]), speed
+
+    with pytest.warns(UserWarning, match="no such bearing") as heard:
+        found = stability_map(build, [1e4, 2e4, 3e4], [10.0, 20.0])
+    assert len(heard) == 1
+    assert np.isnan(found.growth).all(axis=1).tolist() == [False, False, True]
+    assert found.stable.all(axis=1).tolist() == [True, True, False]
+    with pytest.raises(ValueError, match="no such bearing"):
+        stability_map(build, [3e4], [10.0])
+
+
+def test_equations_of_ones_own():
+    """Mathieu's ``ẍ + (δ + ε cos t) x = 0`` is unstable about δ = 1/4 between ± ε/2."""
+
+    def build(delta: float, epsilon: float) -> PeriodicSystem:
+        one, none = np.ones((1, 1)), np.zeros((1, 1))
+        return PeriodicSystem(1.0, one, {0: none}, {0: delta * one, 1: epsilon / 2 * one,
+                                                    -1: epsilon / 2 * one})  # fmt: skip
+
+    found = stability_map(build, [0.19, 0.25, 0.31], [0.1])
+    assert found.stable[:, 0].tolist() == [True, False, True]
+    assert found.growth[1, 0] == pytest.approx(0.05, rel=1e-2)
+
+
+def test_old_results_without_names_have_a_table():
+    found = StabilityMap([1.0], [2.0], [[np.nan]], [[False]])
+    assert "nan" in found.table()
+    assert found.families.tolist() == [["other"]]

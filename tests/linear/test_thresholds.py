@@ -1,0 +1,104 @@
+"""Limits of stability against closed forms."""
+
+import numpy as np
+import pytest
+from asymmetric import asymmetric_shaft
+
+from exudyn_rotor import SolidRotor, Support, stability_threshold, unstable_ranges
+from exudyn_rotor.linear.stability.thresholds import _Growth
+
+MASS, STIFFNESS = 2.0, 2e4  # ω = 100 rad/s
+
+
+@pytest.fixture(scope="module")
+def point():
+    return SolidRotor.from_matrices(
+        MASS * np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], axis="z", interfaces={"disc": [0]}
+    ).reduce(0)
+
+
+@pytest.mark.parametrize(("outer", "inner"), [(10.0, 5.0), (1.0, 20.0), (30.0, 10.0)])
+def test_onset_by_inner_damping(point, outer, inner):
+    """ω(1 + c_o/c_i)."""
+    supports = [Support("disc", STIFFNESS, outer), Support("disc", damping=inner, frame="rotor")]
+    limit = 100.0 * (1.0 + outer / inner)
+    found = stability_threshold(point, 10.0, 500.0, supports=supports)
+    assert found.values == pytest.approx([limit], abs=1e-5)
+    assert found.onset.tolist() == [True]
+    assert found.frequencies_inertial == pytest.approx([100.0], rel=1e-3)
+    ranges = unstable_ranges(point, np.linspace(0.0, 500.0, 11), supports=supports)
+    assert ranges == pytest.approx(np.array([[limit, 500.0]]), abs=1e-5)
+
+
+@pytest.mark.parametrize("damping", [1.0, 20.0])
+def test_onset_by_cross_coupling(point, damping):
+    """q = c ω."""
+
+    def supports(q: float) -> list[Support]:
+        return [Support("disc", [[STIFFNESS, q], [-q, STIFFNESS]], damping)]
+
+    found = stability_threshold(
+        point, 0.0, 5e3, supports=supports, speed=300.0, label="q [N/m]", samples=6
+    )
+    assert found.values == pytest.approx([100.0 * damping], rel=1e-7)
+    assert found.table().splitlines()[0].split()[:2] == ["q", "[N/m]"]
+
+
+def test_table_with_a_gap_of_coefficients(point):
+    """Speeds beyond the table are left out, with one warning."""
+    supports = [
+        Support("disc", ([0.0, 400.0], [STIFFNESS, STIFFNESS]), 10.0),
+        Support("disc", damping=5.0, frame="rotor"),
+    ]
+    with pytest.warns(UserWarning, match="no values at") as heard:
+        found = stability_threshold(point, 50.0, 500.0, supports=supports)
+    assert len(heard) == 1
+    assert found.values == pytest.approx([300.0], abs=1e-5)
+
+
+@pytest.mark.parametrize(("height", "count"), [(1e-3, 2), (-1e-3, 0)])
+def test_narrow_ranges_beside_a_peak_are_found(height, count):
+    """A margin that crosses zero between samples, and one that only comes near."""
+    growth = _Growth(None, False)
+    growth.at = lambda points: growth.known.update(
+        {float(p): height - (float(p) - 3.3) ** 2 for p in points}
+    )
+    growth.at(np.linspace(0.0, 10.0, 11))
+    growth.look_at_peaks()
+    found = growth.changes(1e-10)
+    assert len(found) == count
+    if count:
+        expected = 3.3 + np.sqrt(height) * np.array([-1.0, 1.0])
+        assert [value for value, _ in found] == pytest.approx(expected, abs=1e-8)
+
+
+def test_an_asymmetric_shaft_is_unstable_between_its_critical_speeds():
+    shaft = asymmetric_shaft()
+    name = next(iter(shaft.interfaces))
+    found = stability_threshold(shaft, 1.0, 400.0, supports=[Support(name, 1e9)], samples=60)
+    assert len(found.values) % 2 == 0
+    assert len(found.values) >= 2
+    assert np.all(np.diff(found.ranges, axis=1) > 0.0)
+
+
+@pytest.mark.parametrize("ratio", [1.2, 1.5, 3.0])
+def test_undamped_round_rotors_on_uneven_supports_are_stable(point, ratio):
+    supports = [Support("disc", np.diag([STIFFNESS, ratio * STIFFNESS]))]
+    found = stability_threshold(point, 1.0, 500.0, supports=supports)
+    assert not found.values.size
+    assert not found.unstable_at_low
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"speed": 100.0}, "is the parameter"),
+        ({"supports": lambda q: [Support("disc", q)]}, "needs the spin speed"),
+        ({"samples": 1}, "samples"),
+        ({"method": "eigen"}, "method"),
+        ({"tolerance": 0.0}, "tolerance"),
+    ],
+)
+def test_bad_input(point, given, message):
+    with pytest.raises(ValueError, match=message):
+        stability_threshold(point, 10.0, 500.0, **given)
