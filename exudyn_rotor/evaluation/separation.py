@@ -65,7 +65,7 @@ class SeparationMargins(Result):
     speeds : ndarray, shape (s,)
         Speeds of the curves [rad/s].
     curves : ndarray, shape (o, s)
-        Major semi-axes [m].
+        Major semi-axes [m]; NaN where there is no steady motion.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class SeparationMargins(Result):
     operating_range: np.ndarray = numbers(2, least=0.0)
     observed: tuple[str, ...] = words("observed")
     speeds: np.ndarray = numbers("speeds")
-    curves: np.ndarray = numbers("observed", "speeds", least=0.0)
+    curves: np.ndarray = numbers("observed", "speeds", finite=False, least=0.0)
 
     @property
     def within(self) -> np.ndarray:

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.modal.whirl import Named
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, Named
 from exudyn_rotor.linear.solve.motions import Motions
 
-# how strongly jumps of the frequency seen from outside, and of the growth, count against a likeness
-# of shapes
-_JUMP_WEIGHT, _GROWTH_WEIGHT = 0.5, 0.25
+# how strongly jumps of the frequency seen from outside and of the growth, and another sense of whirl,
+# count against a likeness of shapes
+_JUMP_WEIGHT, _GROWTH_WEIGHT, _SENSE_WEIGHT = 0.5, 0.25, 0.25
 _STEEPEST = 2.0  # change of a frequency over that of the speed: a thin disc's forward mode
 _SPREAD = 1e-2  # share of a frequency by which it may change in any step
 # a match is another mode below this likeness, or beyond this many steepest changes
@@ -68,6 +68,8 @@ def _step(
     size = np.abs(growth[1])[None, :] + np.abs(growth[0])[:, None] + before.motions.bound
     cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
     cost += _GROWTH_WEIGHT * np.minimum(apart / np.maximum(size, 1e-300), 1.0)
+    senses = [(each.codes == FORWARD) * 1 - (each.codes == BACKWARD) for each in (before, after)]
+    cost += _SENSE_WEIGHT * (senses[0][:, None] * senses[1] < 0)
     _, matched = linear_sum_assignment(np.nan_to_num(cost, nan=10.0))
     rows = np.arange(len(matched))
     values = after.motions.values

@@ -197,7 +197,7 @@ class Content:
             left = [i for i in left if i not in group]
             if len(group) > 1:
                 turned = self._extremal(vectors[:, :, group], motions.orders)
-                changed = changed.copy() if changed is vectors else changed
+                changed = vectors.astype(complex) if changed is vectors else changed
                 changed[:, :, group] = turned
         if changed is vectors:
             return motions
@@ -206,6 +206,7 @@ class Content:
     def _extremal(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
         """Return combinations of motions (h, c, g) whose mean wave number is extremal."""
         flat = vectors.reshape(-1, vectors.shape[2])
+        flat = flat / np.abs(flat).max(axis=0)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         if lengths[-1] < 1e-3 * lengths[0]:  # a defective eigenvalue has one shape only
             return vectors
@@ -220,7 +221,7 @@ class Content:
         unit = parts[:, seen] / np.sqrt(sizes[seen])
         _, inner = la.eigh(unit.conj().T @ (0.5 * (form + form.conj().T)) @ unit)
         turn = np.hstack([parts[:, ~seen], unit @ inner])
-        turned = span @ turn
+        turned = span @ (turn / np.abs(turn).max(axis=0))
         return turned / np.linalg.norm(turned.reshape(-1, turned.shape[2]), axis=0)
 
 

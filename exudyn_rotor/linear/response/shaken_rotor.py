@@ -35,6 +35,7 @@ _ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
 _KEPT = 512  # steps in a revolution that are kept as matrices
 _HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
 _TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
+_SMALL = 1e-9  # share of the largest motion below which a direction does not count
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
 _S = np.sqrt(6.0)
 _STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
@@ -104,12 +105,13 @@ class ShakenRotor:
                     "base response: the motion leaves the range of floats; is the rotor unstable "
                     "at this speed?"
                 )
-            moved = motion[..., :3]
-            size = np.abs(moved).max()
-            change = np.inf if last is None else np.abs(moved[::2] - last).max()
-            if change <= _HALVED * tolerance * size:
+            # a free shift along the axis is large beside motions across it: each by its own size
+            sizes = np.abs(motion[..., :3]).max(axis=(0, 1))
+            sizes = np.maximum([sizes[:2].max(), sizes[:2].max(), sizes[2]], _SMALL * sizes.max())
+            moved = motion[..., :3] / np.where(sizes > 0.0, sizes, 1.0)
+            if last is not None and np.abs(moved[::2] - last).max() <= _HALVED * tolerance:
                 strides = [every >> fewer for fewer in range(every.bit_length() - 1)]
-                kept = next((n for n in strides if _follow(moved[:: n // 2], size)), None)
+                kept = next((n for n in strides if _follow(moved[:: n // 2])), None)
                 if kept is not None:
                     return time[::kept], motion[::kept]
             last, every = moved, 2 * every
@@ -216,10 +218,12 @@ class ShakenRotor:
         return sum(load * np.exp(1j * n * angle) for n, load in self.loads.items()).real
 
 
-def _follow(moved: np.ndarray, size: float) -> bool:
-    """Return whether straight lines between every second of the displacements follow the others."""
-    between = 0.5 * (moved[:-1:2] + moved[2::2])
-    return bool(np.abs(moved[1::2] - between).max() <= _BETWEEN * size)
+def _follow(moved: np.ndarray) -> bool:
+    """Return whether straight lines between every second of the displacements follow the others.
+
+    The largest displacement is one.
+    """
+    return bool(np.abs(moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])).max() <= _BETWEEN)
 
 
 def _orders(seen: Sequence[Terms]) -> set[int]:

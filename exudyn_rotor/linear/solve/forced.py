@@ -169,6 +169,7 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
         x[~alone] = _one(scaled[np.ix_(~alone, ~alone)], b[~alone])
         if np.linalg.norm(x) <= _FAR * np.linalg.norm(b):  # nothing else is nearly free
             return scale * x
+    scaled[alone] = scaled[:, alone] = 0.0
     U, values, Vh = np.linalg.svd(scaled)
     free = values <= _NONE * values.max(initial=0.0)
     if np.linalg.norm(U[:, free].conj().T @ b) > _LOADED * np.linalg.norm(b):

@@ -59,7 +59,7 @@ def points_about(scene: SceneCoordinates, probe: Probe) -> list[LinearPoint]:
 
     Without the rotor's own unbalance films are those of journals at rest, as in lists of supports.
     Films that conserve mass have a force in them, but no stiffness and no damping:
-    :mod:`.remembering_scene` adds what they have, which depends on the frequency.
+    :mod:`.films` adds what they have, which depends on the frequency.
     """
     check_films(scene, probe)
     rest = scene.about == "equilibrium"

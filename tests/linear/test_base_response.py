@@ -1,0 +1,147 @@
+"""Rotors on ground that shakes: closed forms, other steps, stiff supports, films."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from models import centered_disc
+from point_rotors import ring_rotor
+
+from exudyn_rotor import (
+    BaseAcceleration,
+    BaseRecord,
+    RotorTrain,
+    ShortJournalBearing,
+    Support,
+    base_response,
+    harmonic_response,
+)
+from exudyn_rotor.theory.rotating_axes import axes_of
+
+ENDS = ("left", "right")
+
+
+@cache
+def rigid():
+    rotor = ring_rotor(0.1, 0.15, 5.0)
+    return rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(0)
+
+
+def springs(omega, ratio=0.0):
+    """Return supports on which the rotor's 5 kg have a natural frequency [rad/s]."""
+    k = 2.5 * omega**2 * np.eye(3)
+    return [Support(name, k, 5.0 * ratio * omega * np.eye(3)) for name in ENDS]
+
+
+def record(function, end, step, direction=(1.0, 0.0, 0.0)):
+    t = np.linspace(0.0, end, round(end / step) + 1)
+    return BaseRecord(t, np.outer(function(t), direction))
+
+
+@pytest.mark.parametrize("speed", [0.0, 180.0])
+def test_harmonic_ground_from_rest(speed):
+    """One mass: u = −A (sin νt − (ν/ω) sin ωt) / (ω² − ν²), whatever the spin."""
+    omega, nu = 120.0, 70.0
+    shaken = record(lambda t: 2.0 * np.sin(nu * t), 0.3, 2e-4)
+    found = base_response(rigid(), shaken, speed=speed, supports=springs(omega), tolerance=1e-7)
+    t = found.time
+    expected = -2.0 * (np.sin(nu * t) - nu / omega * np.sin(omega * t)) / (omega**2 - nu**2)
+    # straight lines between samples: (ν h)² / 12 of the load
+    scale = np.abs(expected).max()
+    along = axes_of(rigid().axis).T[:, 0]
+    np.testing.assert_allclose(
+        found.displacement("left"), np.outer(expected, along), rtol=0.0, atol=3e-5 * scale
+    )
+
+
+@pytest.mark.parametrize("omega", [20.0, 100.0, 200.0])
+def test_half_sine_shock_spectrum(omega):
+    """Residual response of one mass: 2β cos(π/2β) / |1 − β²| of a/ω², β = T/(2τ) > 1.
+
+    Chopra, Dynamics of Structures (2012), Eq. (4.8.4).
+    """
+    duration, beta = 0.01, np.pi / (0.01 * omega)
+    shock = record(lambda t: 40.0 * np.sin(np.pi * t / duration), duration, 5e-5)
+    given = {"speed": 300.0, "supports": springs(omega), "at": "right"}
+    found = base_response(rigid(), shock, end_time=duration + 7.0 / omega, **given)
+    expected = 40.0 / omega**2 * 2.0 * beta * np.cos(np.pi / 2.0 / beta) / (beta**2 - 1.0)
+    assert found.peak("right")[0] == pytest.approx(expected, rel=3e-4)
+
+
+def test_damped_rest_under_a_lasting_acceleration():
+    """Half a critical damping, a long step: the mass ends at −a/ω², along the axis, too."""
+    step = record(lambda t: np.ones_like(t), 1.0, 0.01, (1.0, 2.0, 3.0))
+    found = base_response(rigid(), step, speed=50.0, supports=springs(100.0, 0.5))
+    ends = -np.array([1.0, 2.0, 3.0]) @ axes_of(rigid().axis) / 100.0**2
+    np.testing.assert_allclose(found.displacement("left")[-1], ends, rtol=1e-6)
+
+
+@pytest.mark.parametrize("samples", [2, 11])
+@pytest.mark.parametrize("speed", [0.0, 5.0, 500.0])
+def test_peaks_are_those_of_the_motion_and_not_of_the_record(samples, speed):
+    """A sudden acceleration a moves an undamped mass by 2 a/ω² at most, here after 3 ms.
+
+    Lines between the times are within 1 % of the motion, and a peak is between two of them at most.
+    """
+    omega, times = 1000.0, np.linspace(0.0, 0.05, samples)
+    sudden = BaseRecord(times, np.tile([1.0, 0.0, 0.0], (samples, 1)))
+    found = base_response(rigid(), sudden, speed=speed, supports=springs(omega))
+    assert found.peak("left")[0] == pytest.approx(2.0 / omega**2, rel=0.01)
+    assert found.time[-1] == pytest.approx(0.05, abs=2e-3)
+
+
+def noise(end, step=5e-3):
+    t = np.linspace(0.0, end, round(end / step) + 1)
+    return BaseRecord(t, np.random.default_rng(1).normal(size=(len(t), 3)))
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "damping"), [((1e8, 3e8), 1e5), ((1e10, 3e10), 1e7), ((1e7, 3e7), 10.0)]
+)
+def test_what_decays_or_swings_fast_takes_no_short_steps(stiffness, damping):
+    """In axes that stand still the equations are constant, and steps exact."""
+    supports = [Support(name, np.diag(stiffness), damping) for name in ENDS]
+    rotor = ring_rotor(0.1, 0.15, 5.0)
+    rotor = rotor.with_interface("left", range(5)).with_interface("right", range(5, 10)).reduce(6)
+    given = {"speed": 314.0, "supports": supports, "at": "left"}
+    one, other = (base_response(rotor, noise(1.0), axes=axes, **given)
+                  for axes in ("rotor", "inertial"))  # fmt: skip
+    assert one.time[-1] == pytest.approx(1.0, abs=5e-3)
+    assert one.peak("left")[0] == pytest.approx(other.peak("left")[0], rel=0.02)
+
+
+def test_a_stable_rotor_on_films_stays_in_range():
+    film = {"radius": 0.02, "length": 0.02, "clearance": 4e-5, "viscosity": 0.01}
+    supports = [ShortJournalBearing(interface=name, load=[0.0, -200.0], **film) for name in ENDS]
+    short, long = (base_response(centered_disc().reduce(6), noise(end), speed=314.0,
+                                 supports=supports, at="left") for end in (0.25, 1.0))  # fmt: skip
+    assert long.peak("left")[0] < 10.0 * short.peak("left")[0]
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.5, 60.0])
+def test_ground_in_steady_motion_ends_in_the_harmonic_response(speed):
+    """On uneven supports, from slow spin, a step for each piece of the record, to fast."""
+    nu, supports = 80.0, [Support(name, np.diag([4e4, 9e4]), 300.0) for name in ENDS]
+    shaken = record(lambda t: np.cos(nu * t), 2.0, 5e-4, (1.0, 0.5, 0.0))
+    found = base_response(rigid(), shaken, speed=speed, supports=supports, at="left")
+    ground = BaseAcceleration((1.0, 0.5))
+    steady = harmonic_response(rigid(), [nu], ground, speed=speed, supports=supports, at="left")
+    t = found.time[-200:]
+    waves = np.exp(1j * np.outer(t, nu + steady.orders * speed))[..., None]
+    expected = (waves * steady.motion[0, 0, :, :2]).sum(axis=1).real
+    off = found.displacement("left")[-200:, :2] - expected
+    assert np.abs(off).max() < 2e-3 * np.abs(expected).max()
+
+
+def test_a_train_of_one_is_shaken_as_its_rotor():
+    supports = [Support(name, np.diag([4e4, 9e4]), 300.0) for name in ENDS]
+    train = RotorTrain({"r": rigid()}, {"r": 1.0}, {"r": supports})
+    one = base_response(rigid(), noise(0.3), speed=60.0, supports=supports)
+    other = base_response(train, noise(0.3), speed=60.0)
+    np.testing.assert_allclose(one.motion, other.motion, atol=1e-9 * np.abs(one.motion).max())
+
+
+def test_tables_have_speeds_in_rpm_by_default():
+    found = base_response(rigid(), noise(0.1), speed=np.pi, supports=springs(100.0))
+    assert "at 30 rpm" in found.table()
+    assert "at 3.14159 rad/s" in found.table(units="SI")
