@@ -19,7 +19,7 @@ Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
 _FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resists
 _NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
-_FAR = 1e6  # of matrices with diagonals of one: size of a solution that nothing free is in
+_FAR = 1e6  # of matrices with diagonals of one: size of a solution without free motions
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
 _SINGULAR = 1e-13  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
@@ -53,9 +53,9 @@ def forced_motions(
         Largest relative change of a motion by further harmonics.
     """
     if held is not None:
-        systems = _each(systems, lambda system: system.projected(held))
-        loads = [{n: held.T @ F for n, F in each.items()} for each in loads]
-        driven = None
+        momenta, driven = la.null_space(held.T), None
+        systems = _each(systems, lambda system: _without(system, momenta))
+        loads = [{n: F - momenta @ (momenta.T @ F) for n, F in each.items()} for each in loads]
     found: list[dict] = [{} for _ in systems]
     constant = [i for i, system in enumerate(systems) if system.is_constant]
     if constant:
@@ -76,9 +76,20 @@ def forced_motions(
                 found[i] |= motion
         for i in members:
             found[i] = found[i] or {n: 0j * F for n, F in loads[i].items()}
-    if held is not None:
-        found = [{n: held @ X for n, X in each.items()} for each in found]
     return found
+
+
+def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
+    """Return a system in which motions with momenta (k, r), orthonormal, are stiff by themselves."""
+
+    def apart(X: np.ndarray) -> np.ndarray:
+        X = X - momenta @ (momenta.T @ X)
+        return X - (X @ momenta) @ momenta.T
+
+    D, K = ({n: apart(X) for n, X in terms.items()} for terms in (system.D, system.K))
+    K[0] = K[0] + np.abs(K[0]).max() * momenta @ momenta.T
+    H = [(n, apart(X)) for n, X in system.H]
+    return PeriodicSystem(system.speed, apart(system.M), D, K, H)
 
 
 def _each(systems: Sequence[PeriodicSystem], change) -> list[PeriodicSystem]:
@@ -101,7 +112,7 @@ def _constant(
         return found
     at_rest = {id(s): s.matrices() for s in systems}
     nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
-    F = np.array([loads[i][n] for i, n in places], dtype=complex)
+    F = np.array([loads[i][n] for i, n in places])
     matrices = np.stack(
         [_dynamic(systems[i], at_rest[id(systems[i])], v) for (i, _), v in zip(places, nu)]
     )
@@ -119,7 +130,7 @@ def _rate(rate: float, order: int, speed: float) -> float:
 def _dynamic(system: PeriodicSystem, matrices: tuple, nu: float) -> np.ndarray:
     """Return ``K + iνD − ν²M`` with structural damping."""
     M, D, K = matrices
-    Z = K + 1j * nu * D - nu**2 * M
+    Z = K if nu == 0.0 else K + 1j * nu * D - nu**2 * M
     for n, H in system.H:
         Z = Z + 1j * np.sign(_rate(nu, -n, system.speed)) * H
     return Z
@@ -143,9 +154,39 @@ def _solved(
         large = np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
         Y[large | ~np.isfinite(off)] = np.nan
         X[moving] = scale * Y
-    for i in np.flatnonzero(constant):
+    still = np.flatnonzero(constant)
+    if driven is None or not driven.shape[1]:
+        still = still[~_plainly(matrices, loads, still, X)]
+    for i in still:
         X[i] = _static(matrices[i], loads[i], driven)
     return X
+
+
+def _plainly(A: np.ndarray, loads: np.ndarray, still: np.ndarray, X: np.ndarray) -> np.ndarray:
+    """Put solutions under constant loads into X where no motion is free; return where that is."""
+    done = np.zeros(len(still), dtype=bool)
+    if not still.size:
+        return done
+    A, b = A[still], loads[still]
+    diagonal = np.abs(A).max(axis=2)
+    alone = diagonal <= _FREE * diagonal.max(axis=1, keepdims=True)
+    scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
+    b = scale * b
+    unloaded = np.abs(b * alone).max(axis=1) <= _LOADED * np.abs(b).max(axis=1)
+    held = np.flatnonzero(~np.any(alone, axis=0))
+    alike = unloaded & (alone.sum(axis=1) == alone.shape[1] - len(held))
+    chosen = np.flatnonzero(alike)
+    A = A[np.ix_(chosen, held, held)] * scale[chosen][:, held, None] * scale[chosen][:, None, held]
+    try:
+        Y = np.linalg.solve(A, b[np.ix_(chosen, held)][..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return done
+    done[chosen] = np.linalg.norm(Y, axis=1) <= _FAR * np.linalg.norm(b[chosen], axis=1)
+    small = chosen[done[chosen]]
+    X[np.ix_(still[small], held)] = (scale[chosen][:, held] * Y)[done[chosen]]
+    others = np.setdiff1d(np.arange(X.shape[1]), held)
+    X[np.ix_(still[small], others)] = 0.0
+    return done
 
 
 def _one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -164,11 +205,6 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
     alone = diagonal <= _FREE * diagonal.max(initial=0.0)
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
     scaled, b = scale[:, None] * A * scale, scale * load
-    if np.linalg.norm(b[alone]) <= _LOADED * np.linalg.norm(b):
-        x = np.zeros(len(load), dtype=complex)
-        x[~alone] = _one(scaled[np.ix_(~alone, ~alone)], b[~alone])
-        if np.linalg.norm(x) <= _FAR * np.linalg.norm(b):  # nothing else is nearly free
-            return scale * x
     scaled[alone] = scaled[:, alone] = 0.0
     U, values, Vh = np.linalg.svd(scaled)
     free = values <= _NONE * values.max(initial=0.0)
