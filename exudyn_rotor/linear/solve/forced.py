@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.chain import chained, is_chain
+from exudyn_rotor.linear.solve.chain import chained, reach
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
@@ -66,12 +66,12 @@ def forced_motions(
     for i, system in enumerate(systems):
         if not system.is_constant:
             acting = tuple(sorted(n for n, F in loads[i].items() if np.any(F)))
-            groups.setdefault((system.step, acting, is_chain(system)), []).append(i)
-    for (step, acting, chain), members in groups.items():
+            groups.setdefault((system.step, acting, reach(system)), []).append(i)
+    for (step, acting, _), members in groups.items():
         for n in {n % step: n for n in acting}:  # harmonics that are coupled
             together = [m for m in acting if m % step == n]
             given = [[each[i] for i in members] for each in (systems, loads, rates)]
-            motions = _periodic(*given, together, chain, driven, tolerance)
+            motions = _periodic(*given, together, driven, tolerance)
             for i, motion in zip(members, motions, strict=True):
                 found[i] |= motion
         for i in members:
@@ -219,7 +219,6 @@ def _periodic(
     loads: list[Harmonics],
     rates: list[float],
     acting: list[int],
-    chain: bool,
     driven: np.ndarray | None,
     tolerance: float,
 ) -> list[dict[int, np.ndarray]]:
@@ -227,22 +226,19 @@ def _periodic(
 
     Of systems with one step, under the coupled harmonics `acting` of the loads.
     """
-    step, found = systems[0].step, [{} for _ in systems]
+    step, far, found = systems[0].step, reach(systems[0]), [{} for _ in systems]
     loads = [{n: load[n] for n in acting} for load in loads]
     left = np.arange(len(systems))
     last = None
     for more in range(2, _MOST):
-        orders = range(acting[0] - more * step, acting[-1] + more * step + 1, step)
+        most = more * far * step
+        orders = range(acting[0] - most, acting[-1] + most + 1, step)
         given = [[each[i] for i in left] for each in (systems, loads, rates)]
-        if chain:
-            X = _in_chain(*given, orders, driven)
-        else:
-            motions = [_coupled(*one, np.array(orders), driven) for one in zip(*given, strict=True)]
-            X = np.array([[motion[n] for n in orders] for motion in motions])
+        X = _in_chain(*given, orders, driven)
         size = np.abs(X).max(axis=(1, 2))
         done = ~np.isfinite(size)
         if last is not None:
-            change = np.abs(X - np.pad(last, ((0, 0), (1, 1), (0, 0)))).max(axis=(1, 2))
+            change = np.abs(X - np.pad(last, ((0, 0), (far, far), (0, 0)))).max(axis=(1, 2))
             done |= change <= tolerance * size
         for row in np.flatnonzero(done):
             found[left[row]] = dict(zip(orders, X[row], strict=True))
@@ -274,37 +270,21 @@ def _in_chain(
     for place in set(places):  # where a constant harmonic stands
         few = [i for i, one in enumerate(places) if one == place]
         given = [[each[i] for i in few] for each in (systems, loads)]
-        constant = np.full(len(few), bool(place))
 
-        def middle(A: np.ndarray, b: np.ndarray, constant: np.ndarray = constant) -> np.ndarray:
-            return _solved(A, b, constant, driven)
+        def middle(
+            A: np.ndarray, b: np.ndarray, link: slice, place: tuple = place, few: list = few
+        ) -> np.ndarray:
+            momenta = driven
+            if place and driven is not None:
+                momenta = np.zeros((link.stop - link.start, *driven.shape))
+                momenta[place[0] - link.start] = driven
+                momenta = momenta.reshape(-1, driven.shape[1])
+            return _solved(A, b, np.full(len(few), bool(place)), momenta)
 
         X[few] = chained(
             *given, orders, nu[few], lambda i, a, few=few: stiffness(few[i], a), middle
         )
     return X
-
-
-def _coupled(
-    system: PeriodicSystem,
-    loads: Harmonics,
-    rate: float,
-    orders: np.ndarray,
-    driven: np.ndarray | None,
-) -> dict[int, np.ndarray]:
-    """Return the harmonics that are coupled, from one matrix."""
-    h, k = len(orders), system.size
-    A, nu = coupled_stiffness(system, rate, orders)
-    F = np.array([loads.get(int(m), np.zeros(k)) for m in orders], dtype=complex)
-    constant = 0.0 in nu
-    momenta = None
-    if constant and driven is not None and driven.shape[1]:
-        momenta = np.zeros((h, k, driven.shape[1]))
-        momenta[nu.index(0.0)] = driven
-        momenta = momenta.reshape(h * k, -1)
-    given = A[None], F.reshape(1, -1)
-    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
-    return {int(n): x for n, x in zip(orders, X, strict=True)}
 
 
 def coupled_stiffness(
