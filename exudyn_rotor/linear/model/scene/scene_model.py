@@ -184,7 +184,7 @@ class SceneModel(LinearModel):
         elements = film_elements(self.scene, journals, speed, assembly, self.is_undamped)
         system = replace(assembly, elements=elements).system(speed)
         W = _Seen.of(self, assembly.bodies[0])
-        samples = zip(*(W.acting(point.rest, speed, self.is_undamped) for point in points))
+        samples = zip(*(W.acting(point.rest, speed) for point in points))
         M, D, K = (np.array(each) for each in samples)
         k = self._running_size
         own = assembly.M.copy()
@@ -312,10 +312,11 @@ class _Seen:
                 terms.setdefault(n, np.zeros_like(terms[0]))
                 terms[n][within] = 0.5 * (np.eye(2) + 1j * n * quarter)
 
-    def acting(
-        self, rest: Rest, speed: float, undamped: bool
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return M, D, K (l, l) of what is beside the rotor at one angle."""
+    def acting(self, rest: Rest, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return M, D, K (l, l) of what is beside the rotor at one angle, damping included.
+
+        A damper that turns has a part in the stiffness, too: critical speeds leave out both.
+        """
         W = [
             sum((1j * n * speed) ** p * X * np.exp(1j * n * rest.theta) for n, X in self.W.items())
             for p in range(3)
@@ -325,8 +326,6 @@ class _Seen:
         Z, Z1 = T @ W[0], T1 @ W[0] + T @ W[1]
         Z2 = T2 @ W[0] + 2.0 * T1 @ W[1] + T @ W[2]
         D, K = _without_noise(rest.D), _without_noise(rest.K)
-        if undamped:
-            D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
         D, K = W[0].T @ D, W[0].T @ K @ W[0]
         mass = Z.T @ rest.mass
         return mass @ Z, 2.0 * mass @ Z1 + D @ W[0], mass @ Z2 + D @ (T.T @ Z1) + K
