@@ -25,7 +25,7 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.bearings.film.reynolds import Equation
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.linear.modal import hermitian_zeros
+from exudyn_rotor.linear.modal import resonance
 from exudyn_rotor.linear.models.scene.journal_start import journal_start
 
 SIZE = {"radius": 0.05, "length": 0.03, "clearance": 1e-4, "viscosity": 0.1}
@@ -365,7 +365,7 @@ def test_a_law_in_a_scene_begins_with_the_voids_of_its_last_call(monkeypatch):
 
 def test_analyses_of_a_scene_whose_films_carry_nothing_at_rest(monkeypatch):
     """Of a list and of a scene alike; between 4 speeds instead of 200."""
-    monkeypatch.setattr(hermitian_zeros, "_BRACKETS", 4)
+    monkeypatch.setattr(resonance, "_BRACKETS", 4)
     rotor = rigid_rotor()
     bearings = journals(rotor)
     _, body, _ = scene(rotor, bearings, spin=SPEED)
@@ -374,7 +374,7 @@ def test_analyses_of_a_scene_whose_films_carry_nothing_at_rest(monkeypatch):
     in_list, in_scene = (critical_speeds(model, **options).speeds for model in models)
     assert len(in_scene) > 0
     np.testing.assert_allclose(in_scene, in_list, rtol=1e-6)
-    with pytest.raises(ValueError, match="max_speed: a scene needs the largest speed"):
+    with pytest.raises(ValueError, match="max_speed: .* needs the largest speed"):
         critical_speeds(models[1], accuracy=None)
     modes = [campbell(one, [300.0, 500.0], accuracy=None).frequencies_inertial for one in models]
     lateral = [np.sort(each[each > 1.0]) for each in modes]

@@ -14,7 +14,6 @@ from models import STEEL, block_beam, disc_fem, disc_rotor
 from point_rotors import ring_rotor
 from spool_models import spool_with_growth
 from test_annular_seal import SIZE, WATER
-from test_hermitian_zeros import thin_below_forty, zeros_of_eigenvalues
 from test_threshold_search import Turning
 
 import exudyn_rotor
@@ -34,6 +33,7 @@ from exudyn_rotor import (
     add_supports,
     campbell,
     check_run,
+    critical_speeds,
     energy_balance,
     propose,
     recommended_settings,
@@ -275,14 +275,23 @@ def curved_elements(_):
 
 
 # place of every ``warnings.warn`` (file:function): what makes it fire, kind, part of its text
+def table_that_begins_high(_):
+    """A table from 40 rad/s on."""
+    rotor = SolidRotor.from_matrices(
+        np.eye(3), np.zeros((3, 3)), np.zeros((1, 3)), "z", interfaces={"at": [0]}
+    )
+    support = Support("at", ([40.0, 100.0], [1e3, 1e4]))
+    critical_speeds(rotor, supports=support, max_speed=100.0, nodal_diameters=[1])
+
+
 PLACES = {
     "solvers/pardiso.py:tell_of_mkl": (
         lambda _: pardiso.tell_of_mkl.__wrapped__(), UserWarning, r"exudyn-rotor\[mkl\]"),
     "bearings/annular_seal.py:__post_init__": (
         lambda _: AnnularSeal(interface="a", **(SIZE | WATER | {"viscosity": 0.1})),
         UserWarning, "may be laminar"),
-    "linear/modal/hermitian_zeros.py:_free_and_negative": (
-        lambda _: zeros_of_eigenvalues(thin_below_forty, 100.0), UserWarning, "are looked for"),
+    "linear/modal/resonance.py:_warn": (
+        table_that_begins_high, UserWarning, "are looked for"),
     "prestress/static_solution.py:_in_equilibrium": (
         stress_out_of_balance, UserWarning, "not in equilibrium"),
     "prestress/static_solution.py:_warn_of_yield": (
