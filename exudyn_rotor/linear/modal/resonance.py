@@ -286,14 +286,21 @@ class Search:
         if self.stiffness.model.table_speeds.size or len(near) + 1 < max(len(grid), 4):
             return None
         systems = [self.stiffness.system(speed) for speed in grid]
-        orders = {n for system in systems for n in system.K}
-        K = {n: CubicSpline(np.log(grid), [s.K.get(n, 0.0 * s.M) for s in systems]) for n in orders}
-        last = systems[-1]
+
+        def curves(given: list[Terms]) -> dict[int, CubicSpline]:
+            orders = {n for terms in given for n in terms}
+            none = np.zeros_like(systems[0].M)
+            return {
+                n: CubicSpline(np.log(grid), [terms.get(n, none) for terms in given])
+                for n in orders
+            }
+
+        D, K = curves([s.D for s in systems]), curves([s.K for s in systems])
 
         def between(speed: float) -> PeriodicSystem:
-            D = {n: X * (speed / last.speed) for n, X in last.D.items()}
-            stiffness = {n: curve(np.log(speed)) for n, curve in K.items()}
-            return PeriodicSystem(speed, last.M, D, stiffness)
+            at = np.log(speed)
+            terms = ({n: curve(at) for n, curve in X.items()} for X in (D, K))
+            return PeriodicSystem(speed, systems[0].M, *terms)
 
         return between
 
