@@ -31,7 +31,7 @@ from exudyn_rotor.bearings.support import (
     NoCoefficientsError,
     OutsideTableError,
 )
-from exudyn_rotor.linear.models import linear_model as source
+from exudyn_rotor.linear.model import build
 
 ROTOR = (
     ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
@@ -63,8 +63,8 @@ BAD = {
     "stiffnesses": (np.nan, [0.0], [-1.0], "x", MASKED, [1j], {}, None, []),
     "supports": ("", "left", 3, ["left"], {"left": 1e6}, None, [None], np.array(3.0), Support),
     "tolerance": (*NUMBERS, 0.0, 0.2, 1e-20),
-    "residual": (*NUMBERS, 0.0, 0.2, 1e-20),
     "stiffening": WORDS,
+    "axes": WORDS,
     "frame": WORDS,
     "method": WORDS,
     "modes": (0, -1, 2.5, "x", True, [1]),
@@ -75,7 +75,6 @@ BAD = {
     "refine": ("no", 1, None, []),
     "allow_negative": ("no", 1, None, []),
     "progress": ("no", 1, None, []),
-    "executor": (3, "threads", ROTOR),
     "unbalances": (3, "left", None, [3], {"left": 1.0}, FORCE),
     "loads": (3, "left", None, [3], {"left": 1.0}, UNBALANCE),
     "at": (3.5, ["left", 2.5], {}, [(0.0, np.nan, 0.0)], [None], "", [-1]),
@@ -114,7 +113,7 @@ def _refused(call, given: dict, name: str, values: tuple) -> list[str]:
 def _arguments(call) -> list[str]:
     names = list(inspect.signature(call).parameters)
     if names[-1] == "given":
-        names[-1:] = ["supports", "tolerance", "residual", "modes", "stiffening", "method"]
+        names[-1:] = ["supports", "tolerance", "stiffening", "method"]
     return names
 
 
@@ -125,7 +124,7 @@ def _arguments(call) -> list[str]:
 )
 def test_argument_is_refused_by_its_name(call, name, monkeypatch):
     if name not in ("at", "body"):  # those are looked up in the rotor's equations
-        monkeypatch.setattr(source.LinearRotor, "of", None)
+        monkeypatch.setattr(build, "LinearModel", None)
     given = dict(zip(inspect.signature(call).parameters, (ROTOR, *CALLS[call]), strict=False))
     values = BAD_FOR_THRESHOLD.get(name) if call is stability_threshold else None
     assert _refused(call, given | {"supports": SUPPORTS}, name, values or BAD[name]) == []
@@ -163,7 +162,7 @@ MAKERS = [
     }),
     (stability_map, {"build": max, "x": [1.0], "y": [1.0]}, {
         "build": (3, None, "x"), "x": SERIES, "y": SERIES, "labels": ("x", (1, 2), None, ["x"]),
-        "method": WORDS, "tolerance": (*NUMBERS, 0.0), "executor": (3,), "progress": ("no",),
+        "method": WORDS, "tolerance": (*NUMBERS, 0.0), "progress": ("no",),
     }),
 ]  # fmt: skip
 
@@ -293,15 +292,6 @@ def test_a_single_node_takes_no_moment(name, small):
             campbell(rotor, [1.0], supports=supports)
     for value in (0.0, np.zeros((3, 3)), ([0.0, 9.0], [0.0, 0.0])):
         campbell(rotor, [1.0], supports=[*SUPPORTS, Support("point", 1e5, **{name: value})])
-
-
-def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
-    monkeypatch.setattr(source, "DENSE_SIZE", 0)
-    monkeypatch.setattr(source.FullRotor, "of", None)
-    for call, given in ((campbell, {}), (stability, {}), (critical_speeds, {"max_speed": 9.0})):
-        arguments = () if call is critical_speeds else ([1.0],)
-        with pytest.raises(ValueError, match=r"^tolerance: needs"):
-            call(ROTOR, *arguments, tolerance=0.0, **given)
 
 
 def test_scenes_need_their_body():

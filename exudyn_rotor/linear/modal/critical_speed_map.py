@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, is_known, points
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
     SHOWN,
     CriticalSpeeds,

@@ -10,8 +10,9 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import basis_error, options
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal import basis_error
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
     Resonance,

@@ -216,10 +216,11 @@ class Content:
         form, whole = (
             sum(x.conj().T @ F @ x for x in span) for F in (mean, self.whole + self.standing)
         )
-        floor = 1e-12 * max(np.trace(whole).real, 1e-300)
-        _, turn = la.eigh(
-            0.5 * (form + form.conj().T), 0.5 * (whole + whole.conj().T) + floor * np.eye(len(form))
-        )
+        sizes, parts = la.eigh(0.5 * (whole + whole.conj().T))
+        seen = sizes > 1e-9 * max(sizes[-1], 1e-300)  # others move nothing that has waves
+        unit = parts[:, seen] / np.sqrt(sizes[seen])
+        _, inner = la.eigh(unit.conj().T @ (0.5 * (form + form.conj().T)) @ unit)
+        turn = np.hstack([parts[:, ~seen], unit @ inner])
         turned = span @ (turn / np.abs(turn).max(axis=0))
         return turned / np.linalg.norm(turned.reshape(-1, turned.shape[2]), axis=0)
 
@@ -230,9 +231,7 @@ def _forms_of(body: RotorBody, n: int, W: np.ndarray, place: slice, k: int) -> l
     parts = {0: W}
     if body.mean:
         turning = body.alone.turning
-        parts = {
-            s: (W @ turning.T) * (turning.waves == s) @ turning.T.conj().T for s in (-1, 0, 1)
-        }
+        parts = {s: (W @ turning.T) * (turning.waves == s) @ turning.T.conj().T for s in (-1, 0, 1)}
     for s, rows in parts.items():
         if not np.any(np.abs(rows) > 0.0):
             continue

@@ -21,7 +21,6 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, turned

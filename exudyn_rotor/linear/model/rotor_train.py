@@ -9,8 +9,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear.model.links import Link
 from exudyn_rotor.linear.model.link_places import check_places
+from exudyn_rotor.linear.model.links import Link
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 

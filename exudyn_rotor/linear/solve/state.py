@@ -31,7 +31,7 @@ def states_of(system: PeriodicSystem) -> States:
     """Return the first-order form of a system."""
     M, k = system.M, system.size
     root = None
-    if np.any(M != np.eye(k)):  # Lᵀx are mass-orthonormal coordinates
+    if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
         root = la.solve_triangular(la.cholesky(M, lower=True), np.eye(k), lower=True).T
     D, K = _terms(system, root)
     symmetric = 0.5 * (K[0] + K[0].T)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
 from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable

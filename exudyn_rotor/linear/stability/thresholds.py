@@ -19,8 +19,8 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import (
     Target,

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.solvers.line_search import step_share
 
 NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off

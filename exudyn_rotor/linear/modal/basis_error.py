@@ -154,7 +154,7 @@ def judged(
     """
     moving = np.where(frequencies > 0.0, frequencies, np.inf)
     lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
-    lowest = np.where(np.isfinite(lowest), lowest, np.nanmax(frequencies, axis=1, keepdims=True))
+    lowest = np.where(np.isfinite(lowest), lowest, np.nan_to_num(frequencies).max(axis=1)[:, None])
     limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
     overdamped = (frequencies == 0.0) & (-growth > limit)
     return ((frequencies <= limit) | every) & ~overdamped
