@@ -112,8 +112,8 @@ class Element:
         if not all(map(is_isotropic_matrix, matrices)):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
-                f"{self.turns:g} times the speed of the analysis; give a RotorTrain relative_to its "
-                "rotor, or leave axes='inertial' out"
+                f"{self.turns:g} times the speed of the analysis; give a RotorTrain relative_to "
+                "its rotor, or leave axes='inertial' out"
             )
 
 
