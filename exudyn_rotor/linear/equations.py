@@ -35,7 +35,7 @@ class PeriodicSystem:
     M : ndarray, shape (k, k)
     D, K : mapping of int to ndarray, shape (k, k)
         Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
-    H : sequence of (int, ndarray), optional
+    H : sequence of (float, ndarray), optional
         Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i Σ sign(ν − nΩ) H_n``,
         with the frequency ν − nΩ that the rotor sees. Only forced motions know the frequency ν;
         all other analyses leave structural damping out.
@@ -45,7 +45,7 @@ class PeriodicSystem:
     M: np.ndarray
     D: Terms
     K: Terms
-    H: Sequence[tuple[int, np.ndarray]] = ()
+    H: Sequence[tuple[float, np.ndarray]] = ()
 
     @property
     def size(self) -> int:

@@ -100,7 +100,11 @@ def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
     products = np.maximum(np.abs(x.conj().T @ z), np.abs(x.T @ z))
     likeness = (products / np.maximum(sizes, 1e-300)) ** 2
     least = np.maximum(np.abs(given.motions.values), abs(given.motions.speed))[:, None] + 1e-12
-    frequency = np.abs(given.rotor[:, None] - richer.rotor) / least
+    # of a train, which rotor's frame a motion is seen from may differ between both models
+    change = richer.rotor - given.rotor[:, None]
+    seen = richer.inertial - given.inertial[:, None]
+    change = np.where(np.abs(seen) < 0.5 * np.abs(change), seen, change)
+    frequency = np.abs(change) / least
     growth = np.abs(given.motions.values.real[:, None] - richer.motions.values.real) / least
     cost = 1.0 - likeness + np.minimum((frequency + growth) / _NEAR, 2.0)
     rows, columns = linear_sum_assignment(np.nan_to_num(cost, nan=1e3))
@@ -110,7 +114,7 @@ def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
     shifts[rows] = (
         richer.motions.values.real[columns]
         - given.motions.values.real[rows]
-        + 1j * (richer.rotor[columns] - given.rotor[rows])
+        + 1j * change[rows, columns]
     )
     return shifts
 

@@ -13,6 +13,8 @@ from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, without_ro
 from exudyn_rotor.linear.model.body import Body, RotorBody
 from exudyn_rotor.linear.model.element import Element, End, OwnBody
 
+_ROUNDING = 1e-14  # share of a stiffness that is the rounding of its change by the speed
+
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
@@ -93,7 +95,7 @@ class Assembly:
                 add(powers_K[0], K)
                 add(powers_K[1], faster)
                 add(powers_K[1], K, -1.0)
-        return powers_D, powers_K
+        return _without_rounding(powers_D), _without_rounding(powers_K)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Return the equations at a spin speed [rad/s]."""
@@ -137,6 +139,17 @@ class Assembly:
             for body in self.bodies
             for label in body.labels
         )
+
+
+def _without_rounding(powers: list[dict[int, np.ndarray]]) -> list[dict[int, np.ndarray]]:
+    """Return coefficients of powers of Ω without the terms of θ that are rounding of the first."""
+    largest = max((np.abs(X).max(initial=0.0) for X in powers[0].values()), default=0.0)
+    first = without_rounding(powers[0]) if powers[0] else powers[0]
+    kept = [
+        {n: X for n, X in each.items() if n == 0 or np.abs(X).max() > _ROUNDING * largest}
+        for each in powers[1:]
+    ]
+    return [first, *kept]
 
 
 def rotors_of(bodies: Sequence[Body]) -> list[RotorBody]:

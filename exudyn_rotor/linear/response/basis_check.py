@@ -7,15 +7,13 @@ move in it as far as the reduced rotor knows; interfaces move with all shapes.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from exudyn_rotor.callers import user_level
+from exudyn_rotor.linear.basis_error import is_known
 from exudyn_rotor.linear.model.linear_model import LinearModel
 
-NOT_KNOWN = "error of the basis: not known"
 _LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that
 _AXIAL = 1e-6  # share of a motion across the axis that is rounding
 _FEW = 3  # speeds or frequencies that are looked at beside the peaks
@@ -46,7 +44,7 @@ def basis_errors(
     solve : callable
         Takes a model, and speeds or frequencies; gives the motions.
     """
-    if accuracy is None or (model.richer is None and not model.is_full):
+    if not is_known(model, accuracy):
         return None
     sizes = np.sqrt(sum(_size(each) ** 2 for each in motions.values()))
     if model.is_full:
@@ -92,26 +90,3 @@ def motion_error(given: Mapping[int, np.ndarray], finer: Mapping[int, np.ndarray
 def _size(amplitudes: np.ndarray) -> np.ndarray:
     """Return sizes (…) of displacements, of motions (…, 6)."""
     return np.linalg.norm(amplitudes[..., :3], axis=-1)
-
-
-def warn_of_basis(model: LinearModel, error: float, accuracy: float, what: str) -> None:
-    """Warn where an error by the basis exceeds the accuracy; `what` names the value."""
-    if not error > accuracy:
-        return
-    bases = " and ".join(
-        f"{rotor.size - len(rotor.rigid_kinds)}" + (f" of rotor {name!r}" if name else "")
-        for name, rotor in model.rotors.items()
-    )
-    warnings.warn(
-        f"{what} errs by about {error:.2g} of its value: the flexible modes ({bases}) are too few "
-        f"for the accuracy of {accuracy:g}; reduce the rotor with more, with "
-        "craig_bampton_modes(rotor, …) where they lack flexibility at the interfaces, give "
-        "another accuracy=…, or None for no check",
-        UserWarning,
-        stacklevel=user_level(),
-    )
-
-
-def in_table(error: float, digits: int = 1) -> str:
-    """Return an error as tables show it: '-' where it was not estimated."""
-    return "-" if np.isnan(error) else f"{error:.{digits}e}"

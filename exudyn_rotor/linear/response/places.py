@@ -11,10 +11,8 @@ from exudyn_rotor import checks
 from exudyn_rotor.linear import options
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.theory.rotating_axes import into_inertial_frame, out_of_inertial_frame
 
 At = str | int | Sequence[float]
-Motion = Mapping[int, np.ndarray]  # harmonics (p, 6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,17 +114,3 @@ def _node_number(at: int | Sequence[float], nodes: np.ndarray) -> int:
             raise ValueError(f"at: {at}: no such node; the mesh has nodes 0 to {len(nodes) - 1}")
         return at
     return int(np.argmin(np.linalg.norm(nodes - np.asarray(at), axis=1)))
-
-
-def in_frame(motion: Motion, stands: np.ndarray, frame: str) -> Motion:
-    """Return motions (…, p, 6) of a rotor seen in its frame, and of what `stands`, in the frame."""
-    turn, turns = into_inertial_frame, ~stands
-    if frame == "rotor":
-        turn, turns = out_of_inertial_frame, stands
-    if not np.any(turns):
-        return motion
-    turned_ones = turn({n: a * turns[:, None] for n, a in motion.items()})
-    if not np.all(turns):
-        for n, a in motion.items():
-            turned_ones[n] = turned_ones.get(n, 0.0) + a * ~turns[:, None]
-    return turned_ones

@@ -17,10 +17,11 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
+from exudyn_rotor.linear.basis_error import warn
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
-from exudyn_rotor.linear.response.basis_check import basis_errors, warn_of_basis
+from exudyn_rotor.linear.response.basis_check import basis_errors
 from exudyn_rotor.linear.response.harmonic_loads import (
     BaseAcceleration,
     HarmonicForce,
@@ -431,7 +432,7 @@ def _with_warning(model: LinearModel, response, accuracy: float | None, unit: st
         at, place = np.unravel_index(np.nanargmax(errors), errors.shape)
         value = Units.of(unit).speeds(response.abscissa[at])
         what = f"the motion of {response.places[place]!r} at {value:.5g} {unit}"
-        warn_of_basis(model, errors[at, place], accuracy, what)
+        warn(errors, what, model, accuracy)
     return response
 
 

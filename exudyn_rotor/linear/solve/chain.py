@@ -1,7 +1,8 @@
-"""Harmonics that are coupled with their neighbours only: a chain, solved from its ends inwards.
+"""Harmonics that are coupled with near ones only: a chain, solved from its ends inwards.
 
-Coefficients with the terms −p, 0, p couple the harmonic m with m − p and m + p. Every harmonic is
-eliminated towards one in the middle, which costs a small matrix for each instead of one of all.
+Coefficients with the terms −rp … rp couple the harmonic m with m ± p to m ± rp, so that r
+harmonics make a link that is coupled with its neighbours only. Every link is eliminated towards one
+in the middle, which costs a small matrix for each instead of one of all.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ import numpy as np
 from exudyn_rotor.linear.equations import PeriodicSystem
 
 
-def is_chain(system: PeriodicSystem) -> bool:
-    """Return whether harmonics are coupled with their neighbours only."""
-    return all(abs(n) <= system.step for terms in (system.D, system.K) for n in terms)
+def reach(system: PeriodicSystem) -> int:
+    """Return r, to how many neighbours harmonics are coupled."""
+    return max(abs(n) for terms in (system.D, system.K) for n in terms) // system.step
 
 
 def chained(
@@ -24,9 +25,9 @@ def chained(
     orders: Sequence[int],
     nu: np.ndarray,
     stiffness: Callable[[int, int], np.ndarray],
-    solve: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    solve: Callable[[np.ndarray, np.ndarray, slice], np.ndarray],
 ) -> np.ndarray:
-    """Return the harmonics (s, h, k) of the motions of several systems of one step.
+    """Return the harmonics (s, h, k) of the motions of several systems of one step and reach.
 
     Parameters
     ----------
@@ -39,40 +40,54 @@ def chained(
     stiffness : callable
         Takes a system's and a harmonic's number; gives the dynamic stiffness of this harmonic.
     solve : callable
-        Solves the equations of the middle harmonic, (s, k, k) with (s, k).
+        Solves the equations of the middle link, (s, l, l) with (s, l), given its harmonics.
     """
-    count, k, h = len(systems), systems[0].size, len(orders)
+    count, k, h, r = len(systems), systems[0].size, len(orders), reach(systems[0])
+    links = [slice(first, min(first + r, h)) for first in range(0, h, r)]
     still = np.flatnonzero(np.any(nu == 0.0, axis=0))  # free motions stay in the middle
-    middle = int(still[0]) if still.size else h // 2
-    Z = [np.stack([stiffness(i, a) for i in range(count)]) for a in range(h)]
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(np.mean(Z, axis=0)).max(axis=2), 1e-300))
+    middle = int(still[0]) // r if still.size else len(links) // 2
+    numbers, none = range(h), np.zeros((k, k))
+    means = [np.stack([stiffness(i, a) for i in range(count)]) for a in numbers]
+    scale = 1.0 / np.sqrt(np.maximum(np.abs(np.mean(means, axis=0)).max(axis=2), 1e-300))
+    scaled = [scale[:, :, None] * X * scale[:, None, :] for X in means]
+    kept: dict[tuple[int, int], np.ndarray] = {}
 
-    def scaled(X: np.ndarray) -> np.ndarray:
-        return scale[:, :, None] * X * scale[:, None, :]
+    def coupling(a: int, b: int) -> np.ndarray:
+        """Return how the harmonic b acts on the harmonic a."""
+        if a == b:
+            return scaled[a]
+        if (a, b) not in kept:
+            n = orders[a] - orders[b]
+            X = np.stack([s.K.get(n, none) + 1j * nu[i, b] * s.D.get(n, none)
+                          for i, s in enumerate(systems)])  # fmt: skip
+            kept[a, b] = scale[:, :, None] * X * scale[:, None, :]
+        return kept[a, b]
 
     def between(a: int, b: int) -> np.ndarray:
-        step, none = orders[a] - orders[b], np.zeros((k, k))
-        return scaled(np.stack([s.K.get(step, none) + 1j * nu[i, b] * s.D.get(step, none)
-                                for i, s in enumerate(systems)]))  # fmt: skip
+        rows = [np.concatenate([coupling(i, j) for j in numbers[links[b]]], axis=2)
+                for i in numbers[links[a]]]  # fmt: skip
+        return np.concatenate(rows, axis=1)
 
-    Z = [scaled(X) for X in Z]
-    g = [scale * np.stack([load.get(n, np.zeros(k)) for load in loads]) + 0j for n in orders]
+    every = np.stack([[load.get(n, np.zeros(k)) for n in orders] for load in loads]) + 0j
+    every = scale[:, None, :] * every
+    Z = [between(a, a) for a in range(len(links))]
+    g = [every[:, link].reshape(count, -1) for link in links]
     towards = {}
-    for chain, step in ((range(middle), 1), (range(h - 1, middle, -1), -1)):
+    for chain, step in ((range(middle), 1), (range(len(links) - 1, middle, -1), -1)):
         for a in chain:
             right = np.concatenate([between(a, a + step), g[a][:, :, None]], axis=2)
             solved = _solved_all(Z[a], right)
-            towards[a], own = solved[:, :, :k], solved[:, :, k]
+            towards[a], own = solved[:, :, :-1], solved[:, :, -1]
             back = between(a + step, a)
             Z[a + step] = Z[a + step] - back @ towards[a]
             g[a + step] = g[a + step] - np.einsum("sij,sj->si", back, own)
             g[a] = own
-    X = np.zeros((count, h, k), dtype=complex)
-    X[:, middle] = solve(Z[middle], g[middle])
-    for chain, step in ((range(middle - 1, -1, -1), 1), (range(middle + 1, h), -1)):
+    X = {middle: solve(Z[middle], g[middle], links[middle])}
+    for chain, step in ((range(middle - 1, -1, -1), 1), (range(middle + 1, len(links)), -1)):
         for a in chain:
-            X[:, a] = g[a] - np.einsum("sij,sj->si", towards[a], X[:, a + step])
-    return X * scale[:, None, :]
+            X[a] = g[a] - np.einsum("sij,sj->si", towards[a], X[a + step])
+    found = np.concatenate([X[a] for a in range(len(links))], axis=1)
+    return found.reshape(count, h, k) * scale[:, None, :]
 
 
 def _solved_all(A: np.ndarray, b: np.ndarray) -> np.ndarray:

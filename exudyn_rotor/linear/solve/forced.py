@@ -13,13 +13,13 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.linear.equations import PeriodicSystem
-from exudyn_rotor.linear.solve.chain import chained, is_chain
+from exudyn_rotor.linear.solve.chain import chained, reach
 
 Harmonics = Mapping[int, np.ndarray]
 _STILL = 1e-12  # share of ω and Ω: a frequency that is zero but for rounding
 _FREE = 1e-12  # share of the largest stiffness: a coordinate that nothing resists
 _NONE = 1e-14  # of matrices with diagonals of one: a motion that nothing resists
-_FAR = 1e6  # of matrices with diagonals of one: size of a solution that nothing free is in
+_FAR = 1e6  # of matrices with diagonals of one: size of a solution without free motions
 _LOADED = 1e-6  # share of a load on a free motion that is the rounding of a mesh
 _SINGULAR = 1e-13  # reciprocal condition of equations without a solution
 _MOST = 12  # harmonics that are added on either side, in steps of the coefficients
@@ -53,9 +53,9 @@ def forced_motions(
         Largest relative change of a motion by further harmonics.
     """
     if held is not None:
-        systems = _each(systems, lambda system: system.projected(held))
-        loads = [{n: held.T @ F for n, F in each.items()} for each in loads]
-        driven = None
+        momenta, driven = la.null_space(held.T), None
+        systems = _each(systems, lambda system: _without(system, momenta))
+        loads = [{n: F - momenta @ (momenta.T @ F) for n, F in each.items()} for each in loads]
     found: list[dict] = [{} for _ in systems]
     constant = [i for i, system in enumerate(systems) if system.is_constant]
     if constant:
@@ -66,19 +66,30 @@ def forced_motions(
     for i, system in enumerate(systems):
         if not system.is_constant:
             acting = tuple(sorted(n for n, F in loads[i].items() if np.any(F)))
-            groups.setdefault((system.step, acting, is_chain(system)), []).append(i)
-    for (step, acting, chain), members in groups.items():
+            groups.setdefault((system.step, acting, reach(system)), []).append(i)
+    for (step, acting, _), members in groups.items():
         for n in {n % step: n for n in acting}:  # harmonics that are coupled
             together = [m for m in acting if m % step == n]
             given = [[each[i] for i in members] for each in (systems, loads, rates)]
-            motions = _periodic(*given, together, chain, driven, tolerance)
+            motions = _periodic(*given, together, driven, tolerance)
             for i, motion in zip(members, motions, strict=True):
                 found[i] |= motion
         for i in members:
             found[i] = found[i] or {n: 0j * F for n, F in loads[i].items()}
-    if held is not None:
-        found = [{n: held @ X for n, X in each.items()} for each in found]
     return found
+
+
+def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
+    """Return a system in which motions with momenta (k, r), orthonormal, are stiff by themselves."""
+
+    def apart(X: np.ndarray) -> np.ndarray:
+        X = X - momenta @ (momenta.T @ X)
+        return X - (X @ momenta) @ momenta.T
+
+    D, K = ({n: apart(X) for n, X in terms.items()} for terms in (system.D, system.K))
+    K[0] = K[0] + np.abs(K[0]).max() * momenta @ momenta.T
+    H = [(n, apart(X)) for n, X in system.H]
+    return PeriodicSystem(system.speed, apart(system.M), D, K, H)
 
 
 def _each(systems: Sequence[PeriodicSystem], change) -> list[PeriodicSystem]:
@@ -101,7 +112,7 @@ def _constant(
         return found
     at_rest = {id(s): s.matrices() for s in systems}
     nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
-    F = np.array([loads[i][n] for i, n in places], dtype=complex)
+    F = np.array([loads[i][n] for i, n in places])
     matrices = np.stack(
         [_dynamic(systems[i], at_rest[id(systems[i])], v) for (i, _), v in zip(places, nu)]
     )
@@ -119,7 +130,7 @@ def _rate(rate: float, order: int, speed: float) -> float:
 def _dynamic(system: PeriodicSystem, matrices: tuple, nu: float) -> np.ndarray:
     """Return ``K + iνD − ν²M`` with structural damping."""
     M, D, K = matrices
-    Z = K + 1j * nu * D - nu**2 * M
+    Z = K if nu == 0.0 else K + 1j * nu * D - nu**2 * M
     for n, H in system.H:
         Z = Z + 1j * np.sign(_rate(nu, -n, system.speed)) * H
     return Z
@@ -143,9 +154,39 @@ def _solved(
         large = np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
         Y[large | ~np.isfinite(off)] = np.nan
         X[moving] = scale * Y
-    for i in np.flatnonzero(constant):
+    still = np.flatnonzero(constant)
+    if driven is None or not driven.shape[1]:
+        still = still[~_plainly(matrices, loads, still, X)]
+    for i in still:
         X[i] = _static(matrices[i], loads[i], driven)
     return X
+
+
+def _plainly(A: np.ndarray, loads: np.ndarray, still: np.ndarray, X: np.ndarray) -> np.ndarray:
+    """Put solutions under constant loads into X where no motion is free; return where that is."""
+    done = np.zeros(len(still), dtype=bool)
+    if not still.size:
+        return done
+    A, b = A[still], loads[still]
+    diagonal = np.abs(A).max(axis=2)
+    alone = diagonal <= _FREE * diagonal.max(axis=1, keepdims=True)
+    scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
+    b = scale * b
+    unloaded = np.abs(b * alone).max(axis=1) <= _LOADED * np.abs(b).max(axis=1)
+    held = np.flatnonzero(~np.any(alone, axis=0))
+    alike = unloaded & (alone.sum(axis=1) == alone.shape[1] - len(held))
+    chosen = np.flatnonzero(alike)
+    A = A[np.ix_(chosen, held, held)] * scale[chosen][:, held, None] * scale[chosen][:, None, held]
+    try:
+        Y = np.linalg.solve(A, b[np.ix_(chosen, held)][..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return done
+    done[chosen] = np.linalg.norm(Y, axis=1) <= _FAR * np.linalg.norm(b[chosen], axis=1)
+    small = chosen[done[chosen]]
+    X[np.ix_(still[small], held)] = (scale[chosen][:, held] * Y)[done[chosen]]
+    others = np.setdiff1d(np.arange(X.shape[1]), held)
+    X[np.ix_(still[small], others)] = 0.0
+    return done
 
 
 def _one(A: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -164,11 +205,6 @@ def _static(A: np.ndarray, load: np.ndarray, driven: np.ndarray | None) -> np.nd
     alone = diagonal <= _FREE * diagonal.max(initial=0.0)
     scale = 1.0 / np.sqrt(np.where(alone, 1.0, diagonal))
     scaled, b = scale[:, None] * A * scale, scale * load
-    if np.linalg.norm(b[alone]) <= _LOADED * np.linalg.norm(b):
-        x = np.zeros(len(load), dtype=complex)
-        x[~alone] = _one(scaled[np.ix_(~alone, ~alone)], b[~alone])
-        if np.linalg.norm(x) <= _FAR * np.linalg.norm(b):  # nothing else is nearly free
-            return scale * x
     scaled[alone] = scaled[:, alone] = 0.0
     U, values, Vh = np.linalg.svd(scaled)
     free = values <= _NONE * values.max(initial=0.0)
@@ -183,7 +219,6 @@ def _periodic(
     loads: list[Harmonics],
     rates: list[float],
     acting: list[int],
-    chain: bool,
     driven: np.ndarray | None,
     tolerance: float,
 ) -> list[dict[int, np.ndarray]]:
@@ -191,22 +226,19 @@ def _periodic(
 
     Of systems with one step, under the coupled harmonics `acting` of the loads.
     """
-    step, found = systems[0].step, [{} for _ in systems]
+    step, far, found = systems[0].step, reach(systems[0]), [{} for _ in systems]
     loads = [{n: load[n] for n in acting} for load in loads]
     left = np.arange(len(systems))
     last = None
     for more in range(2, _MOST):
-        orders = range(acting[0] - more * step, acting[-1] + more * step + 1, step)
+        most = more * far * step
+        orders = range(acting[0] - most, acting[-1] + most + 1, step)
         given = [[each[i] for i in left] for each in (systems, loads, rates)]
-        if chain:
-            X = _in_chain(*given, orders, driven)
-        else:
-            motions = [_coupled(*one, np.array(orders), driven) for one in zip(*given, strict=True)]
-            X = np.array([[motion[n] for n in orders] for motion in motions])
+        X = _in_chain(*given, orders, driven)
         size = np.abs(X).max(axis=(1, 2))
         done = ~np.isfinite(size)
         if last is not None:
-            change = np.abs(X - np.pad(last, ((0, 0), (1, 1), (0, 0)))).max(axis=(1, 2))
+            change = np.abs(X - np.pad(last, ((0, 0), (far, far), (0, 0)))).max(axis=(1, 2))
             done |= change <= tolerance * size
         for row in np.flatnonzero(done):
             found[left[row]] = dict(zip(orders, X[row], strict=True))
@@ -238,37 +270,21 @@ def _in_chain(
     for place in set(places):  # where a constant harmonic stands
         few = [i for i, one in enumerate(places) if one == place]
         given = [[each[i] for i in few] for each in (systems, loads)]
-        constant = np.full(len(few), bool(place))
 
-        def middle(A: np.ndarray, b: np.ndarray, constant: np.ndarray = constant) -> np.ndarray:
-            return _solved(A, b, constant, driven)
+        def middle(
+            A: np.ndarray, b: np.ndarray, link: slice, place: tuple = place, few: list = few
+        ) -> np.ndarray:
+            momenta = driven
+            if place and driven is not None:
+                momenta = np.zeros((link.stop - link.start, *driven.shape))
+                momenta[place[0] - link.start] = driven
+                momenta = momenta.reshape(-1, driven.shape[1])
+            return _solved(A, b, np.full(len(few), bool(place)), momenta)
 
         X[few] = chained(
             *given, orders, nu[few], lambda i, a, few=few: stiffness(few[i], a), middle
         )
     return X
-
-
-def _coupled(
-    system: PeriodicSystem,
-    loads: Harmonics,
-    rate: float,
-    orders: np.ndarray,
-    driven: np.ndarray | None,
-) -> dict[int, np.ndarray]:
-    """Return the harmonics that are coupled, from one matrix."""
-    h, k = len(orders), system.size
-    A, nu = coupled_stiffness(system, rate, orders)
-    F = np.array([loads.get(int(m), np.zeros(k)) for m in orders], dtype=complex)
-    constant = 0.0 in nu
-    momenta = None
-    if constant and driven is not None and driven.shape[1]:
-        momenta = np.zeros((h, k, driven.shape[1]))
-        momenta[nu.index(0.0)] = driven
-        momenta = momenta.reshape(h * k, -1)
-    given = A[None], F.reshape(1, -1)
-    X = _solved(*given, np.array([constant]), momenta)[0].reshape(h, k)
-    return {int(n): x for n, x in zip(orders, X, strict=True)}
 
 
 def coupled_stiffness(

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_response import rings
+from forced_models import rings
 
 from exudyn_rotor import (
     HarmonicForce,
