@@ -303,7 +303,7 @@ PLACES = {
         second_forward_mode_that_is_unstable_first, UserWarning, "another mode"),
     "linear/modal/basis_error.py:warn": (
         campbell_with_one_mode, UserWarning, "errs by about"),
-    "linear/response/basis_check.py:warn_of_basis": (
+    "linear/response/steady_response.py:_with_warning": (
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/over.py:systems_at": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
