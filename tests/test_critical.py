@@ -3,8 +3,8 @@
 import exudyn
 import numpy as np
 import pytest
+from bodies import BODIES, MASS, SHAFT, moments, point_mass, rings
 from models import centered_disc, disc_rotor, two_masses
-from test_campbell_frames import BODIES, MASS, SHAFT, moments, point_mass, rings
 from test_scene_linear import BEARING, on_springs
 from test_scene_linear import rings as scene_rotor
 

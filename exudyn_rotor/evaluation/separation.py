@@ -6,6 +6,7 @@ SP6.8.2.10 (separation margins); API 617 asks for the same.
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -315,8 +316,7 @@ def _flanks(curve: np.ndarray, rows: np.ndarray) -> list[slice]:
     if not len(rows):
         return []
     valleys = [
-        first + int(np.argmin(curve[first:last]))
-        for first, last in zip(rows[:-1], rows[1:], strict=True)
+        first + int(np.argmin(curve[first:last])) for first, last in itertools.pairwise(rows)
     ]
     return [slice(a, b + 1) for a, b in zip([0, *valleys], [*valleys, len(curve) - 1], strict=True)]
 

@@ -102,9 +102,7 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
     """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
     largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
     kept = {
-        n: X
-        for n, X in terms.items()
-        if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
+        n: X for n, X in terms.items() if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
     }
     if 0 not in kept:
         kept[0] = np.zeros_like(next(iter(terms.values())).real)

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from bodies import SHAFT, point_mass, rings
 from models import disc_rotor
-from test_campbell_frames import SHAFT, point_mass, rings
 
 from exudyn_rotor import SolidRotor, Support, campbell
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from forced_models import C, EXACT, K, MASS, SPEEDS, TILT_C, TILT_K, close, held, oscillator, rings
+from forced_models import MASS, SPEEDS, TILT_C, TILT_K, C, K, close, held, oscillator, rings
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -173,9 +173,11 @@ def test_weight_of_a_shaft_on_uneven_supports_is_whole():
 
     def moved(row):
         rates = response.frequencies[row] + response.orders * 90.0
-        return (response.motion[row, 0, :, :2] * np.exp(1j * np.outer(time, rates))[..., None]).sum(
-            axis=1
-        ).real
+        return (
+            (response.motion[row, 0, :, :2] * np.exp(1j * np.outer(time, rates))[..., None])
+            .sum(axis=1)
+            .real
+        )
 
     np.testing.assert_allclose(moved(0), moved(1), rtol=0.0, atol=1e-6 * np.abs(moved(0)).max())
 

@@ -55,7 +55,9 @@ def test_a_valley_above_half_power_is_the_end_of_a_flank():
         np.testing.assert_allclose(found.peaks, [100.3, 114.7], atol=0.3)
         outer = found.half_power[0, 0], found.half_power[1, 1]
         assert np.mean(outer) == pytest.approx(107.5, abs=0.05)
-        assert found.amplification == pytest.approx(found.peaks / (2 * (found.peaks - outer) * [1, -1]))
+        assert found.amplification == pytest.approx(
+            found.peaks / (2 * (found.peaks - outer) * [1, -1])
+        )
         assert "before the valley to the next peak" in found.table()
 
 

@@ -150,9 +150,7 @@ def campbell(
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    motions = motions_over(
-        model, values, tolerance=tolerance, progress=progress, label="Campbell"
-    )
+    motions = motions_over(model, values, tolerance=tolerance, progress=progress, label="Campbell")
     content = Content.of(model)
     named = [None if each is None else content.named(each) for each in motions]
     if model.free_motions:

@@ -107,6 +107,10 @@ class CriticalSpeeds(Result):
             "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
         }
 
+    @property
+    def splits(self) -> None:
+        """None: two planes of an averaged mesh have one critical speed."""
+
     def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds as lines of text.
 

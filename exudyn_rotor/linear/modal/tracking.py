@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -47,7 +48,7 @@ def track(
     count = len(named[known[0]].inertial)
     columns = np.tile(np.arange(count), (len(named), 1))
     continued = np.ones(columns.shape, dtype=bool)
-    for before, after in zip(known[:-1], known[1:], strict=True):
+    for before, after in itertools.pairwise(known):
         matched, same = _step(named[before], named[after], speeds[after] - speeds[before], M)
         last = columns[before]
         columns[after], continued[after] = matched[last], same[last]
@@ -75,7 +76,9 @@ def _step(
     values = after.motions.values
     alike = np.abs(values[:, None] - values) <= _SAME * np.abs(values) + after.motions.bound
     together = np.sum(likeness[:, None, :] * alike[None], axis=2)[rows, matched]
-    same = (together >= _LEAST_LIKENESS) & (jump[rows, matched] <= _MOST_CHANGES * allowed[rows, matched])
+    same = (together >= _LEAST_LIKENESS) & (
+        jump[rows, matched] <= _MOST_CHANGES * allowed[rows, matched]
+    )
     resting = (np.abs(before.motions.values) == 0.0) & (np.abs(values[matched]) == 0.0)
     return matched, same | resting
 
@@ -88,9 +91,7 @@ def _likeness(before: Motions, after: Motions, M: np.ndarray) -> np.ndarray:
     norms = [_norms(each, M) for each in (before, after)]
     best = np.zeros((len(before.values), len(after.values)))
     for second in _forms(after):
-        product = sum(
-            first[m].conj().T @ M @ X for m, X in second.items() if m in first
-        )
+        product = sum(first[m].conj().T @ M @ X for m, X in second.items() if m in first)
         if np.ndim(product):
             sizes = np.maximum(np.outer(*norms), 1e-300)
             best = np.maximum(best, np.abs(np.nan_to_num(product)) ** 2 / sizes)

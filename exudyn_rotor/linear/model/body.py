@@ -345,7 +345,9 @@ def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody
     loads = None if given.participation is None else {0: -given.participation}
     labels = tuple(f"foundation, {number}" for number in range(1, given.size + 1))
     matrices = given.mass, (given.damping,), (given.stiffness,)
-    return StandingBody("foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points))
+    return StandingBody(
+        "foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points)
+    )
 
 
 def largest_radius(bodies: tuple[Body, ...]) -> float:

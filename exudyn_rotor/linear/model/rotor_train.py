@@ -100,7 +100,7 @@ class RotorTrain:
             for name, interface in link.ends:
                 _known(name, rotors, "links")
                 _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
-            link.check_ratios(ratios)
+            link._check_ratios(ratios)
         positions = {}
         for name, given in checks.mapping(self.positions, "positions", "array_like").items():
             _known(name, rotors, "positions")

@@ -179,7 +179,7 @@ def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.nda
     waves along the axis, which the points do not resolve.
     """
     points, motion = rotor_points(rotor, _POINTS)
-    orders, amplitudes, _ = wave_amplitudes(points, motion)
+    _orders, amplitudes, _ = wave_amplitudes(points, motion)
     weight = np.sqrt(len(points) / max(len(rotor.interfaces), 1))
     for name, place in rotor.interfaces.items():
         U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)

@@ -53,7 +53,9 @@ def basis_errors(
     at = looked_at(sizes)
     better = solve(model.richer, values[at])
     for row, index in enumerate(at):
-        given, finer = ({n: a[i] for n, a in m.items()} for m, i in ((motions, index), (better, row)))
+        given, finer = (
+            {n: a[i] for n, a in m.items()} for m, i in ((motions, index), (better, row))
+        )
         errors[index] = motion_error(given, finer)
     return errors
 

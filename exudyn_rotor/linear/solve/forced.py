@@ -114,7 +114,10 @@ def _constant(
     nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
     F = np.array([loads[i][n] for i, n in places])
     matrices = np.stack(
-        [_dynamic(systems[i], at_rest[id(systems[i])], v) for (i, _), v in zip(places, nu)]
+        [
+            _dynamic(systems[i], at_rest[id(systems[i])], v)
+            for (i, _), v in zip(places, nu, strict=False)
+        ]
     )
     X = _solved(matrices, F, nu == 0.0, driven)
     for (i, n), x in zip(places, X, strict=True):
@@ -151,7 +154,9 @@ def _solved(
         except np.linalg.LinAlgError:
             Y = np.array([_one(a, b) for a, b in zip(A, scale * loads[moving], strict=True)])
         off = np.linalg.norm(np.einsum("sij,sj->si", A, Y) - scale * loads[moving], axis=1)
-        large = np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
+        large = (
+            np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
+        )
         Y[large | ~np.isfinite(off)] = np.nan
         X[moving] = scale * Y
     still = np.flatnonzero(constant)

@@ -40,9 +40,7 @@ def states_of(system: PeriodicSystem) -> States:
     omega = np.maximum(omega, max(_LEAST * omega.max(initial=0.0), 1e-3))
     A = {}
     for n in sorted({*D, *K}):
-        damping, stiffness = (
-            V.T @ X[n] @ V if n in X else np.zeros((k, k)) for X in (D, K)
-        )
+        damping, stiffness = (V.T @ X[n] @ V if n in X else np.zeros((k, k)) for X in (D, K))
         if n == 0:
             stiffness = V.T @ (K[0] - symmetric) @ V + np.diag(squares)
         A[n] = np.zeros((2 * k, 2 * k), dtype=stiffness.dtype if n == 0 else complex)

@@ -28,7 +28,11 @@ _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in
 
 
 def motion_at_rest(
-    scene: SceneCoordinates, probe: Probe, tolerance: float, angle: float, begin: Motion | None = None
+    scene: SceneCoordinates,
+    probe: Probe,
+    tolerance: float,
+    angle: float,
+    begin: Motion | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
 

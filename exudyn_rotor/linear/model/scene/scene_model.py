@@ -54,9 +54,7 @@ class SceneModel(LinearModel):
     def of(cls, scene: LinearScene, axes: str) -> SceneModel:
         """Return the model of a scene."""
         source = scene.body.selection.source
-        return cls(
-            {"": source}, {"": 1.0}, {"": ()}, (), None, scene.stiffening, axes, scene=scene
-        )
+        return cls({"": source}, {"": 1.0}, {"": ()}, (), None, scene.stiffening, axes, scene=scene)
 
     # ------------------------------------------------------------------ what it consists of
 
@@ -184,7 +182,9 @@ class SceneModel(LinearModel):
         elements = film_elements(self.scene, journals, speed, assembly, self.is_undamped)
         system = replace(assembly, elements=elements).system(speed)
         W = _Seen.of(self, assembly.bodies[0])
-        samples = zip(*(W.acting(point.rest, speed, self.is_undamped) for point in points))
+        samples = zip(
+            *(W.acting(point.rest, speed, self.is_undamped) for point in points), strict=False
+        )
         M, D, K = (np.array(each) for each in samples)
         k = self._running_size
         own = assembly.M.copy()
