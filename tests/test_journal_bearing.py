@@ -365,7 +365,7 @@ def test_analyses_of_a_scene_whose_films_carry_nothing_at_rest():
     models = linear_model(rotor, supports=bearings), linear_model(body.mbs, body=body)
     held = [np.linalg.eigvalsh(model.undamped().at(300.0).K[0]) for model in models]
     np.testing.assert_allclose(*(each[-4:] for each in held), rtol=1e-6)  # that of critical speeds
-    with pytest.raises(ValueError, match="max_speed: .* needs the largest speed"):
+    with pytest.raises(ValueError, match=r"max_speed: .* needs the largest speed"):
         critical_speeds(models[1], accuracy=None)
     modes = [campbell(one, [300.0, 500.0], accuracy=None).frequencies_inertial for one in models]
     lateral = [np.sort(each[each > 1.0]) for each in modes]

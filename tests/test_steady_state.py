@@ -419,7 +419,7 @@ def test_a_start_of_another_scene_is_refused(reduced):
     other, another = build(reduced, 50.0, "free")
     other.Assemble()
     start = steady_state(another)
-    with pytest.raises(ValueError, match="start: has .* it is of another scene"):
+    with pytest.raises(ValueError, match=r"start: has .* it is of another scene"):
         steady_state(body, start=start)
     with pytest.raises(TypeError, match="start: needs"):
         steady_state(body, start=1.0)

@@ -34,7 +34,8 @@ class Campbell(Result):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
     Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
-    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is the same mode at all speeds.
+    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is
+    the same mode at all speeds.
 
     Attributes
     ----------

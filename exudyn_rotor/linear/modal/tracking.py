@@ -11,8 +11,8 @@ from scipy.optimize import linear_sum_assignment
 from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, Named
 from exudyn_rotor.linear.solve.motions import Motions
 
-# how strongly jumps of the frequency seen from outside and of the growth, and another sense of whirl,
-# count against a likeness of shapes
+# how strongly jumps of the frequency seen from outside and of the growth, and another sense of
+# whirl, count against a likeness of shapes
 _JUMP_WEIGHT, _GROWTH_WEIGHT, _SENSE_WEIGHT = 0.5, 0.25, 0.25
 _STEEPEST = 2.0  # change of a frequency over that of the speed: a thin disc's forward mode
 _SPREAD = 1e-2  # share of a frequency by which it may change in any step

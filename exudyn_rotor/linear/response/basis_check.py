@@ -1,4 +1,4 @@
-"""Error of a response by the basis of reduced rotors: the difference to the richer basis's response.
+"""Error of a response by the basis of reduced rotors: its difference to that of a richer basis.
 
 The reduced rotor carries the shapes that its basis lacks first. Its response with these is solved
 for, not estimated from the other, because near a resonance the difference is not small. Mesh nodes

@@ -80,7 +80,7 @@ def forced_motions(
 
 
 def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
-    """Return a system in which motions with momenta (k, r), orthonormal, are stiff by themselves."""
+    """Return a system in which motions with orthonormal momenta (k, r) are stiff alone."""
 
     def apart(X: np.ndarray) -> np.ndarray:
         X = X - momenta @ (momenta.T @ X)

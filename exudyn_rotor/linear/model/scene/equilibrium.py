@@ -1,4 +1,4 @@
-"""Equilibria of a scene at rest, at all angles of the rotor, in contact with stops and elements of bearings, too.
+"""Equilibria of a scene at rest, at all angles of the rotor, also in contact with stops.
 
 By Newton's method with a line search. What nothing holds yet is pressed by its load against a
 softness that lets it go farther in every step, until something holds it. Friction follows the

@@ -260,7 +260,7 @@ class _Search:
     def _newton(
         self, Y: np.ndarray, wanted: np.ndarray | float, most: int
     ) -> tuple[list[LinearPoint] | None, np.ndarray]:
-        """Return linearised scene and harmonics whose residual is the one wanted, beginning at Y."""
+        """Return linearised scene and harmonics with the residual wanted, beginning at Y."""
         change, before, shortened = np.zeros_like(Y), np.inf, False
         iteration = -1
         while (iteration := iteration + 1) < most:
