@@ -1,7 +1,5 @@
 """Responses of several rotors, and two of them in a scene: against closed forms."""
 
-from dataclasses import replace
-
 import exudyn
 import numpy as np
 import pytest
@@ -15,7 +13,6 @@ from train_models import (
     at,
     by_hand,
     rigid,
-    rings,
     two_discs,
 )
 
@@ -64,16 +61,6 @@ def test_loads_that_turn_with_another_rotor_are_refused():
     M, D, K = by_hand(1.7, 50.0)
     x = la.solve(K + 100j * D - 1e4 * M, at(1, SECOND[1]).T @ [1.0, 0.0])
     np.testing.assert_allclose(still.phasor("A:a"), (at(0, -FIRST[1]) @ x)[0], rtol=1e-8)
-
-
-@pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis) is")
-def test_places_of_an_uneven_rotor_are_refused_with_what_to_do():
-    even, flat = two_discs(2.0), rings(*SECOND).add_point_mass([SECOND[0], 0.0, 0.0], 0.5)
-    train = replace(even, rotors={"A": even.rotors["A"], "B": flat.reduce(0)})
-    given = (train, [100.0], Unbalance("A:b", 1e-4))
-    with pytest.raises(ValueError, match=r"turns with 2 times .*relative_to\('B'\), or name other"):
-        unbalance_response(*given, own=False)
-    assert unbalance_response(*given, own=False, at="A:b").places == ("A:b",)
 
 
 def test_inter_shaft_bearings_in_a_scene():

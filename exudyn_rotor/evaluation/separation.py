@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -140,8 +141,8 @@ class SeparationMargins(Result):
             lines.append("  no peak")
         if np.any(np.isnan(self.half_power)):
             lines.append(
-                "nan: the size does not fall to 0.707 of the peak before the valley to the next peak "
-                "or the end; AF is by the other side, or not known"
+                "nan: the size does not fall to 0.707 of the peak before the valley to the next "
+                "peak or the end; AF is by the other side, or not known"
             )
         return "\n".join(lines)
 
@@ -314,10 +315,7 @@ def _flanks(curve: np.ndarray, rows: np.ndarray) -> list[slice]:
     """Return the section of a curve that belongs to each peak: from valley to valley."""
     if not len(rows):
         return []
-    valleys = [
-        first + int(np.argmin(curve[first:last]))
-        for first, last in zip(rows[:-1], rows[1:], strict=True)
-    ]
+    valleys = [first + int(np.argmin(curve[first:last])) for first, last in pairwise(rows)]
     return [slice(a, b + 1) for a, b in zip([0, *valleys], [*valleys, len(curve) - 1], strict=True)]
 
 

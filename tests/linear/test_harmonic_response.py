@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from forced_models import C, EXACT, K, MASS, SPEEDS, TILT_C, TILT_K, close, held, oscillator, rings
+from forced_models import MASS, SPEEDS, TILT_C, TILT_K, C, K, close, held, oscillator, rings
 from point_rotors import ring_rotor
 
 from exudyn_rotor import (
@@ -173,9 +173,11 @@ def test_weight_of_a_shaft_on_uneven_supports_is_whole():
 
     def moved(row):
         rates = response.frequencies[row] + response.orders * 90.0
-        return (response.motion[row, 0, :, :2] * np.exp(1j * np.outer(time, rates))[..., None]).sum(
-            axis=1
-        ).real
+        return (
+            (response.motion[row, 0, :, :2] * np.exp(1j * np.outer(time, rates))[..., None])
+            .sum(axis=1)
+            .real
+        )
 
     np.testing.assert_allclose(moved(0), moved(1), rtol=0.0, atol=1e-6 * np.abs(moved(0)).max())
 
@@ -242,3 +244,13 @@ def test_tables_and_files_with_rows_that_are_no_numbers(tmp_path):
 def test_bad_frames_of_a_moment_at_a_node():
     with pytest.raises(ValueError, match="a mesh node has no rotation"):
         harmonic_response(rings(), [1.0], HarmonicForce(2, (0, 0), (1, 0)), supports=held())
+
+
+def test_a_point_without_a_spin_is_loaded_at_the_frequency_of_its_spin():
+    """On uneven supports a harmonic is constant in the rotor: no spin is there to be held."""
+    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], "z")
+    rotor = point.with_interface("at", [0])
+    supports = [Support("at", np.diag([1e4, 2e4]), 5.0)]
+    force = HarmonicForce("at", (1.0, 0.0))
+    found = harmonic_response(rotor, [50.0], force, speed=50.0, supports=supports)
+    assert found.phasor()[0] == pytest.approx(1.0 / (1e4 - 2500.0 + 250.0j))

@@ -55,7 +55,9 @@ def test_a_valley_above_half_power_is_the_end_of_a_flank():
         np.testing.assert_allclose(found.peaks, [100.3, 114.7], atol=0.3)
         outer = found.half_power[0, 0], found.half_power[1, 1]
         assert np.mean(outer) == pytest.approx(107.5, abs=0.05)
-        assert found.amplification == pytest.approx(found.peaks / (2 * (found.peaks - outer) * [1, -1]))
+        assert found.amplification == pytest.approx(
+            found.peaks / (2 * (found.peaks - outer) * [1, -1])
+        )
         assert "before the valley to the next peak" in found.table()
 
 
@@ -71,7 +73,7 @@ def test_ripple_on_a_flank_does_not_end_it():
 def test_coarse_peaks_are_told_once():
     speeds = np.linspace(0.0, 300.0, 31)
     size = 1 / np.hypot(1, (speeds - 102) / 2) + 1 / np.hypot(1, (speeds - 203) / 2)
-    with pytest.warns(UserWarning) as told:
+    with pytest.warns(UserWarning, match="too far apart") as told:
         separation_margins(sized(speeds, size), (150.0, 160.0))
     assert [str(one.message).split(";")[0] for one in told] == [
         "a: the points around the peak at 100 rad/s (and 1 more) are too far apart to give its "

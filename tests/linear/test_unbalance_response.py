@@ -4,15 +4,15 @@ import exudyn
 import numpy as np
 import pytest
 from forced_models import (
-    C,
     EXACT,
-    K,
     LENGTH,
     MASS,
     RADIUS,
     SPEEDS,
     TILT_C,
     TILT_K,
+    C,
+    K,
     close,
     held,
     oscillator,
@@ -227,7 +227,9 @@ def test_nothing_of_an_uneven_rotor_is_averaged(supports):
 def test_tables_that_end_early_give_what_they_cover():
     table = [Support("mid", ([0.0, 450.0], [K, K]), C, TILT_K, TILT_C)]
     given = {"own": False, "supports": table, "at": "mid"}
-    with pytest.warns(UserWarning, match="no steady motion at 460, 480, .* rad/s, NaN there") as told:
+    with pytest.warns(
+        UserWarning, match=r"no steady motion at 460, 480, .* rad/s, NaN there"
+    ) as told:
         response = unbalance_response(rings(), SPEEDS, Unbalance("mid", 1e-4), **given)
     assert len(told) == 1
     known = SPEEDS <= 450.0
@@ -242,7 +244,7 @@ def test_tables_that_end_early_give_what_they_cover():
 def test_resonance_without_damping_is_not_a_number():
     supports = [Support("mid", K, 0.0, TILT_K)]
     given = (rings(), [100.0, 200.0], Unbalance("mid", 1e-4))
-    with pytest.warns(UserWarning, match="at 200 rad/s, NaN there: .* nothing damps a resonance"):
+    with pytest.warns(UserWarning, match=r"at 200 rad/s, NaN there: .* nothing damps a resonance"):
         response = unbalance_response(*given, own=False, supports=supports, at="mid")
     assert np.isfinite(response.phasor()).tolist() == [True, False]
 
@@ -250,7 +252,10 @@ def test_resonance_without_damping_is_not_a_number():
 def test_own_eccentricity_is_told_in_gram_millimetres():
     rotor = rings(point_mass=0.01)  # 2 x 10 g at 100 mm
     found = unbalance_response(rotor, [100.0], Unbalance("mid", 1e-3), supports=held())
-    assert found.loads[1] == "eccentricity of the rotor, with its mesh: 2000 g mm, 2 of the amount given"
+    assert (
+        found.loads[1]
+        == "eccentricity of the rotor, with its mesh: 2000 g mm, 2 of the amount given"
+    )
     alone = unbalance_response(rotor, [100.0], Unbalance("mid", 1e-3), own=False, supports=held())
     assert len(alone.loads) == 1
 
@@ -282,7 +287,9 @@ def test_errors_by_the_basis_are_found_at_peaks_and_ends():
     supports = [Support(name, 2.0, 0.05, 1.0, 0.05) for name in "ab"]
     given = (np.linspace(0.2, 1.2, 41), Unbalance("a", 1e-2))
     options = {"supports": supports, "own": False}
-    with pytest.warns(UserWarning, match="errs by about .* too few for the accuracy of 0.01") as told:
+    with pytest.warns(
+        UserWarning, match="errs by about .* too few for the accuracy of 0.01"
+    ) as told:
         few = unbalance_response(rotor.reduce(6), *given, **options)
     assert len(told) == 1
     known = np.isfinite(few.basis_errors[:, 0])

@@ -213,8 +213,8 @@ def _check_turning(model: LinearModel, point: Place) -> None:
     if point.ratio not in (0.0, 1.0):
         owner, _, _ = point.label.partition(":")
         raise ValueError(
-            f"at: {point.label!r}: turns with {point.ratio:g} times the speed of the analysis; give "
-            f"train.relative_to({owner!r}), over the speed of that rotor"
+            f"at: {point.label!r}: turns with {point.ratio:g} times the speed of the analysis; "
+            f"give train.relative_to({owner!r}), over the speed of that rotor"
         )
 
 

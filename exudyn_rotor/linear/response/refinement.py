@@ -81,9 +81,7 @@ def _turns(phasors: np.ndarray) -> np.ndarray:
     return np.where(known[1:] & known[:-1], turned, 0.0)
 
 
-def resolved_peak(
-    at: np.ndarray, size: np.ndarray, index: int
-) -> tuple[float, float, bool]:
+def resolved_peak(at: np.ndarray, size: np.ndarray, index: int) -> tuple[float, float, bool]:
     """Return place and size of the maximum at a point by its neighbours, and if they are near.
 
     They are not where one of them is below half of the power of the maximum.

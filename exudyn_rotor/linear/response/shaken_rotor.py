@@ -228,4 +228,3 @@ def _follow(moved: np.ndarray) -> bool:
 
 def _orders(seen: Sequence[Terms]) -> set[int]:
     return {n for each in seen for n in each}
-

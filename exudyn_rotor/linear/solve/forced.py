@@ -52,6 +52,8 @@ def forced_motions(
     tolerance : float, optional
         Largest relative change of a motion by further harmonics.
     """
+    if driven is not None and not driven.shape[1]:
+        driven = None
     if held is not None:
         momenta, driven = la.null_space(held.T), None
         systems = _each(systems, lambda system: _without(system, momenta))
@@ -80,7 +82,7 @@ def forced_motions(
 
 
 def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
-    """Return a system in which motions with momenta (k, r), orthonormal, are stiff by themselves."""
+    """Return a system whose motions with momenta (k, r), orthonormal, are stiff by themselves."""
 
     def apart(X: np.ndarray) -> np.ndarray:
         X = X - momenta @ (momenta.T @ X)
@@ -114,7 +116,10 @@ def _constant(
     nu = np.array([_rate(rates[i], n, systems[i].speed) for i, n in places])
     F = np.array([loads[i][n] for i, n in places])
     matrices = np.stack(
-        [_dynamic(systems[i], at_rest[id(systems[i])], v) for (i, _), v in zip(places, nu)]
+        [
+            _dynamic(systems[i], at_rest[id(systems[i])], v)
+            for (i, _), v in zip(places, nu, strict=True)
+        ]
     )
     X = _solved(matrices, F, nu == 0.0, driven)
     for (i, n), x in zip(places, X, strict=True):
@@ -151,7 +156,9 @@ def _solved(
         except np.linalg.LinAlgError:
             Y = np.array([_one(a, b) for a, b in zip(A, scale * loads[moving], strict=True)])
         off = np.linalg.norm(np.einsum("sij,sj->si", A, Y) - scale * loads[moving], axis=1)
-        large = np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
+        large = (
+            np.linalg.norm(Y, axis=1) > np.linalg.norm(scale * loads[moving], axis=1) / _SINGULAR
+        )
         Y[large | ~np.isfinite(off)] = np.nan
         X[moving] = scale * Y
     still = np.flatnonzero(constant)
