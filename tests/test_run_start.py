@@ -263,10 +263,9 @@ def test_responses_that_cannot_start_a_run_are_refused():
     solid = ring_rotor(RADIUS, LENGTH, MASS).add_point_mass([RADIUS, 0.0, LENGTH], 0.002)
     for name, nodes in (("left", range(5)), ("right", range(5, 10))):
         solid = solid.with_interface(name, nodes)
-    for dense in (False, True):
-        full = linear_model(solid, supports=on, dense=dense)
-        with pytest.raises(ValueError, match=r"without component modes|another rotor than that"):
-            unbalance_response(full, [speed]).state(speed, body)
+    full = linear_model(solid, supports=on)
+    with pytest.raises(ValueError, match="another rotor than that"):
+        unbalance_response(full, [speed]).state(speed, body)
     _, faster = scene(reduced, STIFFNESS * np.ones(3), spin=2.0 * speed)
     with pytest.raises(ValueError, match="the prescribed spin starts at"):
         faster.start_from(response.state(speed, faster))

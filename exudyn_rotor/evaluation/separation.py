@@ -6,10 +6,10 @@ SP6.8.2.10 (separation margins); API 617 asks for the same.
 
 from __future__ import annotations
 
-import itertools
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -315,9 +315,7 @@ def _flanks(curve: np.ndarray, rows: np.ndarray) -> list[slice]:
     """Return the section of a curve that belongs to each peak: from valley to valley."""
     if not len(rows):
         return []
-    valleys = [
-        first + int(np.argmin(curve[first:last])) for first, last in itertools.pairwise(rows)
-    ]
+    valleys = [first + int(np.argmin(curve[first:last])) for first, last in pairwise(rows)]
     return [slice(a, b + 1) for a, b in zip([0, *valleys], [*valleys, len(curve) - 1], strict=True)]
 
 

@@ -244,3 +244,13 @@ def test_tables_and_files_with_rows_that_are_no_numbers(tmp_path):
 def test_bad_frames_of_a_moment_at_a_node():
     with pytest.raises(ValueError, match="a mesh node has no rotation"):
         harmonic_response(rings(), [1.0], HarmonicForce(2, (0, 0), (1, 0)), supports=held())
+
+
+def test_a_point_without_a_spin_is_loaded_at_the_frequency_of_its_spin():
+    """On uneven supports a harmonic is constant in the rotor: no spin is there to be held."""
+    point = SolidRotor.from_matrices(np.eye(3), np.zeros((3, 3)), [[0, 0, 0]], "z")
+    rotor = point.with_interface("at", [0])
+    supports = [Support("at", np.diag([1e4, 2e4]), 5.0)]
+    force = HarmonicForce("at", (1.0, 0.0))
+    found = harmonic_response(rotor, [50.0], force, speed=50.0, supports=supports)
+    assert found.phasor()[0] == pytest.approx(1.0 / (1e4 - 2500.0 + 250.0j))

@@ -73,7 +73,7 @@ def test_ripple_on_a_flank_does_not_end_it():
 def test_coarse_peaks_are_told_once():
     speeds = np.linspace(0.0, 300.0, 31)
     size = 1 / np.hypot(1, (speeds - 102) / 2) + 1 / np.hypot(1, (speeds - 203) / 2)
-    with pytest.warns(UserWarning, match="points around the peak") as told:
+    with pytest.warns(UserWarning, match="too far apart") as told:
         separation_margins(sized(speeds, size), (150.0, 160.0))
     assert [str(one.message).split(";")[0] for one in told] == [
         "a: the points around the peak at 100 rad/s (and 1 more) are too far apart to give its "

@@ -228,7 +228,7 @@ def test_tables_that_end_early_give_what_they_cover():
     table = [Support("mid", ([0.0, 450.0], [K, K]), C, TILT_K, TILT_C)]
     given = {"own": False, "supports": table, "at": "mid"}
     with pytest.warns(
-        UserWarning, match="no steady motion at 460, 480, .* rad/s, NaN there"
+        UserWarning, match=r"no steady motion at 460, 480, .* rad/s, NaN there"
     ) as told:
         response = unbalance_response(rings(), SPEEDS, Unbalance("mid", 1e-4), **given)
     assert len(told) == 1
@@ -244,7 +244,7 @@ def test_tables_that_end_early_give_what_they_cover():
 def test_resonance_without_damping_is_not_a_number():
     supports = [Support("mid", K, 0.0, TILT_K)]
     given = (rings(), [100.0, 200.0], Unbalance("mid", 1e-4))
-    with pytest.warns(UserWarning, match="at 200 rad/s, NaN there: .* nothing damps a resonance"):
+    with pytest.warns(UserWarning, match=r"at 200 rad/s, NaN there: .* nothing damps a resonance"):
         response = unbalance_response(*given, own=False, supports=supports, at="mid")
     assert np.isfinite(response.phasor()).tolist() == [True, False]
 

@@ -1,4 +1,4 @@
-"""Error of a response by the basis of reduced rotors: its difference to that of a richer basis.
+"""Error of a response by the basis of reduced rotors: the difference to that of a richer one.
 
 The reduced rotor carries the shapes that its basis lacks first. Its response with these is solved
 for, not estimated from the other, because near a resonance the difference is not small. Mesh nodes
@@ -53,10 +53,8 @@ def basis_errors(
     at = looked_at(sizes)
     better = solve(model.richer, values[at])
     for row, index in enumerate(at):
-        given, finer = (
-            {n: a[i] for n, a in m.items()} for m, i in ((motions, index), (better, row))
-        )
-        errors[index] = motion_error(given, finer)
+        given = {n: a[index] for n, a in motions.items()}
+        errors[index] = motion_error(given, {n: a[row] for n, a in better.items()})
     return errors
 
 

@@ -28,9 +28,8 @@ def draw_bode(
         style = {"ls": line, "color": color, "lw": 1.4, "marker": marker}
         size.plot(over, 1e6 * np.abs(values), label=name, **style)
         phase.plot(over, _phase(values), **style)
-    moves = any(
-        np.any(np.nan_to_num(values)) for values in curves.values()
-    )  # nothing is nowhere on a log scale
+    # nothing is nowhere on a log scale
+    moves = any(np.any(np.nan_to_num(values)) for values in curves.values())
     size.set_yscale("log" if log and moves else "linear")
     size.set_ylabel("amplitude [µm]")
     phase.set_ylabel("phase [deg]")

@@ -35,7 +35,8 @@ _ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
 _KEPT = 512  # steps in a revolution that are kept as matrices
 _HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
 _TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
-_SMALL = 1e-9  # share of the largest motion below which a direction does not count
+_SMALL = 1e-2  # share of a motion across the axis that counts along it
+_ROUNDS = 1e-9  # share of a motion along the axis that is rounding across it
 _BETWEEN = 0.01  # of the largest motion: how far straight lines between the times may be off
 _S = np.sqrt(6.0)
 _STAGES = np.array([(4.0 - _S) / 10.0, (4.0 + _S) / 10.0, 1.0])  # of Radau's method
@@ -106,8 +107,9 @@ class ShakenRotor:
                     "at this speed?"
                 )
             # a free shift along the axis is large beside motions across it: each by its own size
-            sizes = np.abs(motion[..., :3]).max(axis=(0, 1))
-            sizes = np.maximum([sizes[:2].max(), sizes[:2].max(), sizes[2]], _SMALL * sizes.max())
+            along = np.abs(motion[..., 2]).max()
+            across = max(np.abs(motion[..., :2]).max(), _ROUNDS * along)
+            sizes = np.array([across, across, max(along, _SMALL * across)])
             moved = motion[..., :3] / np.where(sizes > 0.0, sizes, 1.0)
             if last is not None and np.abs(moved[::2] - last).max() <= _HALVED * tolerance:
                 strides = [every >> fewer for fewer in range(every.bit_length() - 1)]

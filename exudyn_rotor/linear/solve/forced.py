@@ -52,6 +52,8 @@ def forced_motions(
     tolerance : float, optional
         Largest relative change of a motion by further harmonics.
     """
+    if driven is not None and not driven.shape[1]:
+        driven = None
     if held is not None:
         momenta, driven = la.null_space(held.T), None
         systems = _each(systems, lambda system: _without(system, momenta))
@@ -80,7 +82,7 @@ def forced_motions(
 
 
 def _without(system: PeriodicSystem, momenta: np.ndarray) -> PeriodicSystem:
-    """Return a system in which motions with orthonormal momenta (k, r) are stiff alone."""
+    """Return a system whose motions with momenta (k, r), orthonormal, are stiff by themselves."""
 
     def apart(X: np.ndarray) -> np.ndarray:
         X = X - momenta @ (momenta.T @ X)
@@ -116,7 +118,7 @@ def _constant(
     matrices = np.stack(
         [
             _dynamic(systems[i], at_rest[id(systems[i])], v)
-            for (i, _), v in zip(places, nu, strict=False)
+            for (i, _), v in zip(places, nu, strict=True)
         ]
     )
     X = _solved(matrices, F, nu == 0.0, driven)
