@@ -1,6 +1,5 @@
 """Bad input of linear analyses: refused before anything is computed, by the argument's name."""
 
-import inspect
 import re
 
 import exudyn as exu
@@ -16,22 +15,11 @@ from exudyn_rotor import (
     TorqueCurve,
     Unbalance,
     campbell,
-    critical_speed_map,
-    critical_speeds,
-    harmonic_response,
     permissible_unbalance,
     stability,
     stability_map,
-    stability_threshold,
     unbalance_response,
-    unstable_ranges,
 )
-from exudyn_rotor.bearings.support import (
-    BelowTableError,
-    NoCoefficientsError,
-    OutsideTableError,
-)
-from exudyn_rotor.linear.model import build
 
 ROTOR = (
     ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
@@ -42,16 +30,6 @@ MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
 FORCE = HarmonicForce("left", (1.0, 0.0))
 UNBALANCE = Unbalance("left", 1e-5)
 
-CALLS = {
-    campbell: ([0.0, 10.0],),
-    critical_speeds: (),
-    critical_speed_map: (["left"], [1e6, 1e7]),
-    unbalance_response: ([10.0, 20.0], [UNBALANCE]),
-    harmonic_response: ([10.0, 20.0], [FORCE]),
-    stability: ([0.0, 10.0],),
-    stability_threshold: (0.0, 10.0),
-    unstable_ranges: ([0.0, 10.0],),
-}
 
 NUMBERS = (np.nan, -1.0, "x", None, [0.1], 1j, True, lambda: 1.0)
 WORDS = ("no", 1, None, ["inertial"], {}, np.ones(3))
@@ -108,26 +86,6 @@ def _refused(call, given: dict, name: str, values: tuple) -> list[str]:
         except Exception as error:
             wrong.append(f"{value!r}: {error!r}")
     return wrong
-
-
-def _arguments(call) -> list[str]:
-    names = list(inspect.signature(call).parameters)
-    if names[-1] == "given":
-        names[-1:] = ["supports", "tolerance", "stiffening", "method"]
-    return names
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [(call, name) for call in CALLS for name in _arguments(call)],
-    ids=lambda value: getattr(value, "__name__", value),
-)
-def test_argument_is_refused_by_its_name(call, name, monkeypatch):
-    if name not in ("at", "body"):  # those are looked up in the rotor's equations
-        monkeypatch.setattr(build, "LinearModel", None)
-    given = dict(zip(inspect.signature(call).parameters, (ROTOR, *CALLS[call]), strict=False))
-    values = BAD_FOR_THRESHOLD.get(name) if call is stability_threshold else None
-    assert _refused(call, given | {"supports": SUPPORTS}, name, values or BAD[name]) == []
 
 
 MAKERS = [
@@ -252,31 +210,6 @@ def test_an_undamped_support_keeps_what_stores_energy(kind):
     expected = (1.0 if kind == "matrix" else 2.0) * 0.5 * (K + K.T)
     np.testing.assert_allclose(stiffness, np.kron(np.eye(2), expected))
     assert not damping.any()
-
-
-def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
-    rotor = ROTOR.reduce(0)
-    for table, speed in ((([5.0, 10.0], [1.0, 3.0]), 4.0), (([0.0, 10.0], [1.0, 3.0]), 11.0)):
-        for name in ("stiffness", "damping", "tilt_stiffness", "tilt_damping"):
-            support = Support("left", **{"stiffness": 2.0, name: table})
-            with pytest.raises(ValueError, match=rf"'left': the table of its {name} holds"):
-                campbell(rotor, [speed], supports=[support])
-            extended = Support("left", **{"stiffness": 2.0, name: table}, extrapolate=True)
-            held = Support("left", **{"stiffness": 2.0, name: 1.0 if speed < 5.0 else 3.0})
-            # the sums of both are taken in another order: rounding, of the largest
-            np.testing.assert_allclose(
-                campbell(rotor, [speed], supports=[extended]).frequencies_rotor,
-                campbell(rotor, [speed], supports=[held]).frequencies_rotor,
-                atol=1e-12,
-            )
-            with pytest.raises(BelowTableError if speed < 5.0 else OutsideTableError) as refused:
-                support.check_range(speed)
-            assert isinstance(refused.value, BelowTableError) == (speed < 5.0)
-            assert isinstance(refused.value, NoCoefficientsError)
-    short = [Support("left", ([0.0, 10.0], [1.0, 3.0]))]
-    for call, given in ((critical_speeds, {"max_speed": 40.0}), (stability, {"speeds": [40.0]})):
-        with pytest.raises(ValueError, match="holds 0 to 10 rad/s, not"):
-            call(rotor, supports=short, **given)
 
 
 @pytest.mark.parametrize("small", [True, False], ids=["reduced", "full"])

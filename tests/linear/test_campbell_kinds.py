@@ -32,27 +32,6 @@ def test_overdamped_motions_stand_behind_the_others():
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
 
 
-@pytest.mark.parametrize("speed", [0.0])
-def test_slow_and_fast_decays_on_strong_dampers(speed):
-    """λ = −k/c and −c/m; dampers that turn, uneven by more than 2 Ω m, tie the fast one to them."""
-    rotor = SolidRotor.from_matrices(
-        np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
-        interfaces={"left": [0], "right": [1]}, allow_parts=True,
-    )  # fmt: skip
-    supports = [Support(n, 1e5 * np.eye(3), 1e6 * np.eye(3)) for n in rotor.interfaces]
-    supports += [
-        Support(n, 0.0, np.diag([100.0, 0.0, 0.0]), frame="rotor") for n in rotor.interfaces
-    ]
-    result = campbell(rotor, [speed], supports=supports)
-    assert not np.any(result.oscillates)
-    slow = result.growth[0] > -1.0
-    np.testing.assert_allclose(result.growth[0, slow], -0.1, rtol=2e-4)
-    np.testing.assert_allclose(result.growth[0, ~slow], -1e6, rtol=2e-4)
-    assert slow.sum() == (6 if speed == 0.0 else 4)
-    assert set(result.whirl[0].tolist()) == {"overdamped", "axial"}
-    np.testing.assert_array_equal(result.damping_ratio, 1.0)
-
-
 @pytest.mark.parametrize("stiffness", [1e6, np.diag([1e6, 2e6, 0.0])], ids=["even", "uneven"])
 def test_free_motions_keep_their_names(stiffness):
     """Lateral springs alone leave the spin and the axial motion free, at rest and at speed."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
@@ -29,6 +30,7 @@ _ALIKE = 0.2  # likeness of two shapes below which they are not the same motion
 _NEAR = 0.3  # share of a frequency by which the same motion may differ
 _MISSING = 0.1  # share of a flexibility that counts as missing
 _POINTS = 3  # speeds at which the richer model is solved
+_MOST_UNEVEN = 0.02  # unevenness of a richer model, beyond which its mean is not taken
 
 
 def is_known(model: LinearModel, accuracy: float | None) -> bool:
@@ -58,7 +60,7 @@ def shifts_over(
     shape = len(named), len(named[known[0]].inertial)
     if model.is_full:
         return np.zeros(shape, dtype=complex)
-    richer = model.richer
+    richer = _averaged_little(model, model.richer)
     if richer is None:
         return None
     chosen = [known[i] for i in points(len(known))]
@@ -79,6 +81,24 @@ def shifts_over(
         real, imaginary = parts
         result[:, column] = real + 1j * imaginary
     return result
+
+
+def is_averaged_much(richer: LinearModel) -> bool:
+    """Return whether the mean over a turn leaves out too much of a model for an estimate."""
+    return not richer.turns and richer.unevenness > _MOST_UNEVEN
+
+
+def _averaged_little(model: LinearModel, richer: LinearModel | None) -> LinearModel | None:
+    """Return a richer model in which nothing large is averaged; None where there is none.
+
+    The shapes that a basis lacks come in pairs less well than modes do. Where the equations are
+    constant in the axes of the rotor, too, nothing is averaged there.
+    """
+    if richer is None or not is_averaged_much(richer):
+        return richer
+    exact = replace(richer, wanted_axes="rotor")
+    constant = len(model.rotors) == 1 and not model.standing_interfaces
+    return exact if constant and exact.at(1.0).is_constant else None
 
 
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:

@@ -100,7 +100,7 @@ class CriticalSpeedMap(Result):
             checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
         shown = Units.of(units)
         rows, places = np.nonzero(self.whirl_codes >= 0)

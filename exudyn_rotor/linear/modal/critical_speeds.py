@@ -94,7 +94,7 @@ class CriticalSpeeds(Result):
         checks.labels(self.whirl, "whirl", WHIRLS)
         checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
         rotor = shown.frequencies(self.frequencies_rotor)
@@ -288,6 +288,8 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
+    if basis_error.is_averaged_much(richer):
+        return errors
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
     for i, one in enumerate(found[:count]):
         lift = one._replace(vectors=one.vectors @ lifted.T)

@@ -101,15 +101,15 @@ class Element:
             if self.turns == turns:  # seen from axes that turn with it, it stands still
                 U = turned(U, -turns)
             else:
-                self._check_isotropic(K, D)
                 K = K - self.turns * speed * D @ axial_skew(len(D))
         damping, stiffness = congruent(U, D), congruent(U, K)
         if len(U) > 1:
             add(stiffness, congruent(U, D, rate_of(U)), speed)
         return damping, stiffness
 
-    def _check_isotropic(self, *matrices: np.ndarray) -> None:
-        if not all(map(is_isotropic_matrix, matrices)):
+    def check_axes(self, turns: int) -> None:
+        """Refuse an anisotropic element that turns otherwise than the axes, with `turns` times Ω."""
+        if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
                 f"{self.turns:g} times the speed of the analysis; give a RotorTrain relative_to "

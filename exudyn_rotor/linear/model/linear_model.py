@@ -184,6 +184,9 @@ class LinearModel:
 
     def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
         elements, own = self._elements_for(turns, kind)
+        if not at_rest:
+            for element in elements:
+                element.check_axes(turns)
         bodies = []
         for name in self._used:
             ratio = self.ratios[name]

@@ -178,7 +178,7 @@ class Response(RunStart, ABC):
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
         return (motion * np.exp(1j * angle)[:, None]).real
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return sizes and phases as columns: one row for each point, place and harmonic.
 
         `units` are those of :meth:`table`.
