@@ -108,7 +108,7 @@ class Element:
         return damping, stiffness
 
     def check_axes(self, turns: int) -> None:
-        """Refuse an anisotropic element that turns otherwise than the axes, with `turns` times Ω."""
+        """Refuse an anisotropic element that turns otherwise than the axes do."""
         if self.turns and self.turns != turns and not self.is_isotropic(0.0):
             raise ValueError(
                 f"supports: {self.what} is not the same in all directions and turns with "
