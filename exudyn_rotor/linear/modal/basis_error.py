@@ -60,7 +60,7 @@ def shifts_over(
     shape = len(named), len(named[known[0]].inertial)
     if model.is_full:
         return np.zeros(shape, dtype=complex)
-    richer = _averaged_little(model, model.richer)
+    richer = _averaged_little(model, model.richer, float(speeds[known[0]]))
     if richer is None:
         return None
     chosen = [known[i] for i in points(len(known))]
@@ -88,7 +88,9 @@ def is_averaged_much(richer: LinearModel) -> bool:
     return not richer.turns and richer.unevenness > _MOST_UNEVEN
 
 
-def _averaged_little(model: LinearModel, richer: LinearModel | None) -> LinearModel | None:
+def _averaged_little(
+    model: LinearModel, richer: LinearModel | None, speed: float
+) -> LinearModel | None:
     """Return a richer model in which nothing large is averaged; None where there is none.
 
     The shapes that a basis lacks come in pairs less well than modes do. Where the equations are
@@ -98,7 +100,7 @@ def _averaged_little(model: LinearModel, richer: LinearModel | None) -> LinearMo
         return richer
     exact = replace(richer, wanted_axes="rotor")
     constant = len(model.rotors) == 1 and not model.standing_interfaces
-    return exact if constant and exact.at(1.0).is_constant else None
+    return exact if constant and exact.at(speed or 1.0).is_constant else None
 
 
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
