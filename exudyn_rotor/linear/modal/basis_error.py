@@ -60,7 +60,7 @@ def shifts_over(
     shape = len(named), len(named[known[0]].inertial)
     if model.is_full:
         return np.zeros(shape, dtype=complex)
-    richer = _averaged_little(model, model.richer, float(speeds[known[0]]))
+    richer = _averaged_little(model, model.richer, float(speeds[known[-1]]))
     if richer is None:
         return None
     chosen = [known[i] for i in points(len(known))]
