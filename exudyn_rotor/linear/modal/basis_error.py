@@ -62,7 +62,7 @@ def shifts_over(
         return np.zeros(shape, dtype=complex)
     richer = _averaged_little(model, model.richer, float(speeds[known[-1]]))
     if richer is None:
-        return None
+        return None if model.richer is None else np.full(shape, np.nan, dtype=complex)
     chosen = [known[i] for i in points(len(known))]
     content, lifted = Content.of(richer), lifting(model, richer)
     if lifted.shape[0] == lifted.shape[1]:
