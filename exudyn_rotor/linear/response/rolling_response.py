@@ -207,7 +207,8 @@ def _unbalance(
 def _two_sided(load: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
     """Return harmonics F of both signs of ``Re Σ F_n exp(inθ)``."""
     return {
-        n: 0.5 * (load.get(n, 0.0) + np.conj(load.get(-n, 0.0))) for n in {*load, *(-n for n in load)}
+        n: 0.5 * (load.get(n, 0.0) + np.conj(load.get(-n, 0.0)))
+        for n in {*load, *(-n for n in load)}
     }
 
 

@@ -32,6 +32,7 @@ from exudyn_rotor.threads import one_thread
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
 _ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
+_ONE_BY_ONE = 512  # steps that are taken one after the other
 _KEPT = 512  # steps in a revolution that are kept as matrices
 _HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
 _TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
@@ -146,8 +147,7 @@ class ShakenRotor:
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
             if turn <= _KEPT:
                 each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
-                for n in range(count):
-                    states[n + 1] = each[n % turn] @ states[n] + given[n]
+                states = _followed(each, given)
             else:
                 # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
                 later = [n for n in by_state if n > 0]
@@ -226,6 +226,37 @@ def _follow(moved: np.ndarray) -> bool:
     The largest displacement is one.
     """
     return bool(np.abs(moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])).max() <= _BETWEEN)
+
+
+def _followed(each: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), E_n those of a turn, again and again.
+
+    Two steps at a time are one step of another recurrence, which takes whole arrays.
+    """
+    count, size = given.shape
+    states = np.zeros((count + 1, size))
+    if count <= _ONE_BY_ONE:
+        for n in range(count):
+            states[n + 1] = each[n % len(each)] @ states[n] + given[n]
+        return states
+    if len(each) % 2:
+        each = np.concatenate([each, each])
+    first, second = each[::2], each[1::2]
+    given = np.concatenate([given, np.zeros((count % 2, size))])
+    pairs = _each(second, given[::2]) + given[1::2]
+    even = _followed(second @ first, pairs)
+    states = np.zeros((len(given) + 1, size))
+    states[::2] = even
+    states[1::2] = _each(first, even[:-1]) + given[::2]
+    return states[: count + 1]
+
+
+def _each(E: np.ndarray, X: np.ndarray) -> np.ndarray:
+    """Return ``E_n x_n`` of rows (t, 2k), with the matrices over and over."""
+    result = np.empty_like(X)
+    for n, matrix in enumerate(E):
+        result[n :: len(E)] = X[n :: len(E)] @ matrix.T
+    return result
 
 
 def _orders(seen: Sequence[Terms]) -> set[int]:
