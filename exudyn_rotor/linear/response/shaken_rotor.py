@@ -138,26 +138,20 @@ class ShakenRotor:
         count = every * max(1, int(np.floor((end - start) / (every * step) + 1e-9)))
         times = start + step * np.arange(count + 1)
         angles = self.speed * (times - start)
-        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
         lines = self._lines(times, step)
+        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
         waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
-        given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
-        states = np.zeros((count + 1, len(self.A[0])))
         turn = 1 if self.is_constant else round(2.0 * np.pi / abs(self.speed) / step)
+        steps = {n: wave[:turn, None, None] for n, wave in waves.items()}
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            if turn <= _KEPT:
-                each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
-                states = _followed(each, given)
+            if turn > _KEPT or self.is_constant:
+                given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
             else:
-                # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
-                later = [n for n in by_state if n > 0]
-                parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
-                tall = np.vstack([by_state[0].real, *parts])
-                parts = (w for n in later for w in (waves[n].real, waves[n].imag))
-                weights = np.column_stack([np.ones(count + 1), *parts])
-                for n in range(count):
-                    stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
-                    states[n + 1] = weights[n] @ stepped + given[n]
+                given = _each(sum(steps[n] * P for n, P in by_line.items()).real, lines)
+            if turn <= _KEPT:
+                states = _followed(sum(steps[n] * X for n, X in by_state.items()).real, given)
+            else:
+                states = _followed_slowly(by_state, waves, given)
             motion = np.zeros((count + 1, len(self.seen), 6))
             for place, seen in enumerate(self.seen):
                 for n, U in seen.items():
@@ -229,7 +223,7 @@ def _follow(moved: np.ndarray) -> bool:
 
 
 def _followed(each: np.ndarray, given: np.ndarray) -> np.ndarray:
-    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), E_n those of a turn, again and again.
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), with E_n of a turn again and again.
 
     Two steps at a time are one step of another recurrence, which takes whole arrays.
     """
@@ -251,9 +245,26 @@ def _followed(each: np.ndarray, given: np.ndarray) -> np.ndarray:
     return states[: count + 1]
 
 
+def _followed_slowly(by_state: dict, waves: dict, given: np.ndarray) -> np.ndarray:
+    """Return what :func:`_followed` does, of a turn of very many steps.
+
+    ``E(θ) = E₀ + Σ 2 Re E_n cos nθ − 2 Im E_n sin nθ`` is one tall matrix with weights.
+    """
+    later = [n for n in by_state if n > 0]
+    parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
+    tall = np.vstack([by_state[0].real, *parts])
+    parts = (w for n in later for w in (waves[n].real, waves[n].imag))
+    weights = np.column_stack([np.ones(len(given) + 1), *parts])
+    states = np.zeros((len(given) + 1, given.shape[1]))
+    for n, one in enumerate(given):
+        stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
+        states[n + 1] = weights[n] @ stepped + one
+    return states
+
+
 def _each(E: np.ndarray, X: np.ndarray) -> np.ndarray:
     """Return ``E_n x_n`` of rows (t, 2k), with the matrices over and over."""
-    result = np.empty_like(X)
+    result = np.empty((len(X), E.shape[1]))
     for n, matrix in enumerate(E):
         result[n :: len(E)] = X[n :: len(E)] @ matrix.T
     return result
