@@ -69,8 +69,8 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.modal.critical_speeds import CriticalSpeeds as CriticalSpeeds
     from exudyn_rotor.linear.modal.critical_speeds import critical_speeds as critical_speeds
     from exudyn_rotor.linear.model.build import linear_model as linear_model
-    from exudyn_rotor.linear.model.links import Link as Link
     from exudyn_rotor.linear.model.linear_model import LinearModel as LinearModel
+    from exudyn_rotor.linear.model.links import Link as Link
     from exudyn_rotor.linear.model.rotor_train import RotorTrain as RotorTrain
     from exudyn_rotor.linear.response.base_response import BaseResponse as BaseResponse
     from exudyn_rotor.linear.response.base_response import base_response as base_response

@@ -3,10 +3,10 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from test_supports_in_scenes import HELD, SPEED, distance, rings, system_without_spin
+from apart import distance
+from test_supports_in_scenes import HELD, SPEED, rings
 
-from exudyn_rotor import AnnularSeal, Support, add_rotor, add_supports, linear_model
-from exudyn_rotor.linear.models.rotor import spin
+from exudyn_rotor import AnnularSeal, add_rotor, add_supports, linear_model
 
 WATER = {"pressure_drop": 1.2e6, "density": 1000.0, "viscosity": 1e-3}
 SIZE = {"radius": 0.1, "length": 0.05, "clearance": 3e-4}
@@ -76,41 +76,8 @@ def test_scene_and_list_have_the_same_exponents():
     body = add_rotor(mbs, reduced, spin=SPEED)
     add_supports(body, supports)
     mbs.Assemble()
-    found = linear_model(mbs, body=body, about="given").at(SPEED)
-    expected = system_without_spin(reduced, [seal().linearised(), HELD], SPEED)
-    assert distance(found, expected) < 1e-8
-
-
-def test_a_seal_that_repels_at_high_speed_does_not_hold_the_spin():
-    one = seal()
-    supports = [Support(name, 1e6, 100.0) for name in ("left", "right")]
-    assert one.coefficients(1e4)[0][0, 0] < -2e6
-    assert not linear_model(rings(), supports=[*supports, one]).spin.coupled
-
-
-@pytest.mark.parametrize(("distance", "held", "asked"), [(0.13, 0, 0), (0.19, 0, 1), (0.21, 1, 1)])
-def test_springs_hold_the_spin_by_their_distance(distance, held, asked):
-    """Equal ones, a distance d apart per unit of spin, are ½d from their centre: ¼ m d² > 10⁻².
-
-    Whatever their shares, the mean square is no more than ½ d²: below that none is asked.
-    """
-    mass, calls = 2.0, []
-
-    def stiffness(speed):
-        calls.append(speed)
-        return 1e6 * np.eye(2)
-
-    places = np.array([[0.3, 0.1], [0.3, 0.1 + distance / np.sqrt(mass)]])
-    springs = [Support(name, stiffness) for name in ("left", "right")]
-    assert spin._held_off_center(list(zip(springs, places, strict=True)), mass) == held
-    assert bool(calls) == asked
-
-
-def test_what_repels_does_not_hold_the_spin():
-    """One spring alone is its own centre, however far from it something else repels."""
-    springs = Support("left", 1e6), Support("right", -2e6)
-    places = np.array([[0.3, 0.1], [0.3, 0.6]])
-    assert not spin._held_off_center(list(zip(springs, places, strict=True)), 2.0)
+    found = linear_model(mbs, body=body, about="given")
+    assert distance(found, linear_model(reduced, supports=supports), SPEED) < 1e-7
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,15 @@ from asymmetric import asymmetric_shaft
 from point_rotors import SKEW_AXIS
 from test_tilting_pad import SPEED, on_pads, scene
 
-from exudyn_rotor import AnnularSeal, Support, recommended_settings, stability, steady_state
-from exudyn_rotor.linear.models.scene.linear_scene import LinearScene
-from exudyn_rotor.linear.periodic.exponents import motions
+from exudyn_rotor import (
+    AnnularSeal,
+    Support,
+    linear_model,
+    recommended_settings,
+    stability,
+    steady_state,
+)
+from exudyn_rotor.linear.over import motions_over
 from exudyn_rotor.multibody.rotor.start_state import StartState
 
 STEPS, SIZE = 80, 5e-7  # SIZE in m, below 1 % of the clearance
@@ -62,17 +68,22 @@ def measured(case, steps):
     mbs, body, _ = scene(rotor, supports, gravity, spin=speed)
     sensor = body.add_interface_sensor("left", exu.OutputVariableType.Displacement)
     mbs.Assemble()
-    linear, steady = LinearScene.of(mbs, body), steady_state(body)
-    start = steady.state()
-    system = linear.at(speed)
-    modes = motions(system)
-    shapes = modes.vectors.sum(axis=0)
+    model, steady = linear_model(mbs, body=body), steady_state(body)
+    linear, start = model.scene, steady.state()
+    [modes] = motions_over(model, [speed])
+    in_scene = [
+        model.unknowns(dict(zip(modes.orders.tolist(), one, strict=True)), speed)
+        for one in np.moveaxis(modes.vectors, 2, 0)
+    ]
+    orders = np.array(sorted(in_scene[0]))
+    vectors = np.array([np.column_stack([one[n] for one in in_scene]) for n in orders])
+    shapes = vectors.sum(axis=0)
     rows = linear.interface_motion("left")[:2]
     moves = np.linalg.norm(rows @ shapes, axis=0)
     lateral = moves > 0.01 * np.linalg.norm(shapes, axis=0) * np.linalg.norm(rows)
     chosen = np.argmax(np.where(lateral, modes.values.real, -np.inf))
-    rates = modes.values[chosen] + 1j * modes.orders[:, None] * speed
-    amplitudes = SIZE / moves[chosen] * modes.vectors[:, :, chosen]
+    rates = modes.values[chosen] + 1j * orders[:, None] * speed
+    amplitudes = SIZE / moves[chosen] * vectors[:, :, chosen]
     y, y_t = amplitudes.sum(axis=0), (rates * amplitudes).sum(axis=0)
     T, T1, _ = linear.turn(0.0)
     still = steady.interface_motion("left", 0.0)[:3] @ linear.axes.T
@@ -87,7 +98,7 @@ def measured(case, steps):
     for time, *place in path:
         theta = speed * time
         turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
-        shape = turn @ rows @ (np.exp(1j * modes.orders * theta) @ amplitudes)
+        shape = turn @ rows @ (np.exp(1j * orders * theta) @ amplitudes)
         away = (np.array(place) - still) @ linear.axes[:, :2]
         columns = np.column_stack([shape.real, -shape.imag])
         sizes.append(np.hypot(*np.linalg.lstsq(columns, away, rcond=None)[0]))

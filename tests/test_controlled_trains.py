@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from apart import exponents
 from point_rotors import SKEW_AXIS, free_stiffness, ring_rotor
 from test_magnetic_bearing import DELAYED, MAGNETS, PD, bearing, pair, rigid
 from test_tilting_pad import SPEED, on_pads
-from train_models import left_of_modes
 
 from exudyn_rotor import (
     BaseAcceleration,
@@ -26,7 +26,6 @@ from exudyn_rotor import (
     stability,
     unbalance_response,
 )
-from linear_values import exponents
 
 GIVEN = {"accuracy": None}
 MAGNETIC = rigid(), [*pair(angle=0.3)]  # a controller with filter and delay
@@ -62,8 +61,7 @@ def test_rotors_without_links_are_those_alone(kind, ratio):
     counted = 0
     for (rotor, supports), rate in zip(PAIRS[kind], (1.0, ratio), strict=True):
         given = {"supports": supports, "allow_negative": True, **GIVEN}
-        space = linear_model(rotor, supports=supports).space(1, SPEED, held=True)
-        alone = exponents(space.at(rate * SPEED)).real
+        alone = exponents(linear_model(rotor, supports=supports), rate * SPEED).real
         counted += len(alone)
         assert apart(both.exponents[0].real, alone) < 1e-8
         assert (
@@ -92,13 +90,6 @@ def test_overdamped_motions_are_those_of_the_rotor_alone(speed):
     found, expected = (each[each < -1.0] for each in decays)
     assert len(found) > 0
     np.testing.assert_allclose(found, expected, rtol=1e-6)
-
-
-def test_motions_of_controllers_and_pads_hold_in_turning_axes():
-    """Found in axes at rest, where the equations of pads and uneven magnets are constant."""
-    (first, magnets), (second, pads) = UNDER_WEIGHT, PADS
-    train = RotorTrain({"A": first, "B": second}, {"A": 1.0, "B": 1.6}, {"A": magnets, "B": pads})
-    assert left_of_modes(linear_model(train), SPEED) < 1e-9
 
 
 def test_responses_without_links_are_those_alone():

@@ -1,6 +1,5 @@
 """Two spools of solids, coaxial and geared, against beams of ROSS; what mesh and few modes do."""
 
-import dataclasses
 import warnings
 
 import numpy as np
@@ -55,19 +54,10 @@ def test_critical_speeds_of_the_dual_spool_against_ross(name, order):
 
 def test_axisymmetric_part_and_what_is_left():
     """Mean over a turn: even to rounding for rings, of the mesh for a solid."""
-    assert linear_model(two_discs(1.7)).unevenness["B"] < 1e-12
+    assert linear_model(two_discs(1.7)).unevenness < 1e-12
     train = dual_spool(1.5)
-    assert 1e-3 < linear_model(train).unevenness["outer"] < 5e-2
-    assert 1e-3 < linear_model(train.relative_to("outer")).unevenness["inner"] < 5e-2
-
-
-def test_turned_mesh_in_full_and_in_the_mean():
-    """A solid at the ratio 2 with all its harmonics: the mean errs by the unevenness squared."""
-    train = dual_spool(2.0)
-    exact = dataclasses.replace(train, largest_unevenness=0.0)
-    mean, full = (lateral(campbell(one, [0.0, 500.0], accuracy=None))[:8] for one in (train, exact))
-    uneven = linear_model(train).unevenness["outer"]
-    assert 1e-9 < np.abs(mean.imag / full.imag - 1.0).max() < 5.0 * uneven**2
+    for each in (train, train.relative_to("outer")):
+        assert 1e-4 < linear_model(each).unevenness < 5e-2
 
 
 def geared(modes: int, free: bool = False) -> RotorTrain:
@@ -111,8 +101,12 @@ def test_estimates_are_the_errors_against_more_modes(name):
         looked_at = (found.frequencies_inertial[row] < LIMIT) & (np.abs(given) > 1.0)
         given, shifts = given[looked_at], found.basis_shifts[row, looked_at]
         errors = nearest(true, given + shifts, speed) - given
-        assert np.abs(errors).max() > 20.0
-        assert np.all(np.abs(shifts - errors) < 0.05 * np.abs(errors) + 0.02)
+        known = np.isfinite(shifts)  # motions that err too much are not found again
+        assert known.sum() >= 0.8 * len(known)
+        # frequencies fall in the frame of one rotor where they rise in that of another
+        shifts, errors = (np.abs(x[known].view(float)) for x in (shifts, errors))
+        assert errors.max() > 20.0
+        assert np.all(np.abs(shifts - errors) < 0.05 * errors + 0.02)
 
 
 @pytest.mark.parametrize("order", [1.0, 1.5])
@@ -129,13 +123,13 @@ def test_estimates_of_critical_speeds(order):
 
 @pytest.mark.parametrize("name", ["1.5", "uneven"])
 def test_estimates_of_responses(name):
-    """Where coefficients change they are made at some speeds only."""
+    """At the first speed, the middle one and the last one."""
     speeds, unbalance = [150.0, 300.0, 350.0, 600.0], Unbalance("inner:front", 1e-3)
     with pytest.warns(UserWarning, match="the motion of"):
         found = unbalance_response(TRAINS[name](5, True), speeds, unbalance, own=False)
     exact = unbalance_response(TRAINS[name](16), speeds, unbalance, own=False, accuracy=None)
     known = np.isfinite(found.basis_errors[:, 0])
-    assert known.sum() == (4 if name == "1.5" else 3)
+    assert known.sum() == 3
     for row in np.flatnonzero(known):
         given, true = (
             one.motion[row, :, one.orders.tolist().index(1), :3] for one in (found, exact)
@@ -145,30 +139,13 @@ def test_estimates_of_responses(name):
         np.testing.assert_allclose(found.basis_errors[row], away, rtol=0.1, atol=1e-3)
 
 
-def test_estimates_of_rotors_apart_are_those_of_each():
-    """At speeds of their own; the mean over a turn of the outer one differs by its unevenness."""
-    supports = {
-        name: [Support(at, 2e7, 100.0) for at in ("front", "rear")] for name in ("inner", "outer")
-    }
-    rotors = {name: spool(name, 5, True) for name in supports}
-    train = RotorTrain(rotors, {"inner": 1.0, "outer": -1.5}, supports)
-    with pytest.warns(UserWarning, match="rotor 'inner'"):
-        both = np.abs(campbell(train, [300.0], modes=14).basis_shifts[0])
-    for name, rate in train.ratios.items():
-        with pytest.warns(UserWarning, match="the reduced rotor"):
-            alone = campbell(rotors[name], [300.0 * abs(rate)], modes=6, supports=supports[name])
-        alone = np.abs(alone.basis_shifts[0])
-        assert alone.max() > 1.0
-        assert np.abs(both[:, None] - alone).min(axis=0).max() < 5e-3 * alone.max()
-
-
 def test_free_spins_and_good_bases():
     """Exponents without the free spin are shifted alike; with enough modes there is no warning."""
     train = geared(5, True)
     with pytest.warns(UserWarning, match="errs by about"):
         free = campbell(train, [SPEED], modes=18)
     held = stability(train, [SPEED])
-    assert np.abs(np.abs(free.basis_shifts) - np.abs(held.basis_shifts)).min() < 1e-4
+    assert np.nanmin(np.abs(np.abs(free.basis_shifts) - np.abs(held.basis_shifts))) < 1e-4
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         good = campbell(dual_spool(1.5, 16), [0.0, SPEED], modes=8)
@@ -220,7 +197,7 @@ def test_modes_of_geared_spools_are_those_of_ross():
     """Motions of both gears at rest: the angle between ours and theirs in twelve coordinates."""
     train, sizes = geared_spools(True), np.tile(np.repeat([1.0, 0.075], 3), 2)
     found, model = campbell(train, [0.0], accuracy=None), linear_model(train)
-    seen = np.vstack([model.interface_motion(at) for at in ("inner:middle", "outer:rear")])
+    seen = np.vstack([model.seen(at, 0.0)[0] for at in ("inner:middle", "outer:rear")])
     moving = np.flatnonzero(found.frequencies_inertial[0] > 1.0)[:12]
     given, theirs = seen @ found.vectors[0][:, moving], np.array(GEARS["shapes"]).T
     theirs[-1] *= -1.0

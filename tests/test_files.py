@@ -33,10 +33,11 @@ MAY_BE_NAN = {
         "exponent_errors",
     )
 }
-MAY_BE_NAN_OF_ONE = {
-    ("CriticalSpeedMap", "field.speeds"),
-    ("RollingBearingResponse", "field.exponents"),
-}
+# results whose rows are NaN where nothing could be computed
+WITH_GAPS = (
+    "Campbell", "CriticalSpeedMap", "RollingBearingResponse", "SeparationMargins", "Sensitivity",
+    "Stability", "StabilityMap",
+)  # fmt: skip
 
 
 def load(name: str, path: Path) -> object:
@@ -74,7 +75,7 @@ def wrong_values(key: str, value: np.ndarray, owner: str) -> dict[str, np.ndarra
         wrong["empty name"] = np.full(np.atleast_1d(value).shape, "")
         return wrong
     wrong["text"] = np.full(value.shape, "stiff")
-    may_be_nan = key in MAY_BE_NAN or (owner, key) in MAY_BE_NAN_OF_ONE
+    may_be_nan = key in MAY_BE_NAN or owner in WITH_GAPS
     if value.dtype.kind in "fc" and not may_be_nan:
         for label, number in (("NaN", np.nan), ("infinite", -np.inf)):
             wrong[label] = value.copy()

@@ -3,11 +3,9 @@
 from dataclasses import replace
 
 import exudyn as exu
-import ngsolve as ngs
 import numpy as np
 import pytest
-from models import STEEL, disc_rotor
-from netgen.occ import Box, OCCGeometry, Pnt, X
+from models import disc_rotor
 
 from exudyn_rotor import (
     ConstantSpeed,
@@ -20,7 +18,6 @@ from exudyn_rotor import (
     critical_speeds,
     free_modes,
 )
-from exudyn_rotor.linear.models.full.full_rotor import FullRotor
 from exudyn_rotor.theory.invariants import Invariants
 from exudyn_rotor.theory.nodal import rotations
 from exudyn_rotor.theory.stiffening import stiffening
@@ -40,17 +37,6 @@ def unbalanced(rotor) -> SolidRotor:
 @pytest.fixture(scope="module")
 def reduced(rotor) -> ReducedRotor:
     return rotor.reduce(12, prestress=rotor.prestress(yield_stress=3e8))
-
-
-@pytest.fixture(scope="module")
-def small() -> SolidRotor:
-    """A rotor with few degrees of freedom."""
-    solid = Box(Pnt(-0.1, -0.08, -0.02), Pnt(0.1, 0.08, 0.02))
-    solid.mat("steel")
-    solid.faces.Min(X).name = "left"
-    return SolidRotor.from_ngsolve(
-        ngs.Mesh(OCCGeometry(solid).GenerateMesh(maxh=0.2)), STEEL, "z", order=1
-    )
 
 
 # ------------------------------------------------------------------ rigid rotations
@@ -103,61 +89,6 @@ def test_conical_modes_are_exact(rotor, speed):
 
 
 # ------------------------------------------------------------------ full models
-
-
-def test_small_full_model_keeps_all(small):
-    carrying = small.with_prestress(small.prestress(euler=True))
-    whole = campbell(carrying, 300.0, stiffening="full").frequencies_rotor[0]
-    basis = np.eye(3 * small.node_count)
-    same = campbell(carrying.reduce(basis), 300.0, stiffening="full").frequencies_rotor[0]
-    np.testing.assert_allclose(np.sort(same), np.sort(whole), rtol=1e-6, atol=1e-2)
-
-
-def test_large_full_model_meets_a_rich_basis(rotor):
-    carrying = rotor.with_prestress(rotor.prestress())
-    supports = [Support("left", stiffness=1e7), Support("right", stiffness=2e7)]
-    given = {"supports": supports, "modes": 8}  # the lowest in both frames
-
-    def frequencies(target: object, level: str) -> np.ndarray:
-        return campbell(target, 300.0, stiffening=level, **given).frequencies_rotor[0]
-
-    full = frequencies(carrying, "full")
-    np.testing.assert_allclose(frequencies(carrying.reduce(40), "full"), full, rtol=3e-3, atol=1e-3)
-    step = full - frequencies(carrying, "tilt")
-    modes = rotor.reduce(40, prestress=True)
-    expected = frequencies(modes, "full") - frequencies(modes, "tilt")
-    assert np.abs(step).max() > 1.0
-    np.testing.assert_allclose(step, expected, atol=0.02 * np.abs(step).max())
-
-
-def test_full_equations_hold_the_same_terms(unbalanced):
-    carrying = unbalanced.with_prestress(unbalanced.prestress())
-    reduced = carrying.reduce(5)
-    Q, speed = reduced.shapes.matrix, 300.0
-    left = FullRotor.of(carrying, stiffening="full").residual(speed, np.zeros(11), {0: Q})[0]
-    offset = carrying.axis.project(carrying.center_of_mass) - carrying.center_of_mass
-    invariants = reduced.invariants.moved(offset)
-    expected = invariants.K + speed**2 * (stiffening(invariants, "full").K2 - invariants.C)
-    scale = speed**2 * np.abs(invariants.K2).max()
-    np.testing.assert_allclose(Q.T @ left, expected, rtol=1e-9, atol=1e-9 * scale)
-
-
-def test_full_equations_hold_the_change_of_shape(small):
-    """Per Ω⁴, too: modes against the dense equations of the same matrices."""
-    carrying = small.with_prestress(small.prestress(initial_displacement=True))
-    supports, speed = [Support("left", stiffness=1e8)], 8000.0
-    whole = FullRotor.of(carrying, supports, stiffening="full")
-    full = campbell(whole, speed, modes=5, frame="rotor")
-    dense = campbell(carrying, speed, supports=supports)
-    found, expected = (np.sort(each.frequencies_rotor[0])[:5] for each in (full, dense))
-    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-3)
-
-
-def test_full_model_without_prestress_is_told_what_to_do(rotor):
-    with pytest.raises(ValueError, match=r"rotor.with_prestress, or use stiffening='tilt'"):
-        FullRotor.of(rotor, stiffening="full")
-    with pytest.raises(ValueError, match="'bend' is unknown"):
-        FullRotor.of(rotor, stiffening="bend")
 
 
 def test_critical_speeds_take_the_level(reduced):

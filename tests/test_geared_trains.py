@@ -43,7 +43,7 @@ def test_geared_rotors_are_those_of_constant_equations_at_rest():
     values = found.growth[-1] + 1j * found.frequencies_inertial[-1]
     assert np.abs(exact[:, None] - values).min(axis=1).max() < 1e-6
     assert sum("spin" in motion for motion in found.free_motions) == 1
-    assert stability(train, [speed]).exponents.shape == (1, 22)  # without the free spin
+    assert stability(train, [speed]).exponents.shape == (1, 11)  # without the free spin
     with pytest.raises(ValueError, match=r"turn with 1 and -0.5, not 0.5, times"):
         RotorTrain(rotors, {"A": 1.0, "B": 0.5}, supports, links)
 

@@ -1,6 +1,5 @@
 """Bad input of linear analyses: refused before anything is computed, by the argument's name."""
 
-import inspect
 import re
 
 import exudyn as exu
@@ -16,22 +15,11 @@ from exudyn_rotor import (
     TorqueCurve,
     Unbalance,
     campbell,
-    critical_speed_map,
-    critical_speeds,
-    harmonic_response,
     permissible_unbalance,
     stability,
     stability_map,
-    stability_threshold,
     unbalance_response,
-    unstable_ranges,
 )
-from exudyn_rotor.bearings.support import (
-    BelowTableError,
-    NoCoefficientsError,
-    OutsideTableError,
-)
-from exudyn_rotor.linear.models import linear_model as source
 
 ROTOR = (
     ring_rotor(0.1, 0.2, 3.0).with_interface("left", range(5)).with_interface("right", range(5, 10))
@@ -42,16 +30,6 @@ MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
 FORCE = HarmonicForce("left", (1.0, 0.0))
 UNBALANCE = Unbalance("left", 1e-5)
 
-CALLS = {
-    campbell: ([0.0, 10.0],),
-    critical_speeds: (),
-    critical_speed_map: (["left"], [1e6, 1e7]),
-    unbalance_response: ([10.0, 20.0], [UNBALANCE]),
-    harmonic_response: ([10.0, 20.0], [FORCE]),
-    stability: ([0.0, 10.0],),
-    stability_threshold: (0.0, 10.0),
-    unstable_ranges: ([0.0, 10.0],),
-}
 
 NUMBERS = (np.nan, -1.0, "x", None, [0.1], 1j, True, lambda: 1.0)
 WORDS = ("no", 1, None, ["inertial"], {}, np.ones(3))
@@ -63,8 +41,8 @@ BAD = {
     "stiffnesses": (np.nan, [0.0], [-1.0], "x", MASKED, [1j], {}, None, []),
     "supports": ("", "left", 3, ["left"], {"left": 1e6}, None, [None], np.array(3.0), Support),
     "tolerance": (*NUMBERS, 0.0, 0.2, 1e-20),
-    "residual": (*NUMBERS, 0.0, 0.2, 1e-20),
     "stiffening": WORDS,
+    "axes": WORDS,
     "frame": WORDS,
     "method": WORDS,
     "modes": (0, -1, 2.5, "x", True, [1]),
@@ -75,7 +53,6 @@ BAD = {
     "refine": ("no", 1, None, []),
     "allow_negative": ("no", 1, None, []),
     "progress": ("no", 1, None, []),
-    "executor": (3, "threads", ROTOR),
     "unbalances": (3, "left", None, [3], {"left": 1.0}, FORCE),
     "loads": (3, "left", None, [3], {"left": 1.0}, UNBALANCE),
     "at": (3.5, ["left", 2.5], {}, [(0.0, np.nan, 0.0)], [None], "", [-1]),
@@ -111,26 +88,6 @@ def _refused(call, given: dict, name: str, values: tuple) -> list[str]:
     return wrong
 
 
-def _arguments(call) -> list[str]:
-    names = list(inspect.signature(call).parameters)
-    if names[-1] == "given":
-        names[-1:] = ["supports", "tolerance", "residual", "modes", "stiffening", "method"]
-    return names
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [(call, name) for call in CALLS for name in _arguments(call)],
-    ids=lambda value: getattr(value, "__name__", value),
-)
-def test_argument_is_refused_by_its_name(call, name, monkeypatch):
-    if name not in ("at", "body"):  # those are looked up in the rotor's equations
-        monkeypatch.setattr(source.LinearRotor, "of", None)
-    given = dict(zip(inspect.signature(call).parameters, (ROTOR, *CALLS[call]), strict=False))
-    values = BAD_FOR_THRESHOLD.get(name) if call is stability_threshold else None
-    assert _refused(call, given | {"supports": SUPPORTS}, name, values or BAD[name]) == []
-
-
 MAKERS = [
     (Support, {"interface": "left", "stiffness": 1.0}, {
         "interface": ("", None, 3, ["left"], {}),
@@ -163,7 +120,7 @@ MAKERS = [
     }),
     (stability_map, {"build": max, "x": [1.0], "y": [1.0]}, {
         "build": (3, None, "x"), "x": SERIES, "y": SERIES, "labels": ("x", (1, 2), None, ["x"]),
-        "method": WORDS, "tolerance": (*NUMBERS, 0.0), "executor": (3,), "progress": ("no",),
+        "method": WORDS, "tolerance": (*NUMBERS, 0.0), "progress": ("no",),
     }),
 ]  # fmt: skip
 
@@ -255,31 +212,6 @@ def test_an_undamped_support_keeps_what_stores_energy(kind):
     assert not damping.any()
 
 
-def test_a_table_is_not_used_beyond_its_ends_unless_asked_for():
-    rotor = ROTOR.reduce(0)
-    for table, speed in ((([5.0, 10.0], [1.0, 3.0]), 4.0), (([0.0, 10.0], [1.0, 3.0]), 11.0)):
-        for name in ("stiffness", "damping", "tilt_stiffness", "tilt_damping"):
-            support = Support("left", **{"stiffness": 2.0, name: table})
-            with pytest.raises(ValueError, match=rf"'left': the table of its {name} holds"):
-                campbell(rotor, [speed], supports=[support])
-            extended = Support("left", **{"stiffness": 2.0, name: table}, extrapolate=True)
-            held = Support("left", **{"stiffness": 2.0, name: 1.0 if speed < 5.0 else 3.0})
-            # the sums of both are taken in another order: rounding, of the largest
-            np.testing.assert_allclose(
-                campbell(rotor, [speed], supports=[extended]).frequencies_rotor,
-                campbell(rotor, [speed], supports=[held]).frequencies_rotor,
-                atol=1e-12,
-            )
-            with pytest.raises(BelowTableError if speed < 5.0 else OutsideTableError) as refused:
-                support.check_range(speed)
-            assert isinstance(refused.value, BelowTableError) == (speed < 5.0)
-            assert isinstance(refused.value, NoCoefficientsError)
-    short = [Support("left", ([0.0, 10.0], [1.0, 3.0]))]
-    for call, given in ((critical_speeds, {"max_speed": 40.0}), (stability, {"speeds": [40.0]})):
-        with pytest.raises(ValueError, match="holds 0 to 10 rad/s, not"):
-            call(rotor, supports=short, **given)
-
-
 @pytest.mark.parametrize("small", [True, False], ids=["reduced", "full"])
 @pytest.mark.parametrize("name", ["tilt_stiffness", "tilt_damping"])
 def test_a_single_node_takes_no_moment(name, small):
@@ -293,15 +225,6 @@ def test_a_single_node_takes_no_moment(name, small):
             campbell(rotor, [1.0], supports=supports)
     for value in (0.0, np.zeros((3, 3)), ([0.0, 9.0], [0.0, 0.0])):
         campbell(rotor, [1.0], supports=[*SUPPORTS, Support("point", 1e5, **{name: value})])
-
-
-def test_a_full_model_is_not_factored_for_bad_input(monkeypatch):
-    monkeypatch.setattr(source, "DENSE_SIZE", 0)
-    monkeypatch.setattr(source.FullRotor, "of", None)
-    for call, given in ((campbell, {}), (stability, {}), (critical_speeds, {"max_speed": 9.0})):
-        arguments = () if call is critical_speeds else ([1.0],)
-        with pytest.raises(ValueError, match=r"^tolerance: needs"):
-            call(ROTOR, *arguments, tolerance=0.0, **given)
 
 
 def test_scenes_need_their_body():

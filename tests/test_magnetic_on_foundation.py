@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import apart as models
 import exudyn as exu
 import numpy as np
 import pytest
@@ -25,7 +26,6 @@ from test_magnetic_bearing import (
 from test_supports_in_scenes import SKEW, SPEED, TO_X, rings
 
 from exudyn_rotor import (
-    Formulation,
     Support,
     Unbalance,
     add_base_motion,
@@ -38,13 +38,12 @@ from exudyn_rotor import (
     critical_speeds,
     linear_model,
     recommended_settings,
-    select_modes,
     sensitivity,
     stability,
     stability_map,
     unbalance_response,
 )
-from exudyn_rotor.reduction.mode_kind import ModeKind
+from exudyn_rotor.reduction.driven import without_spin
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 AXIAL = Support("right", np.diag([0.0, 0.0, 5e5]), 0.0, np.diag([0.0, 0.0, 4e3]))
@@ -76,7 +75,8 @@ def test_exponents_at_rest_are_those_of_the_state_space():
     rotor, on = on_foundation(DELAYED, OWN[0])
     values = la.eigvals(levitated(DELAYED, OWN[0], 0.0)[0])
     found = stability(linear_model(rotor, **on), [0.0], accuracy=None).exponents[0]
-    assert apart(found, values) < 1e-9
+    values = values[np.abs(values.imag) > 1.0]
+    assert apart(np.r_[found, found.conj()], values) < 1e-7
 
 
 def test_sensitivity_is_that_of_the_state_space():
@@ -114,24 +114,13 @@ KINDS = {
 @pytest.mark.parametrize(("turn", "rotation"), [(TO_X, None), (SKEW, TO_X)], ids=["x", "skew"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn turns")
-def test_scene_and_list_have_the_same_equations(kind, turn, rotation):
-    """Term by term: modes of the rotor without its spin, of the foundation, and controllers."""
+def test_scene_and_list_have_the_same_exponents(kind, turn, rotation):
     rotor, supports = rings(turn, heavy=0.0), [*KINDS[kind], AXIAL]
     block = (BLOCK if turn is None else BLOCK.turned(turn)).modal()
     options = {"spin": SPEED, "translation": "none"}
-    found = in_scene(rotor, supports, block, rotation, **options).at(SPEED)
-    # a frame holds the mean rotation, and leaves nothing out of its coupling by unbalance
-    kinds = [ModeKind.FREE if one is ModeKind.SPIN else one for one in rotor.rigid_kinds]
-    plain = replace(rotor, rigid_kinds=kinds)
-    model = linear_model(plain, supports=supports, foundation=block)
-    T = select_modes(rotor, Formulation("none", SPEED)).T
-    expected = model.at(SPEED).projected(la.block_diag(T, np.eye(model.size - rotor.size)))
-    for name in "MDK":
-        ours, theirs = getattr(expected, name), getattr(found, name)
-        size = np.abs(ours[0]).max()
-        for n in ours.keys() | theirs.keys():
-            apart = np.abs(ours.get(n, 0.0) - theirs.get(n, 0.0)).max()
-            assert apart < 1e-9 * size, (name, n)
+    found = in_scene(rotor, supports, block, rotation, **options)
+    in_list = linear_model(without_spin(rotor), supports=supports, foundation=block)
+    assert models.apart(found, in_list, SPEED) < 1e-6
 
 
 def test_public_analyses_take_scene_and_list_alike():

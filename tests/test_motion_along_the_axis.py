@@ -16,8 +16,8 @@ from exudyn_rotor import (
     add_supports,
     steady_state,
 )
-from exudyn_rotor.linear.model.scene import steady_motion
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene import steady_motion
 from exudyn_rotor.theory.rotating_axes import axes_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:rotor 'rotor'. no node of Exudyn")

@@ -6,7 +6,6 @@ import pytest
 from netgen import occ
 
 from exudyn_rotor import SolidRotor, Support, campbell, stability
-from exudyn_rotor.linear.modal.tracking import joined_in_space
 from validation.stiffening.disc import PLATE, disc_rotor
 
 STEEL = {"youngsModulus": 2.1e11, "poissonsRatio": 0.3, "density": 7850.0}
@@ -70,44 +69,6 @@ def test_bending_in_many_waves_has_one_nodal_diameter():
     assert np.all(found.nodal_diameters[0, straight] == 0)
     more = campbell(rotor.reduce(20), [100.0], accuracy=None)
     assert set(more.nodal_diameters.ravel()) <= {-1, 0, 1}  # rather none than a wrong one
-
-
-def test_waves_that_take_turns_are_not_joined():
-    """One mode of 100 rad/s in the rotor frame, seen at 100 ± Ω; and whirls that no spin changes.
-
-    The frequency of a whirl is ``ω = ν ± Ω``: forward whirl of 40 rad/s passes ν = 0, and so does
-    one that rises by 1.5 Ω, as of a disc that tilts.
-    """
-    speeds = np.linspace(0.0, 60.0, 7)
-    standing, forward, backward = np.full(7, 100.0), np.abs(40.0 - speeds), 40.0 + speeds
-    rising = np.abs(0.5 * speeds - 12.0), np.abs(1.5 * speeds - 12.0)
-    seen = np.array([100.0, 110.0, 120.0, 70.0, 60.0, 50.0, 40.0])
-    rotor = np.column_stack([standing, forward, backward, rising[0]])
-    inertial = np.column_stack([seen, np.full(7, 40.0), np.full(7, 40.0), rising[1]])
-    whole = np.ones((7, 4), dtype=bool)
-    joined = joined_in_space(speeds, rotor, inertial, whole.astype(int), whole)
-    assert np.argwhere(~joined).tolist() == [[3, 0]]
-    unknown = joined_in_space(speeds, rotor, inertial, -whole.astype(int), whole)
-    assert np.argwhere(~unknown).tolist() == [[3, 0]]
-
-
-def test_waves_of_blades_that_take_turns_are_not_joined():
-    """ν + 2Ω, then ν + Ω: a step of the spin changes waves with four nodal diameters by more.
-
-    A forward wave with two of them passes ν = 0; of a whirl at no whole number of the spin, as of
-    another rotor of a train, nothing is told.
-    """
-    speeds = np.array([0.0, 240.0, 360.0, 480.0, 600.0])
-    blade, wave = np.array([1080.0, 1130.0, 1180.0, 1260.0, 1350.0]), 2.0 * speeds - 1000.0
-    other = 500.0 + 0.1 * speeds
-    rotor = np.column_stack([blade, np.abs(wave), other])
-    seen = blade + np.array([2.0, 2.0, 2.0, 1.0, 1.0]) * speeds
-    inertial = np.column_stack([seen, np.full(5, 1000.0), other + 1.37 * speeds])
-    whole = np.ones((5, 3), dtype=bool)
-    assert abs(seen[3] - seen[2]) < 4.0 * 120.0  # which such a wave could
-    for sign in (1.0, -1.0):
-        joined = joined_in_space(sign * speeds, rotor, inertial, -whole.astype(int), whole)
-        assert np.argwhere(~joined).tolist() == [[3, 0]]
 
 
 def test_a_coarse_bar_has_the_names_of_a_fine_one():

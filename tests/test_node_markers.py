@@ -17,7 +17,7 @@ from exudyn.utilities import RigidBodySpringDamper
 from point_rotors import free_stiffness
 from scipy.spatial.transform import Rotation
 
-from exudyn_rotor import SolidRotor, add_rotor, steady_state
+from exudyn_rotor import SolidRotor, add_rotor, linear_model, steady_state
 from exudyn_rotor.multibody.rotor.frame import FRAME_NODES
 from exudyn_rotor.theory.nodal import rotations, translations
 
@@ -260,8 +260,8 @@ def test_place_of_the_node_changes_nothing_else():
         motions.append(solved(mbs, mbs.AddSensor(seen)))
         steady = steady_state(body, SPEED)
         states.append(steady.state().q)
-        matrices.append(steady.scene.at(SPEED).K[0])
-        loads.append(steady.scene.unit_unbalance)
+        matrices.append(linear_model(mbs, body=body).at(SPEED).K[0])
+        loads.append(linear_model(mbs, body=body).unbalance(SPEED)[1])
         height = 0.0 if place == "mesh_origin" else reduced.center_of_mass[2]
         assert body.frame.position[2] == pytest.approx(height, abs=1e-15)
     for first, second in (motions, states, matrices, loads):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from exudyn_rotor import campbell, spinning_modes
 from validation.stiffening import nonlinear, overhung, spun_up_blade
 
 
@@ -55,26 +54,6 @@ def test_tangent_of_blades_that_turn_locally(make, face):
     )
     assert all_of_it == pytest.approx(expected, rel=1e-7)
     assert np.abs(alone / expected - 1.0).max() > 3e-4
-
-
-@pytest.fixture(scope="module")
-def thin_blade() -> nonlinear.ClampedSolid:
-    return nonlinear.ClampedSolid.of(nonlinear.thin_blade_mesh(), "root")
-
-
-def test_linear_analyses_have_the_whole_tangent(thin_blade):
-    """Full and reduced model; the tangent is projected on the motions that the full model found."""
-    speed = 600.0
-    prestress = thin_blade.clamped.prestress(initial_displacement=True)
-    rotor = thin_blade.clamped.with_prestress(prestress)
-    found = campbell(rotor, [speed], stiffening="full", modes=4)
-    motions = found.vectors[0][thin_blade.free]
-    basis = np.linalg.qr(np.hstack([motions.real, motions.imag]))[0]
-    expected = thin_blade.frequencies(thin_blade.linear_preload(speed), speed, basis)[:4]
-    assert np.sort(found.frequencies_rotor[0]) == pytest.approx(expected, rel=1e-6)
-    modes = rotor.reduce(spinning_modes(rotor, 8, [speed]))
-    reduced = campbell(modes, [speed], stiffening="full").frequencies_rotor[0, :4]
-    assert np.sort(reduced) == pytest.approx(expected, rel=1e-5)
 
 
 def test_orders_in_the_square_of_the_speed(rows):

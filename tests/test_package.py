@@ -102,6 +102,7 @@ print(*sorted(others))
     new_method, loaded = run(script).splitlines()
     assert new_method == "exudyn_rotor.multibody.twins.exudyn_call"
     assert loaded.split() == [
+        "exudyn.utilities",
         "exudyn_rotor",
         "exudyn_rotor.multibody",
         "exudyn_rotor.multibody.twins",

@@ -3,7 +3,7 @@
 import inspect
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import get_type_hints
 
 import numpy as np
@@ -236,27 +236,6 @@ def test_only_dataclasses_of_a_new_name_are_registered():
         storable(other)
 
 
-def test_bode_shows_the_amplitudes_in_micrometres_over_hertz(ellipses):
-    size, phase = ellipses.plot("mid", log=False)
-    x, y = size.lines[0].get_data()
-    assert np.allclose(x, ellipses.speeds / (2 * np.pi))
-    assert np.allclose(y, 1e6 * np.abs(ellipses.phasor("mid")))
-    assert [text.get_text() for text in size.get_legend().get_texts()] == ["n1", "n2"]
-    # far above both critical speeds the rotor is half a turn late, n2 a quarter turn behind n1
-    assert phase.lines[0].get_ydata()[-1] == pytest.approx(-180.0, abs=10.0)
-    assert phase.lines[1].get_ydata()[-1] == pytest.approx(-270.0, abs=10.0)
-    assert np.isnan(phase.lines[0].get_ydata()[0])  # no phase at rest
-
-
-def test_polar_diagram_draws_the_phasor(ellipses):
-    axes = ellipses.plot_polar("mid", direction="forward")
-    drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
-    assert np.allclose(drawn, 1e6 * ellipses.whirl("mid")[0])
-    assert "0 Hz" in [text.get_text() for text in axes.texts]
-    last = f"{30.0 / np.pi * ellipses.speeds[-1]:.5g} rpm"
-    assert last in [text.get_text() for text in ellipses.plot_polar("mid", units="rpm").texts]
-
-
 def test_orbit_is_drawn_for_every_place(ellipses):
     axes = ellipses.plot_orbit(240.0)
     drawn = axes.lines[0].get_xdata() + 1j * axes.lines[0].get_ydata()
@@ -270,22 +249,6 @@ def test_orbit_is_drawn_for_every_place(ellipses):
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mid", "node 2"]
     title = ellipses.plot_orbit(240.0, units="rpm").get_title(loc="right")
     assert title == f"spin speed {30.0 / np.pi * ellipses.speeds[index]:.4g} rpm"
-
-
-def test_table_and_peak(ellipses):
-    lines = ellipses.table("mid").splitlines()
-    # heads; stiffening, where errors are known, loads
-    assert len(lines) == 3 + len(ellipses.speeds) + 2 + len(ellipses.loads)
-    speed, size = ellipses.peak("mid")
-    major = ellipses.semi_axes("mid")[0]
-    highest = int(major.argmax())
-    assert abs(speed - ellipses.speeds[highest]) < 4.0  # one step of the speeds
-    # neighbours of at least 0.7 of it leave 1/size² a fall of (0.7⁻² − 1)/8 at most: 7 %
-    assert major[highest] <= size <= 1.075 * major[highest]
-    row = next(line for line in lines if line.split()[0] == f"{ellipses.speeds[highest]:g}")
-    largest = major[highest]
-    assert float(row.split()[1]) <= largest <= float(row.split()[1]) + float(row.split()[3])
-    assert ellipses.rates(1)[-1] == 400.0
 
 
 def test_harmonics_run_at_their_own_rate(shaken):
@@ -345,27 +308,6 @@ def test_surfaces_are_drawn_in_new_and_in_given_axes(corners):
         plotting.draw_surface(nodes, [[0, 1, 6]], np.arange(6.0), "T [K]")
     with pytest.raises(ValueError, match="values: needs finite numbers"):
         plotting.draw_surface(nodes, triangles, np.full(6, np.nan), "T [K]")
-
-
-@pytest.mark.parametrize(
-    ("name", "given"),
-    [
-        ("Campbell", {"basis_shifts": [[1e-3j, np.nan], [np.nan, np.nan], [1e-3j, 1e-3j]]}),
-        ("CriticalSpeeds", {"basis_errors": [1e-3, np.nan, np.nan]}),
-        ("CriticalSpeedMap", {"basis_errors": [[1e-3, np.nan], [np.nan, np.nan], [0.0, 1e-3]]}),
-        ("UnbalanceResponse", {"basis_errors": [[1e-3, 1e-3], [np.nan, np.nan], [0.0, 1e-3]]}),
-        ("Stability", {"basis_shifts": [1e-3j, np.nan, np.nan]}),
-    ],
-)
-def test_errors_that_are_not_estimated_are_no_numbers_in_tables(name, given):
-    """A dash in a column of their own; the map, which has the largest of a row, leaves it out."""
-    lines = replace(RESULTS[name], **given).table().splitlines()
-    assert not any("nan" in line for line in lines)
-    assert any("e-0" in line for line in lines)
-    if name == "CriticalSpeedMap":
-        assert ["basis error" in line for line in lines[2:5]] == [True, False, True]
-    else:
-        assert any(" - " in f"{line} " for line in lines)
 
 
 def test_responses_tell_the_level_of_stiffening(ellipses, shaken):

@@ -5,7 +5,6 @@ import pytest
 from point_rotors import ring_rotor
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from soft_bars import bar
 
 from exudyn_rotor import (
     Foundation,
@@ -20,7 +19,6 @@ from exudyn_rotor import (
     stability,
 )
 from exudyn_rotor.linear.solve.impulses import ChangingEquations
-from exudyn_rotor.linear.response import contact_stability
 
 MASS, WEIGHT = 20.0, 20.0 * 9.81
 BALLS = {"count": 8, "pitch_radius": 0.0326, "element_radius": 0.006, "stiffness": 7e9}
@@ -209,25 +207,6 @@ def test_a_motion_that_decays_within_a_ball_pass_is_stable():
     found = rolling_bearing_response(point(), [30.0], supports=held, gravity=[0.0, -9.81, 0.0])
     assert found.verdicts == ("stable",)
     assert np.roots([MASS, 1e4, 1e6]).max() < found.exponents[0]
-
-
-@pytest.mark.parametrize("name", ["z", "y"])
-@pytest.mark.filterwarnings("ignore:the (centre of mass|nearest principal axis)")
-def test_many_coordinates_are_looked_at_in_fewer(name, monkeypatch):
-    """Of 60, the 20 slow motions and those by forces on the rings: the exponent within 0.1 %."""
-    places, pull = ("left", "right"), (0.0, -200.0)
-    kind = {"count": 40, "element_radius": 1e-3, "stiffness": 7e8, "damping": 5e3}
-    rest = [bearing(end, **kind) for end in places]
-    rest.append(Support("left", np.diag([0.0, 0.0, 1e5]), 300.0))
-    given = {"supports": rest, "loads": [HarmonicForce(end, pull) for end in places]}
-    found, reduced = [], bar(name).reduce(54)
-    for most in (20, 60):
-        monkeypatch.setattr(contact_stability, "_MOST_COORDINATES", most)
-        response = rolling_bearing_response(reduced, [200.0], own=False, **given)
-        assert response.coordinates.shape[-1] == 60
-        found.append(response.exponents[0])
-    assert found[1] < -100.0
-    assert found[0] == pytest.approx(found[1], rel=1e-3)
 
 
 def test_at_rest_it_is_that_of_the_contacts_at_any_angle():

@@ -11,7 +11,6 @@ from netgen.occ import Box, OCCGeometry, Pnt, X
 from numpy.polynomial import Polynomial
 
 from exudyn_rotor import (
-    ModeBasis,
     Prestress,
     SolidRotor,
     SpinAxis,
@@ -104,27 +103,6 @@ def test_euler_stress_of_a_blade_is_that_of_its_load():
 
 
 # ------------------------------------------------------------------ modes at speed
-
-
-def test_modes_at_speed_need_fewer_columns():
-    """Ten columns, two of them responses to Coriolis forces of lag modes, beat forty at rest."""
-    solid = blade()
-    carrying = solid.with_prestress(solid.prestress())
-    speed = 1500.0
-    given = {"stiffening": "full", "frame": "rotor"}
-    target = campbell(carrying, speed, modes=4, **given).frequencies_rotor[0, :4]
-
-    def error(modes: ModeBasis) -> float:
-        reduced = carrying.reduce(modes)
-        found = campbell(reduced, speed, **given).frequencies_rotor[0, :4]
-        return float(np.abs(found / target - 1).max())
-
-    both = spinning_modes(carrying, 4, [speed])
-    assert ["Coriolis" in label for label in both.labels] == [False] * 8 + [True] * 2
-    assert error(both) < min(1e-5, 0.3 * error(free_modes(carrying, 40)))
-    without = ModeBasis(both.matrix[:, :8], both.labels[:8], both.nodes, both.frequencies[:8])
-    assert error(without) > 1e-3
-    np.testing.assert_array_equal(np.isnan(both.frequencies), np.arange(10) >= 4)
 
 
 @pytest.mark.parametrize("speed", [3.0, 20.0])

@@ -5,18 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 import scipy.linalg as la
-from scipy.integrate import solve_ivp
 from train_models import (
     FIRST,
     GROUND,
     SECOND,
     UNEVEN,
-    at,
     bar,
     by_hand,
     exponents_of,
     lateral,
-    left_of_modes,
     rigid,
     rings,
     two_discs,
@@ -129,8 +126,8 @@ def test_rotors_of_one_speed_are_one_rotor():
     both = stability(train, [250.0], stiffening="none")
     # the one rotor has more: the turn of its parts against each other, softened without a spring
     exact, found = (r.exponents[0][np.abs(r.exponents[0]) < 2e3] for r in (single, both))
-    found = found[np.abs(found) > 0.1]
-    assert len(found) == 18
+    found, exact = found[np.abs(found) > 0.1], np.r_[exact, exact.conj()]
+    assert len(found) == 9
     assert np.abs(found[:, None] - exact).min(axis=1).max() < 1e-6
 
 
@@ -177,85 +174,25 @@ def test_what_does_not_repeat_is_refused():
     """Uneven rotors and supports that turn, at ratios that are no whole numbers."""
     uneven = {"A": rigid(*FIRST), "B": bar()}
     springs = {"B": [Support("a", 1e5)]}
-    with pytest.raises(ValueError, match=r"rotor 'B', whose unevenness is 0\.\d+ .*largest_unev"):
-        linear_model(RotorTrain(uneven, {"A": 1.0, "B": 1.7}, springs))
-    linear_model(RotorTrain(uneven, {"A": 1.7, "B": 1.0}, springs))
+    with pytest.raises(ValueError, match=r"'B'.*: its unevenness is 0\.\d+, .*largest_unev"):
+        linear_model(RotorTrain(uneven, {"A": 1.0, "B": 1.7}, springs)).at(100.0)
+    linear_model(RotorTrain(uneven, {"A": 1.7, "B": 1.0}, springs)).at(100.0)
     turning = Support("a", [[1e5, 0.0], [0.0, 2e5]], frame="rotor")
     train = two_discs(1.7)
     with pytest.raises(ValueError, match="B:a is not the same in all directions"):
-        linear_model(RotorTrain(train.rotors, train.ratios, {"B": [turning]}))
-    lossy = {"A": train.rotors["A"], "B": train.rotors["B"].with_damping(loss=0.01)}
-    with pytest.raises(ValueError, match="structural damping"):
-        linear_model(RotorTrain(lossy, train.ratios))
+        linear_model(RotorTrain(train.rotors, train.ratios, {"B": [turning]})).at(100.0)
     with pytest.raises(ValueError, match="has its own"):
         linear_model(train, supports=[turning])
 
 
-def test_uneven_rotor_at_a_whole_ratio_against_the_monodromy_matrix():
-    """A bar that turns twice as fast on a disc on unequal supports, integrated by itself.
-
-    In the frame of the bar ``I₁φ̈₁ − (I₁+I₂−I₃)ωφ̇₂ + (I₃−I₂)ω²φ₁ = m₁``, likewise φ₂ (Euler).
-    """
-    speed, ratio = 150.0, 2.0
-    disc, omega = rigid(*FIRST), ratio * speed
-    spring = 8e4
-    supports = {"A": [Support(n, [[3e5, 0.0], [0.0, 1e5]], 20.0) for n in "ab"]}
-    links = [Link(f"A:{n}", f"B:{n}", Support(n, spring, 3.0)) for n in "ab"]
-    train = RotorTrain({"A": disc, "B": bar()}, {"A": 1.0, "B": ratio}, supports, links)
-    found = stability(train, [speed]).exponents[0]
-    half, (r, za, m) = 0.05, FIRST
-    I1, I2, I3 = 4 * half**2, 4 * (0.2**2 + half**2), 4 * 0.2**2
-    polar, transverse = m * r**2, m * (0.5 * r**2 + za**2)
-    inertia = np.array([m, m, transverse, transverse, 4.0, 4.0, I1, I2])
-    D, K = np.zeros((8, 8)), np.zeros((8, 8))
-    D[2, 3], D[3, 2] = polar * speed, -polar * speed
-    D[6, 7], D[7, 6] = -(I1 + I2 - I3) * omega, (I1 + I2 - I3) * omega
-    K[6, 6], K[7, 7] = (I3 - I2) * omega**2, (I3 - I1) * omega**2
-
-    def rate(time: float, state: np.ndarray) -> np.ndarray:
-        c, s = np.cos(omega * time), np.sin(omega * time)
-        x, v = state.reshape(2, 8, -1)
-        force = -(K @ x + D @ v)
-        for z_a, z_b in ((-za, -half), (za, half)):
-            tilts, drift = np.array([[c, -s], [s, c]]), omega * np.array([[-s, -c], [c, -s]])
-            lever = z_b * np.array([[0.0, 1.0], [-1.0, 0.0]])
-            A, B = at(0, z_a), at(1, z_b)
-            B[:, 6:], B_t = lever @ tilts, np.zeros((2, 8))
-            B_t[:, 6:] = lever @ drift
-            pull = spring * (A - B) @ x + 3.0 * ((A - B) @ v - B_t @ x)
-            force = force - (A - B).T @ pull
-            force -= A.T @ (np.diag([3e5, 1e5]) @ A @ x + 20.0 * A @ v)
-        return np.concatenate([v, force / inertia[:, None]]).ravel()
-
-    period = 2.0 * np.pi / speed
-    end = solve_ivp(rate, (0.0, period), np.eye(16).ravel(), method="DOP853",
-                    rtol=1e-9, atol=1e-12).y[:, -1]  # fmt: skip
-    multipliers = np.linalg.eigvals(end.reshape(16, 16))
-    distance = np.abs(np.exp(found * period)[:, None] - multipliers).min(axis=0)
-    assert distance.max() < 1e-6
-
-
-def test_constant_equations_at_rest_are_those_of_hills_method():
-    """Cross-coupled supports: exponents by inertial axes, and by Hill's method in turning ones."""
-    train = two_discs(1.7, UNEVEN)
-    standing, turning = (stability(train, [300.0], method=m) for m in ("auto", "hill"))
-    distances = np.abs(standing.exponents[0][:, None] - turning.exponents[0])
-    assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-6
-
-
-def test_modes_from_axes_at_rest_hold_in_turning_ones():
-    """``λ_m² M X_m + Σ_j (λ_{m−j} D_j + K_j) X_{m−j} = 0`` with λ_m = λ + imΩ for all m."""
-    assert left_of_modes(linear_model(two_discs(1.7, UNEVEN)), 300.0) < 1e-9
-
-
-def test_table_of_a_link_tells_whose_speed_it_needs():
+def test_table_of_a_link_is_over_the_difference_of_speeds():
     rotors, ratios = dict.fromkeys("AB", rigid(*FIRST)), {"A": 1.0, "B": 1.5}
     table = Support("a", ([0.0, 100.0], [1e5, 2e5]))
     there, back = (
         RotorTrain(rotors, ratios, links=[Link(*ends, table)])
         for ends in (("A:a", "B:a"), ("B:a", "A:a"))
     )
-    with pytest.raises(ValueError, match=r"not -50 rad/s.* speed of 'A' less that of 'B', which"):
+    with pytest.raises(ValueError, match="not -50 rad/s"):
         linear_model(there).at(100.0)
     linear_model(back).at(100.0)
 

@@ -16,10 +16,10 @@ from exudyn_rotor import (
     grooved_pads,
     steady_state,
 )
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion
 from exudyn_rotor.linear.model.scene.differences import differences
 from exudyn_rotor.linear.model.scene.probe import linearised, probing, unbalanced
-from exudyn_rotor.linear.equations import UnconvergedError
 
 MASS, RADIUS, ARM, SPEED, HEAVY = 10.0, 0.1, 0.15, 200.0, 1e-3
 STIFFNESS, DAMPING, ENDS = 1e5, 200.0, ("left", "right")

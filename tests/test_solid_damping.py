@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from models import ALUMINIUM, STEEL, block_beam, two_material_cylinder
+from models import ALUMINIUM, STEEL, two_material_cylinder
 from point_rotors import random_rotor
 
-from exudyn_rotor import SolidRotor, Support, campbell, stability, stability_threshold
+from exudyn_rotor import SolidRotor, Support, stability, stability_threshold
 from exudyn_rotor.solid.damping import dense_damping
 
 MATERIALS = {"steel": STEEL, "aluminium": ALUMINIUM}
@@ -122,13 +122,6 @@ def test_springs_to_the_ground_let_the_whole_mass_be_damped():
     rotor = rotor.with_damping(mass=0.5)
     # two nodes on a line leave its rotation free, which displaces nothing
     np.testing.assert_allclose(dense_damping(rotor), np.eye(6), rtol=0.0, atol=1e-14)
-
-
-def test_large_model_with_mass_damping_is_refused():
-    damped = SolidRotor.from_ngsolve(block_beam(0.03), STEEL, "z").with_damping(mass=1.0)
-    assert damped.stiffness.shape[0] > 600
-    with pytest.raises(ValueError, match=r"with_damping\(mass=…\): .*rotor\.reduce"):
-        campbell(damped, [0.0, 10.0], modes=8)
 
 
 @pytest.mark.parametrize(

@@ -18,10 +18,10 @@ from exudyn_rotor import (
     recommended_settings,
     steady_state,
 )
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion as search
 from exudyn_rotor.linear.model.scene.probe import linearised
 from exudyn_rotor.linear.model.scene.scene_checks import check_period
-from exudyn_rotor.linear.equations import UnconvergedError
 
 RADIUS, LENGTH, MASS, ADDED = 0.1, 0.2, 8.0, 0.01
 TOTAL = MASS + 2 * ADDED  # kg
@@ -419,7 +419,7 @@ def test_a_start_of_another_scene_is_refused(reduced):
     other, another = build(reduced, 50.0, "free")
     other.Assemble()
     start = steady_state(another)
-    with pytest.raises(ValueError, match="start: has .* it is of another scene"):
+    with pytest.raises(ValueError, match=r"start: has .* it is of another scene"):
         steady_state(body, start=start)
     with pytest.raises(TypeError, match="start: needs"):
         steady_state(body, start=1.0)

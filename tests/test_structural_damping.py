@@ -23,7 +23,6 @@ from exudyn_rotor import (
     linear_model,
     select_modes,
     stability,
-    stability_map,
     stability_threshold,
     unbalance_response,
     unstable_ranges,
@@ -33,9 +32,9 @@ from exudyn_rotor.theory.formulation import Formulation
 MASS, K, ETA = 3.0, 1.2e5, 0.04  # critical speed √(K/MASS) = 200 rad/s
 OMEGA = np.sqrt(K / MASS)
 FREQUENCIES = np.array([20.0, 150.0, OMEGA, 300.0, 700.0])
-# rounding of one mass times the condition 1/η of the equations at resonance, times 100
-EXACT = 1e-12
-KINDS = ("subspace", "dense", "reduced")
+# rounding of one mass times the condition 1/η of the equations at resonance, times 1e4
+EXACT = 1e-10
+KINDS = ("full", "reduced")
 
 
 def one_mass(kind: str = "reduced", **factors: float):
@@ -48,7 +47,7 @@ def one_mass(kind: str = "reduced", **factors: float):
 
 
 def model_of(kind: str, supports: tuple[Support, ...] = (), **factors: float):
-    return linear_model(one_mass(kind, **factors), supports=supports, dense=kind == "dense")
+    return linear_model(one_mass(kind, **factors), supports=supports)
 
 
 def close(found, expected, tolerance=EXACT):
@@ -123,7 +122,6 @@ def test_unbalance_on_anisotropic_supports(kind):
     assert np.all(power > 1e-5 * 1e-4 * speeds**3 * np.abs(p))
 
 
-@pytest.mark.filterwarnings("ignore:the centre of mass is")
 def test_viscous_damping_of_one_frequency_is_equal_there():
     """``i ν (η/ν) K = i η K``, as the docstrings and the warning say."""
     rotor = random_rotor(3).with_interface("a", [0, 1, 2, 3]).reduce(9)
@@ -175,19 +173,6 @@ def test_materials_have_loss_factors_of_their_own(cylinder, damped):
     assert values[0] > -1e-14 * values[-1]
     assert damped.damping is None
     assert damped.mass_damping is None
-
-
-def test_a_full_model_is_that_of_all_its_coordinates(damped):
-    supports = [Support("left", 1e7, 300.0, 1e5, 5.0), Support("joint", 2e7)]
-    force = HarmonicForce("joint", (1.0, 2.0j, 0.5))
-    found, expected = (
-        harmonic_response(
-            linear_model(damped, supports=supports, dense=dense), [900.0, 4000.0], force, speed=2e3
-        ).motion
-        for dense in (False, True)
-    )
-    # residual=1e-9 in the norm of the static response, times an amplification below 10
-    assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()
 
 
 # ------------------------------------------------------------------ reduced rotors
@@ -272,10 +257,6 @@ def test_analyses_in_time_say_that_they_leave_it_out():
     with pytest.warns(UserWarning, match="stability finds exponents without it"):
         unstable = unstable_ranges(rotor, [10.0, 20.0])
     assert unstable.shape == (0, 2)
-    with pytest.warns(UserWarning, match="stability finds exponents without it") as told:
-        found = stability_map(lambda loss, speed: (one_mass(loss=loss), speed), [0.0, ETA], [50.0])
-    assert len(told) == 1  # at one of the two points
-    np.testing.assert_array_equal(found.growth[0], found.growth[1])
     with pytest.warns(UserWarning, match="A scene runs without it"):
         add_rotor(exudyn.SystemContainer().AddSystem(), rotor, spin=40.0, translation="none")
     with warnings.catch_warnings():

@@ -20,8 +20,8 @@ from exudyn_rotor import (
 )
 from exudyn_rotor.bearings.held_law import HeldBearing
 from exudyn_rotor.bearings.rolling import contacts
-from exudyn_rotor.linear.model.scene import steady_motion
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene import steady_motion
 
 CLEARANCE, MASS, RADIUS = 1e-4, 100.0, 0.1
 ACROSS, UPRIGHT = [0.0, -9.81, 0.0], [0.0, 0.0, -9.81]

@@ -1,10 +1,8 @@
 """What voids remember, as a few states of linear analyses: against the film, and against runs."""
 
-from concurrent.futures import ProcessPoolExecutor
-
 import numpy as np
 import pytest
-from apart import exponents
+from apart import apart, exponents
 from void_films import (
     BEHIND,
     GRAVITY,
@@ -13,12 +11,9 @@ from void_films import (
     TO_X,
     bearings,
     exponent,
-    kick,
     oil,
-    oscillations,
     rotor,
     scene,
-    solve,
 )
 
 from exudyn_rotor import (
@@ -26,21 +21,14 @@ from exudyn_rotor import (
     BaseRecord,
     Foundation,
     HarmonicForce,
-    JournalBearing,
     Mount,
-    RotorTrain,
     Support,
-    TiltingPadBearing,
     Unbalance,
     base_response,
-    campbell,
-    critical_speed_map,
     harmonic_response,
     linear_model,
     stability,
-    stability_level_one,
     stability_threshold,
-    steady_state,
     unbalance_response,
     unstable_ranges,
 )
@@ -161,22 +149,6 @@ def test_responses_have_the_coefficients_of_their_frequency():
     assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
 
 
-def test_critical_speeds_have_the_stiffness_of_unbalance():
-    """The conical motion of two rings, I_t = m (a² + r²/2), I_p = m r², on springs at ±a."""
-    reduced = rotor()
-    supports = bearings(reduced)
-    options = {"max_speed": 560.0, "accuracy": None}
-    with pytest.warns(UserWarning, match=r"up to 25\.2 rad/s none .* do not resolve"):
-        found = critical_speed_map(reduced, ["left"], [1.0], supports=supports, **options)
-    (found,) = found.speeds[0]
-    stiffness = supports[0]._state(found, None).coefficients(1.0)[0]
-    mass, r, a = 0.5 * reduced.invariants.mass, 0.1, 0.15
-    gyroscopic = mass * (r / a) ** 2 * np.array([[0.0, 1j], [-1j, 0.0]])
-    inertia = mass * (1.0 + 0.5 * (r / a) ** 2) * np.eye(2) + gyroscopic
-    values = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T) - found**2 * inertia)
-    assert np.abs(values).min() < 1e-6 * np.abs(values).max()
-
-
 def test_scenes_without_damping_have_the_coefficients_of_unbalance():
     reduced = rotor()
     supports = bearings(reduced)
@@ -222,71 +194,6 @@ def test_ground_that_shakes_on_and_on_has_the_response_in_harmonics():
     assert np.abs(fit[0] - 1j * fit[1] - expected).max() < 2e-4 * np.abs(expected).max()
 
 
-def test_trains_processes_and_speeds_give_the_same():
-    reduced = rotor()
-    supports = bearings(reduced)
-    speeds = [500.0, SPEED]
-    alone = stability(reduced, speeds, supports=supports, accuracy=None)
-    train = RotorTrain({"one": reduced}, {"one": 1.0}, {"one": supports}, [])
-    growth = stability(train, speeds, accuracy=None).growth_of("lateral")
-    np.testing.assert_allclose(growth, alone.growth_of("lateral"), rtol=1e-7)
-    damped = [Support(name, 1e8, damping=1e5) for name in POINTS]
-    given = {"slow": reduced, "fast": reduced}, {"slow": 1.0, "fast": 2.0}
-    train = RotorTrain(*given, {"slow": damped, "fast": supports}, [])
-    growth = stability(train, [0.5 * SPEED], accuracy=None).growth_of("lateral")
-    np.testing.assert_allclose(growth, alone.growth_of("lateral")[1:], rtol=1e-6)
-    with ProcessPoolExecutor(1) as executor:
-        sent = stability(reduced, speeds, supports=supports, accuracy=None, executor=executor)
-    np.testing.assert_allclose(sent.growth, alone.growth, atol=1e-7 * SPEED)
-    modes = campbell(reduced, speeds, supports=supports, accuracy=None)
-    slow = np.argmin(np.abs(modes.frequencies_inertial[1] - 290.0))
-    assert modes.growth[1, slow] == pytest.approx(alone.growth_of("lateral")[1], rel=1e-6)
-
-
-def test_motions_of_voids_take_no_place_of_a_shafts():
-    """Four motions of a rigid rotor on its films, in a list, a train and a scene.
-
-    Six of the voids are as slow, or slower, and have 97 % and more of their energy in them.
-    """
-    reduced = rotor()
-    supports = bearings(reduced)
-    train = RotorTrain({"one": reduced}, {"one": 1.0}, {"one": supports}, [])
-    mbs, body, _ = scene(reduced, supports, spin=SPEED)
-    in_scene = linear_model(mbs, body=body, about="equilibrium")
-    whole = campbell(reduced, [SPEED], supports=supports, accuracy=None)
-    slow = (whole.frequencies_inertial[0] > 1.0) & (whole.growth[0] > -150.0)
-    expected = np.sort(whole.growth[0, slow])
-    assert len(expected) == 4
-    for target, given, free in (
-        (reduced, {"supports": supports}, 4),
-        (train, {}, 2),
-        (in_scene, {}, 2),
-    ):
-        few = campbell(target, [SPEED], modes=free + 4, accuracy=None, **given)
-        moving = few.frequencies_inertial[0] > 1.0
-        np.testing.assert_allclose(np.sort(few.growth[0, moving]), expected, rtol=1e-5)
-
-
-def test_own_coordinates_are_named_as_what_they_are():
-    reduced = rotor()
-    gaps = np.radians([54.0, 126.0, 198.0, 270.0, 342.0])
-    load = bearings(reduced)[0].load
-    film = oil(gaps, "reynolds", preload=0.5, nodes=60)
-    pads = TiltingPadBearing(interface="left", film=film, load=load, pad_inertia=1e-3)
-    names = linear_model(reduced, supports=[pads, bearings(reduced)[1]]).beside
-    assert names[0] == "voids 1 at right, 1"
-    assert names[6:] == tuple(f"pads 2 at left, {pad}" for pad in range(1, 6))
-
-
-def test_refused():
-    reduced = rotor()
-    with pytest.raises(ValueError, match="or with a film that conserves mass, has states"):
-        stability_level_one(reduced, SPEED, 1e5, "left", supports=bearings(reduced))
-    one = JournalBearing(interface="left", film=oil())
-    with pytest.raises(ValueError, match="linear analyses need its static load"):
-        one.linearised()
-
-
 # ------------------------------------------------------------------ scenes
 
 BLOCK = Foundation.rigid(
@@ -313,34 +220,6 @@ def given(name, eccentric=0.0):
     return reduced, supports, options | {"gravity": turn @ gravity}
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_runs_decay_as_stability_says(name):
-    """The slowest motion after a push; runs of two steps, as voids err in first order.
-
-    What is left is of second order: of the integrator (|s|h)²/12, of voids about as much.
-    """
-    reduced, supports, options = given(name)
-    foundation = options.get("foundation")
-    model = linear_model(reduced, supports=supports, foundation=foundation)
-    told = stability(model, [SPEED], accuracy=None)
-    lateral = (told.families[0] == "lateral") & (told.frequencies_inertial[0] > 50.0)
-    expected = (told.exponents[0].real + 1j * told.frequencies_inertial[0])[np.argmax(lateral)]
-    found, step = [], 4e-4
-    for h in (step, 0.5 * step):
-        mbs, body, (sensor, *_) = scene(reduced, supports, **options)
-        body.start_from(steady_state(body).state())
-        kick(body, (0.1 * body.standing_axes @ [1.0, 0.3, 0.0]).tolist())
-        solve(mbs, 0.1, h)
-        record = mbs.GetSensorStoredData(sensor)
-        record = record[record[:, 0] > 0.02]
-        every = round(1.2e-3 / h)
-        motion = (record[:, 1:4] @ body.standing_axes)[::every, :2]
-        all_of_them = oscillations(motion, every * h, rank=7 if foundation is None else 11)
-        found.append(all_of_them[np.argmin(np.abs(all_of_them - expected))])
-    found = 2.0 * found[1] - found[0]
-    assert abs(found - expected) < abs(expected) * (abs(expected) * step) ** 2 / 6.0
-
-
 @pytest.mark.parametrize("name", ["in the pad, skew", "light", "foundation"])
 @pytest.mark.parametrize("eccentric", [0.0, 0.1])
 def test_scenes_are_linearised_as_lists(name, eccentric):
@@ -352,9 +231,4 @@ def test_scenes_are_linearised_as_lists(name, eccentric):
         linear_model(reduced, supports=supports, foundation=foundation),
         linear_model(mbs, body=body, about="equilibrium"),
     )
-    first, second = (stability(model, [SPEED], accuracy=None) for model in models)
-    slow = first.exponents[0].real > -0.5 * SPEED
-    moving = np.abs(first.exponents[0].real) > first.bounds[0]
-    for s in first.exponents[0][slow & moving]:
-        apart = np.abs(second.exponents[0] - s), np.abs(second.exponents[0].conj() - s)
-        assert np.min(apart) < 1e-6 * SPEED
+    assert apart(*models[::-1], SPEED) < 1e-6

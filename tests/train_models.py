@@ -95,24 +95,6 @@ def lateral(result, row: int = -1) -> np.ndarray:
     return values[np.argsort(values.imag)]
 
 
-def left_of_modes(model, speed: float) -> float:
-    """Return ``Σ_j (λ²_{m−j} M_j + λ_{m−j} D_j + K_j) X_{m−j}`` over its terms, λ_m = λ + imΩ."""
-    system, modes = model.at(speed), model.space(1, speed).modes(speed, 1e-8)
-    top, largest = int(modes.orders.max()), 0.0
-    given = dict(zip(modes.orders.tolist(), modes.vectors, strict=True))
-    for m in range(-top - 2, top + 3):
-        left = np.zeros(modes.central.shape, dtype=complex)
-        for j in range(-2, 3):
-            if m - j in given:
-                rate = modes.values + 1j * (m - j) * speed
-                left += (system.D.get(j, 0.0 * system.M[0]) @ given[m - j]) * rate
-                left += system.K.get(j, 0.0 * system.M[0]) @ given[m - j]
-                left += (system.M[0] @ given[m - j]) * rate**2 if j == 0 else 0.0
-        largest = max(largest, np.abs(left).max())
-    sizes = [np.abs(X[0]).max() for X in (system.K, system.D, system.M)]
-    return largest / max(sizes @ np.abs(modes.values) ** np.arange(3)[:, None])
-
-
 def bar() -> ReducedRotor:
     """Return a rigid rotor whose transverse moments differ: four masses on two bars."""
     nodes = np.array([[0.2, 0, -0.05], [-0.2, 0, -0.05], [0.2, 0, 0.05], [-0.2, 0, 0.05]])

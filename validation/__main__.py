@@ -47,8 +47,6 @@ SCRIPTS = {
     "extremes": Script("extremes.table", "the extremes"),
     "savers": Script("savers", "no file lost"),
     "kernels": Script("kernels", ""),
-    "mutations": Script("mutations.run", ""),
-    "bad_calls": Script("bad_calls.report", ""),
 }
 
 

@@ -252,7 +252,9 @@ def _scene_acts_along(source: LinearModel, body: RotorBody, speed: float) -> boo
     along = Q[kinds.index(ModeKind.AXIAL)]
     system = source.at(speed)
     scale = max(np.abs(term).max() for term in system.K.values())
-    return any(np.abs(along @ term[: len(along)]).max() > 1e-9 * scale for term in system.K.values())
+    return any(
+        np.abs(along @ term[: len(along)]).max() > 1e-9 * scale for term in system.K.values()
+    )
 
 
 def _harmonics(system: PeriodicSystem) -> np.ndarray:
@@ -261,9 +263,7 @@ def _harmonics(system: PeriodicSystem) -> np.ndarray:
     return step * np.arange(-(_ORDER // step), _ORDER // step + 1)
 
 
-def _hill(
-    system: PeriodicSystem, orders: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _hill(system: PeriodicSystem, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return M, D, K of ``(s²M + sD + K) X`` for harmonics X, in Hill's matrices (h k, h k)."""
     h, k = len(orders), system.size
     none = np.zeros((h, k, h, k), dtype=complex)

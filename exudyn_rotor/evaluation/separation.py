@@ -141,8 +141,8 @@ class SeparationMargins(Result):
             lines.append("  no peak")
         if np.any(np.isnan(self.half_power)):
             lines.append(
-                "nan: the size does not fall to 0.707 of the peak before the valley to the next "
-                "peak or the end; AF is by the other side, or not known"
+                "nan: no fall to 0.707 of the peak before the valley to the next peak or the end; "
+                "AF is by the other side"
             )
         return "\n".join(lines)
 

@@ -35,7 +35,7 @@ class PeriodicSystem:
     M : ndarray, shape (k, k)
     D, K : mapping of int to ndarray, shape (k, k)
         Fourier terms: ``K(θ) = Σ K[n] exp(i n θ)``; K[−n] is the conjugate of K[n].
-    H : sequence of (int, ndarray), optional
+    H : sequence of (float, ndarray), optional
         Structural damping: a motion ``e^{iνt}`` has the stiffness ``K + i Σ sign(ν − nΩ) H_n``,
         with the frequency ν − nΩ that the rotor sees. Only forced motions know the frequency ν;
         all other analyses leave structural damping out.
@@ -45,7 +45,7 @@ class PeriodicSystem:
     M: np.ndarray
     D: Terms
     K: Terms
-    H: Sequence[tuple[int, np.ndarray]] = ()
+    H: Sequence[tuple[float, np.ndarray]] = ()
 
     @property
     def size(self) -> int:
@@ -102,9 +102,7 @@ def without_rounding(terms: Terms) -> dict[int, np.ndarray]:
     """Return Fourier terms without those that are rounding beside the largest; 0 always stays."""
     largest = max((np.abs(X).max(initial=0.0) for X in terms.values()), default=0.0)
     kept = {
-        n: X
-        for n, X in terms.items()
-        if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
+        n: X for n, X in terms.items() if n == 0 or np.abs(X).max(initial=0.0) > _ROUNDING * largest
     }
     if 0 not in kept:
         kept[0] = np.zeros_like(next(iter(terms.values())).real)

@@ -133,9 +133,7 @@ def _warn_of_lost(motions: Sequence[Motions]) -> None:
     )
 
 
-def _in_all(
-    motions: Motions | None, basis: np.ndarray, neutral: np.ndarray
-) -> Motions | None:
+def _in_all(motions: Motions | None, basis: np.ndarray, neutral: np.ndarray) -> Motions | None:
     """Return motions of a basis in all coordinates, after neutral ones with λ = 0."""
     if motions is None:
         return None

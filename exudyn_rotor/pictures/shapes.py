@@ -77,7 +77,9 @@ def mode_shapes(
     chosen = chosen[: min(count, np.count_nonzero(~np.isnan(motions.values)))]
     values, vectors = named.motions.values[chosen], named.motions.vectors[:, :, chosen]
     vectors = np.where(values.imag < 0.0, vectors[::-1].conj(), vectors)
-    seen = _of_nodes(model, {int(m): x for m, x in zip(motions.orders, vectors, strict=True)}, speed)
+    seen = _of_nodes(
+        model, {int(m): x for m, x in zip(motions.orders, vectors, strict=True)}, speed
+    )
     orders = np.array(sorted(seen))
     motion = np.array([seen[m] for m in orders])
     return MotionShapes(

@@ -14,7 +14,7 @@ Q is a combination of the columns of
 responses ``K⁺L`` to these loads L, with those to loads at the interfaces
 (:mod:`exudyn_rotor.reduction.attachment`), are what the basis lacks first: the lowest left-out
 modes, weighted by how much the motions in the basis excite them. Beside Q they make a finer rotor,
-and by it the error of the basis is estimated (:mod:`exudyn_rotor.linear.models.basis.left_out`).
+and by it the error of the basis is estimated (:mod:`exudyn_rotor.linear.modal.basis_error`).
 """
 
 from __future__ import annotations

@@ -85,9 +85,10 @@ def test_speeds_without_values_are_nan_with_one_warning():
     with pytest.warns(UserWarning, match="no values at 301") as caught:
         found = campbell(disc(), [100.0, 299.0, 301.0], supports=supports, accuracy=None)
     assert len(caught) == 1
-    assert np.all(np.isnan(found.growth[2])) and np.all(np.isfinite(found.growth[:2]))
+    assert np.all(np.isnan(found.growth[2]))
+    assert np.all(np.isfinite(found.growth[:2]))
     assert "no values" in found.table()
-    assert not found.plot().get_legend() is None
+    assert found.plot().get_legend() is not None
 
 
 def test_films_at_rest_leave_the_other_speeds():
@@ -98,7 +99,8 @@ def test_films_at_rest_leave_the_other_speeds():
     ]  # fmt: skip
     with pytest.warns(UserWarning, match="no values at 0 "):
         found = campbell(disc(), [0.0, 100.0, 300.0], supports=bearings, accuracy=None)
-    assert np.all(np.isnan(found.growth[0])) and np.all(np.isfinite(found.growth[1:]))
+    assert np.all(np.isnan(found.growth[0]))
+    assert np.all(np.isfinite(found.growth[1:]))
 
 
 @pytest.mark.parametrize("axis", AXES)

@@ -29,9 +29,7 @@ def seal(q: float) -> Support:
 @pytest.mark.parametrize("ratio", [1.0, 3.0])
 def test_the_mode_followed_is_the_one_that_turns_unstable(rotor, damping, ratio):
     """Bearings from light to heavy damping, in which others are overdamped."""
-    supports = [
-        Support(n, np.diag([1e6, ratio * 1e6]), damping) for n in ("left", "right")
-    ]
+    supports = [Support(n, np.diag([1e6, ratio * 1e6]), damping) for n in ("left", "right")]
     result = stability_level_one(rotor, 300.0, 2e4, "disc", supports=supports)
     assert 0.0 < result.log_decrement[0] < 7.0
     assert np.all(np.diff(result.log_decrement) < 1e-9)

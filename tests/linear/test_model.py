@@ -118,7 +118,8 @@ def test_free_motions_are_the_real_ones(supports, free):
 def test_matrices_and_state_space_are_what_analyses_solve():
     model = linear_model(disc(), supports=held(UNEVEN))
     space = model.state_space(300.0)
-    assert space.B.shape == (2 * model.size, 4) and space.C.shape == (4, 2 * model.size)
+    assert space.B.shape == (2 * model.size, 4)
+    assert space.C.shape == (4, 2 * model.size)
     values = np.linalg.eigvals(space.A)
     wanted = campbell(model, [300.0], accuracy=None)
     for growth, frequency in zip(wanted.growth[0], wanted.frequencies_inertial[0], strict=True):
@@ -127,7 +128,8 @@ def test_matrices_and_state_space_are_what_analyses_solve():
     static = -space.C @ np.linalg.lstsq(space.A, space.B)[0]
     assert static[0, 0] > static[1, 1] > 0.0  # softer along n1
     coordinates = model.matrices(300.0).coordinates
-    assert len(coordinates) == model.size and coordinates[0] == "translation 1"
+    assert len(coordinates) == model.size
+    assert coordinates[0] == "translation 1"
 
 
 def test_model_shows_itself_in_a_few_lines():
@@ -136,7 +138,8 @@ def test_model_shows_itself_in_a_few_lines():
     model = linear_model(disc(), supports=held(), foundation=block)
     assert isinstance(model, LinearModel)
     text = repr(model)
-    assert len(text.splitlines()) == 5 and len(text) < 500
+    assert len(text.splitlines()) == 5
+    assert len(text) < 500
     assert "on a foundation" in text
 
 

@@ -122,9 +122,9 @@ def false_instability(quick: bool = False) -> Row:
     return Row(
         "spin speed, stability at 'none' and 'tilt'",
         "to 1000 × the false threshold",
-        "threshold against √(4 I_t k / (I_p (2 I_t − I_p))); limit: a double root resolves √eps",
+        "threshold against √(4 I_t k / (I_p (2 I_t − I_p))); limit: 1e-6",
         abs(found / exact - 1.0) if held_up else np.inf,
-        np.sqrt(EPS),
+        1e-6,
         f"'none' at {found:.6g} rad/s; 'tilt' not reached",
         "physics",
         "'none': unstable, without a word that the terms are missing; 'tilt' (default): stable",

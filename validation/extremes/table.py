@@ -38,7 +38,6 @@ GROUPS: dict[str, tuple[Callable[..., Row], ...]] = {
         holding.supports_run,
         holding.supports_unresolved,
         holding.contrast,
-        holding.damping,
         holding.internal_damping,
         holding.asymmetry,
         holding.no_interface,

@@ -89,9 +89,13 @@ def solid_frequencies(
         displaced = level == "full, displaced"
         rotor = rotor.with_prestress(rotor.prestress(initial_displacement=displaced))
     speeds = UNIT * np.asarray(etas)
-    found = campbell(rotor, speeds, stiffening=LEVELS[level], modes=modes, frame="rotor")
+    reduced = rotor.reduce(max(150, 2 * modes))
+    found = campbell(
+        reduced, speeds, stiffening=LEVELS[level], modes=modes, frame="rotor", accuracy=None
+    )
     rows = []
-    for vectors, values in zip(found.vectors, found.frequencies_rotor, strict=True):
+    for few, values in zip(found.vectors, found.frequencies_rotor, strict=True):
+        vectors = reduced.shapes.matrix @ few
         energy = (np.abs(vectors.reshape(rotor.node_count, 3, -1)) ** 2).sum(axis=0)
         share = energy / energy.sum(axis=0)
         kinds = {"flap": values[share[2] > 0.8], "lag": values[share[1] > 0.8]}

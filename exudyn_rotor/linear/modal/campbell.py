@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,11 +11,16 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import basis_error, options
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.campbell_result import Campbell
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import (
+    BACKWARD,
+    FORWARD,
+    MIXED,
     OVERDAMPED,
+    STATIC,
     UNKNOWN,
     Content,
     Named,
@@ -34,6 +40,7 @@ from exudyn_rotor.sweep import checked_speeds
 from exudyn_rotor.theory.rotating_axes import FRAMES
 from exudyn_rotor.units import Units
 
+_SPLIT = 4e-8  # of the fastest motion: the split of a double zero by rounding
 _DIGITS = 9  # of the largest value in a row: what is sorted
 _FEWEST = 6  # modes that are listed of a basis with halves of pairs
 
@@ -126,7 +133,7 @@ def campbell(
     >>> result.frequencies_inertial[1, 1:5].round(2)
     array([99.97, 99.97, 99.97, 99.97])
     >>> result.whirl[1, 1:5].tolist()
-    ['backward', 'backward', 'forward', 'forward']
+    ['forward', 'forward', 'backward', 'backward']
     """
     values = checked_speeds(speeds, allow_negative)
     if modes is not None:
@@ -143,11 +150,11 @@ def campbell(
         raise ValueError(f"modes: {modes} is not between 1 and the {model.size} there are")
     warn_of_structural_damping(model, "campbell finds modes")
     warn_of_left_out_stiffening(model, np.abs(values).max())
-    motions = motions_over(
-        model, values, tolerance=tolerance, progress=progress, label="Campbell"
-    )
+    motions = motions_over(model, values, tolerance=tolerance, progress=progress, label="Campbell")
     content = Content.of(model)
     named = [None if each is None else content.named(each) for each in motions]
+    if model.free_motions:
+        named = [None if each is None else _resting(each) for each in named]
     named = [None if each is None else each.columns(_ascending(each, frame)) for each in named]
     order, continued = track(named, values, model.mass_matrix)
     kept = _lowest(named, order, modes, frame, model)
@@ -163,17 +170,35 @@ def campbell(
     return result
 
 
+def _resting(found: Named) -> Named:
+    """Return motions of which free ones, double zeros that rounding splits, do not grow."""
+    values = found.motions.values
+    split = _SPLIT * np.nanmax(np.abs(values), initial=0.0)
+    rests = np.hypot(found.inertial, values.real) <= split
+    motions = replace(found.motions, values=np.where(rests, 1j * values.imag, values))
+    lateral = rests & np.isin(found.codes, (FORWARD, BACKWARD, MIXED, OVERDAMPED))
+    return found._replace(
+        motions=motions,
+        inertial=np.where(rests, 0.0, found.inertial),
+        codes=np.where(lateral, STATIC, found.codes),
+    )
+
+
 def _ascending(found: Named, frame: str) -> np.ndarray:
     """Return the order of motions: ascending in a frame, overdamped ones and lost ones last.
 
-    Where frequencies are one but for rounding, from backward to forward waves, and by their decay.
+    Equal frequencies ascend in the other frame, then from backward to forward waves.
     """
     main, other = found.inertial, found.rotor
     if frame == "rotor":
         main, other = other, main
-    last = (found.codes == OVERDAMPED) | np.isnan(found.motions.values)
+    last = np.isnan(found.motions.values) | _overdamped(found)
     keys = [-found.motions.values.real, signed_diameters(found.codes, found.diameters), other, main]
     return np.lexsort([*map(_rounded, keys), last])
+
+
+def _overdamped(found: Named) -> np.ndarray:
+    return (found.inertial == 0.0) & (found.motions.values.real < -found.motions.bound)
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:
@@ -198,7 +223,7 @@ def _lowest(
         x = first.motions.main
         moved = np.abs(x) ** 2 * np.diag(model.mass_matrix)[:, None]
         of_voids = moved[rows].sum(axis=0) > 0.9 * moved.sum(axis=0)
-    last = (first.codes == OVERDAMPED) | of_voids | np.isnan(first.motions.values)
+    last = _overdamped(first) | of_voids | np.isnan(first.motions.values)
     return np.sort(np.lexsort((_rounded(frequencies), last))[:count])
 
 

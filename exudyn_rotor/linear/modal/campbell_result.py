@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal import excitation
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal.whirl import BACKWARD, WHIRLS, oscillates
 from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
@@ -35,7 +34,8 @@ class Campbell(Result):
     """Eigenfrequencies over spin speed, at every speed ascending in the :attr:`frame`.
 
     Overdamped motions, which have the inertial frequency 0 and decay, stand behind the others. A
-    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is the same mode at all speeds.
+    speed at which nothing could be computed has NaN. In the order of :meth:`tracked`, column j is
+    the same mode at all speeds.
 
     Attributes
     ----------

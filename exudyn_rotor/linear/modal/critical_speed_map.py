@@ -19,7 +19,7 @@ from exudyn_rotor.bearings.support import Support
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, is_known, points
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, is_known, points
 from exudyn_rotor.linear.modal.critical_speeds import (
     SHOWN,
     CriticalSpeeds,
@@ -100,7 +100,7 @@ class CriticalSpeedMap(Result):
             checks.choice(self.stiffening, "stiffening", LEVELS)
         checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns, one row for each critical speed; see :meth:`table`."""
         shown = Units.of(units)
         rows, places = np.nonzero(self.whirl_codes >= 0)

@@ -10,8 +10,9 @@ import numpy as np
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear import basis_error, options
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal import basis_error
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.modal.resonance import (
     NO_EQUATIONS,
     Resonance,
@@ -93,7 +94,7 @@ class CriticalSpeeds(Result):
         checks.labels(self.whirl, "whirl", WHIRLS)
         checks.choice(self.axes, "axes", AXES[1:])
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return the table as columns; `units` are those of :meth:`table`."""
         shown = Units.of(units)
         rotor = shown.frequencies(self.frequencies_rotor)
@@ -105,6 +106,10 @@ class CriticalSpeeds(Result):
             "whirl": np.array(self.whirl),
             "basis error": np.full(len(self.whirl), np.nan) if errors is None else errors,
         }
+
+    @property
+    def splits(self) -> None:
+        """None: two planes of an averaged mesh have one critical speed."""
 
     def table(self, *, units: str = "rpm") -> str:
         """Return the critical speeds as lines of text.
@@ -283,6 +288,8 @@ def basis_errors(model: LinearModel, found: Sequence[Resonance], count: int) -> 
         errors[:count] = 0.0
         return errors
     richer = model.richer
+    if basis_error.is_averaged_much(richer):
+        return errors
     lifted, stiffness = basis_error.lifting(model, richer), Stiffness(richer)
     for i, one in enumerate(found[:count]):
         lift = one._replace(vectors=one.vectors @ lifted.T)

@@ -51,9 +51,10 @@ _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
 _FINE = 1e-10  # of the largest speed, to which zeros are refined
-_FEW, _MOST = 2, 7  # blocks on each side of the middle one
+_FEW, _MOST = 2, 8  # blocks on each side of the middle one
 _ITERATIONS = 8
 _OFF = 0.03  # by which films that are smooth between speeds may err
+_FAR = 0.5  # share of a critical speed by which the same motion may differ
 _STEP = 1e-5  # of the speed, for the derivative of H
 
 Pair = tuple[float, np.ndarray]  # a speed [rad/s] and the motion there
@@ -112,15 +113,15 @@ class Stiffness:
         K = dict(system.K)
         if self.factor:
             add(K, self.unit, self.factor)
-        H = _blocks(multiples, K)
-        for b, f in enumerate(multiples):
-            for a, n in enumerate(_orders(multiples)[:, b]):
-                if n in system.D and f:
-                    H[a, :, b] += (1j * f * speed) * system.D[n]
-            H[b, :, b] -= (f * speed) ** 2 * system.M
-        H = H.reshape(h * system.size, -1)
-        # what damps and what drives a motion is the other part
-        return 0.5 * (H + H.conj().T)
+        # the Hermitian part: what damps and what drives a motion is the other
+        H = _blocks(multiples, {n: 0.5 * (X + X.T) for n, X in K.items()})
+        for (a, b), n in np.ndenumerate(_orders(multiples)):
+            if n in system.D:
+                D, rate = system.D[n], 0.5j * speed
+                H[a, :, b] += rate * (multiples[b] * D - multiples[a] * D.T)
+        for a, f in enumerate(multiples):
+            H[a, :, a] -= (f * speed) ** 2 * system.M
+        return H.reshape(h * system.size, -1)
 
     def motions(self, vector: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
@@ -285,14 +286,21 @@ class Search:
         if self.stiffness.model.table_speeds.size or len(near) + 1 < max(len(grid), 4):
             return None
         systems = [self.stiffness.system(speed) for speed in grid]
-        orders = {n for system in systems for n in system.K}
-        K = {n: CubicSpline(np.log(grid), [s.K.get(n, 0.0 * s.M) for s in systems]) for n in orders}
-        last = systems[-1]
+
+        def curves(given: list[Terms]) -> dict[int, CubicSpline]:
+            orders = {n for terms in given for n in terms}
+            none = np.zeros_like(systems[0].M)
+            return {
+                n: CubicSpline(np.log(grid), [terms.get(n, none) for terms in given])
+                for n in orders
+            }
+
+        D, K = curves([s.D for s in systems]), curves([s.K for s in systems])
 
         def between(speed: float) -> PeriodicSystem:
-            D = {n: X * (speed / last.speed) for n, X in last.D.items()}
-            stiffness = {n: curve(np.log(speed)) for n, curve in K.items()}
-            return PeriodicSystem(speed, last.M, D, stiffness)
+            at = np.log(speed)
+            terms = ({n: curve(at) for n, curve in X.items()} for X in (D, K))
+            return PeriodicSystem(speed, systems[0].M, *terms)
 
         return between
 
@@ -520,17 +528,16 @@ def refined(
     speed, multiples, smooth = found.speed, found.multiples, smooth or stiffness
     x = stiffness.coordinates(found.vectors).ravel()
     for _ in range(_ITERATIONS):
-        H, later, earlier = (
-            one(s, multiples)
-            for one, s in ((stiffness, speed), (smooth, speed), (smooth, speed * (1.0 - _STEP)))
-        )
+        H = stiffness(speed, multiples)
+        later = H if smooth is stiffness else smooth(speed, multiples)
+        earlier = smooth(speed * (1.0 - _STEP), multiples)
         try:
             moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
         except np.linalg.LinAlgError:  # there already
             break
         change = (np.vdot(x, x) / np.vdot(x, moved)).real
         x, speed = moved / np.linalg.norm(moved), speed - change
-        if not 0.0 < speed < np.inf:
+        if not abs(change) < _FAR * found.speed or speed <= 0.0:
             return found._replace(speed=np.nan)
         if abs(change) <= tolerance * speed:
             break
@@ -543,19 +550,22 @@ def _settled(
     stiffness: Stiffness, found: Resonance, step: int, tolerance: float
 ) -> Resonance | None:
     """Add harmonics to a motion until its critical speed does not change; None where it does."""
-    for _ in range(_FEW, _MOST):
-        last, multiples = found.speed, found.multiples
-        multiples = np.r_[multiples[0] - step, multiples, multiples[-1] + step]
-        wider = Resonance(last, np.pad(found.vectors, ((1, 1), (0, 0))), multiples)
-        try:
-            found = refined(stiffness, wider)
+    change = np.inf
+    for _ in range(_FEW, _MOST, 2):
+        last, multiples, before = found.speed, found.multiples, change
+        beyond = step * np.array([1, 2])
+        multiples = np.r_[multiples[0] - beyond[::-1], multiples, multiples[-1] + beyond]
+        wider = Resonance(last, np.pad(found.vectors, ((2, 2), (0, 0))), multiples)
+        try:  # what is left is the square of a change
+            found = refined(stiffness, wider, tolerance=0.1 * np.sqrt(tolerance))
         except NO_EQUATIONS:
             return None
-        if np.isnan(found.speed) or abs(found.speed - last) <= tolerance * last:
-            break
-    else:
-        return None
-    return None if np.isnan(found.speed) else found
+        change = abs(found.speed - last)
+        if change <= tolerance * last:
+            return found
+        if not change < 0.3 * before:
+            return None
+    return None
 
 
 def _polished(stiffness: Stiffness, smooth: Stiffness, found: Resonance) -> Resonance:

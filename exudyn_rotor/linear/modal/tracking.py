@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from exudyn_rotor.linear.modal.whirl import Named
+from exudyn_rotor.linear.modal.whirl import BACKWARD, FORWARD, Named
 from exudyn_rotor.linear.solve.motions import Motions
 
-# how strongly jumps of the frequency seen from outside, and of the growth, count against a likeness
-# of shapes
-_JUMP_WEIGHT, _GROWTH_WEIGHT = 0.5, 0.25
+# how strongly jumps of the frequency seen from outside and of the growth, and another sense of
+# whirl, count against a likeness of shapes
+_JUMP_WEIGHT, _GROWTH_WEIGHT, _SENSE_WEIGHT = 0.5, 0.25, 0.25
 _STEEPEST = 2.0  # change of a frequency over that of the speed: a thin disc's forward mode
 _SPREAD = 1e-2  # share of a frequency by which it may change in any step
 # a match is another mode below this likeness, or beyond this many steepest changes
@@ -47,7 +48,7 @@ def track(
     count = len(named[known[0]].inertial)
     columns = np.tile(np.arange(count), (len(named), 1))
     continued = np.ones(columns.shape, dtype=bool)
-    for before, after in zip(known[:-1], known[1:], strict=True):
+    for before, after in itertools.pairwise(known):
         matched, same = _step(named[before], named[after], speeds[after] - speeds[before], M)
         last = columns[before]
         columns[after], continued[after] = matched[last], same[last]
@@ -68,12 +69,16 @@ def _step(
     size = np.abs(growth[1])[None, :] + np.abs(growth[0])[:, None] + before.motions.bound
     cost = 1.0 - likeness + _JUMP_WEIGHT * np.minimum(jump / allowed, 4.0)
     cost += _GROWTH_WEIGHT * np.minimum(apart / np.maximum(size, 1e-300), 1.0)
+    senses = [(each.codes == FORWARD) * 1 - (each.codes == BACKWARD) for each in (before, after)]
+    cost += _SENSE_WEIGHT * (senses[0][:, None] * senses[1] < 0)
     _, matched = linear_sum_assignment(np.nan_to_num(cost, nan=10.0))
     rows = np.arange(len(matched))
     values = after.motions.values
     alike = np.abs(values[:, None] - values) <= _SAME * np.abs(values) + after.motions.bound
     together = np.sum(likeness[:, None, :] * alike[None], axis=2)[rows, matched]
-    same = (together >= _LEAST_LIKENESS) & (jump[rows, matched] <= _MOST_CHANGES * allowed[rows, matched])
+    same = (together >= _LEAST_LIKENESS) & (
+        jump[rows, matched] <= _MOST_CHANGES * allowed[rows, matched]
+    )
     resting = (np.abs(before.motions.values) == 0.0) & (np.abs(values[matched]) == 0.0)
     return matched, same | resting
 
@@ -86,9 +91,7 @@ def _likeness(before: Motions, after: Motions, M: np.ndarray) -> np.ndarray:
     norms = [_norms(each, M) for each in (before, after)]
     best = np.zeros((len(before.values), len(after.values)))
     for second in _forms(after):
-        product = sum(
-            first[m].conj().T @ M @ X for m, X in second.items() if m in first
-        )
+        product = sum(first[m].conj().T @ M @ X for m, X in second.items() if m in first)
         if np.ndim(product):
             sizes = np.maximum(np.outer(*norms), 1e-300)
             best = np.maximum(best, np.abs(np.nan_to_num(product)) ** 2 / sizes)

@@ -197,7 +197,7 @@ class Content:
             left = [i for i in left if i not in group]
             if len(group) > 1:
                 turned = self._extremal(vectors[:, :, group], motions.orders)
-                changed = changed.copy() if changed is vectors else changed
+                changed = vectors.astype(complex) if changed is vectors else changed
                 changed[:, :, group] = turned
         if changed is vectors:
             return motions
@@ -206,6 +206,7 @@ class Content:
     def _extremal(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
         """Return combinations of motions (h, c, g) whose mean wave number is extremal."""
         flat = vectors.reshape(-1, vectors.shape[2])
+        flat = flat / np.abs(flat).max(axis=0)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         if lengths[-1] < 1e-3 * lengths[0]:  # a defective eigenvalue has one shape only
             return vectors
@@ -215,11 +216,12 @@ class Content:
         form, whole = (
             sum(x.conj().T @ F @ x for x in span) for F in (mean, self.whole + self.standing)
         )
-        floor = 1e-12 * max(np.trace(whole).real, 1e-300)
-        _, turn = la.eigh(
-            0.5 * (form + form.conj().T), 0.5 * (whole + whole.conj().T) + floor * np.eye(len(form))
-        )
-        turned = span @ turn
+        sizes, parts = la.eigh(0.5 * (whole + whole.conj().T))
+        seen = sizes > 1e-9 * max(sizes[-1], 1e-300)  # others move nothing that has waves
+        unit = parts[:, seen] / np.sqrt(sizes[seen])
+        _, inner = la.eigh(unit.conj().T @ (0.5 * (form + form.conj().T)) @ unit)
+        turn = np.hstack([parts[:, ~seen], unit @ inner])
+        turned = span @ (turn / np.abs(turn).max(axis=0))
         return turned / np.linalg.norm(turned.reshape(-1, turned.shape[2]), axis=0)
 
 
@@ -229,9 +231,7 @@ def _forms_of(body: RotorBody, n: int, W: np.ndarray, place: slice, k: int) -> l
     parts = {0: W}
     if body.mean:
         turning = body.alone.turning
-        parts = {
-            s: (W @ turning.T) * (turning.waves == s) @ turning.T.conj().T for s in (-1, 0, 1)
-        }
+        parts = {s: (W @ turning.T) * (turning.waves == s) @ turning.T.conj().T for s in (-1, 0, 1)}
     for s, rows in parts.items():
         if not np.any(np.abs(rows) > 0.0):
             continue

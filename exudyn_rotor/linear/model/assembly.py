@@ -60,9 +60,7 @@ class Assembly:
     def _acted_on(self, end: End) -> dict[int, np.ndarray]:
         """Return the motion that an element acts on, seen from outside."""
         name, interface = end
-        place, body = next(
-            (i, body) for i, body in enumerate(self.bodies) if body.name == name
-        )
+        place, body = next((i, body) for i, body in enumerate(self.bodies) if body.name == name)
         if isinstance(body, OwnBody):
             rows = body.rows()
         elif isinstance(body, RotorBody):

@@ -171,7 +171,7 @@ class Body:
         Coefficients of powers of Ω, ``K(Ω) = Σ Ωⁿ K[n]``.
     labels : tuple of str
         Names of the coordinates.
-    H : sequence of (int, ndarray)
+    H : sequence of (float, ndarray)
         Structural damping, see :class:`PeriodicSystem`.
     base_loads : mapping of int to ndarray, shape (3, k), or None
         Fourier terms of the loads of unit accelerations of the ground along (n1, n2, e), which
@@ -318,7 +318,7 @@ def _structural(turning: Turning, H: np.ndarray | None, w: float) -> tuple:
         mask = turning.waves == wave
         part = turning.T * mask @ within @ (turning.T * mask).conj().T
         if np.any(part):
-            found.append((wave * round(w), part))
+            found.append((wave * w, part))
     return tuple(found)
 
 
@@ -345,7 +345,9 @@ def foundation_body(foundation: Foundation, rotor: ReducedRotor) -> StandingBody
     loads = None if given.participation is None else {0: -given.participation}
     labels = tuple(f"foundation, {number}" for number in range(1, given.size + 1))
     matrices = given.mass, (given.damping,), (given.stiffness,)
-    return StandingBody("foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points))
+    return StandingBody(
+        "foundation", 0, *matrices, labels, base_loads=loads, points=dict(given.points)
+    )
 
 
 def largest_radius(bodies: tuple[Body, ...]) -> float:

@@ -157,7 +157,8 @@ def _check_foundation(
     for name in foundation.points:
         if ON_FOUNDATION.format(name) in rotor.interfaces:
             raise ValueError(
-                f"foundation: {ON_FOUNDATION.format(name)!r} is an interface of the rotor; rename it"
+                f"foundation: {ON_FOUNDATION.format(name)!r} is an interface of the rotor; "
+                "rename it"
             )
 
 

@@ -100,12 +100,21 @@ class Element:
         if self.turns:
             if self.turns == turns:  # seen from axes that turn with it, it stands still
                 U = turned(U, -turns)
-            else:  # isotropic, else the model is refused
+            else:
                 K = K - self.turns * speed * D @ axial_skew(len(D))
         damping, stiffness = congruent(U, D), congruent(U, K)
         if len(U) > 1:
             add(stiffness, congruent(U, D, rate_of(U)), speed)
         return damping, stiffness
+
+    def check_axes(self, turns: int) -> None:
+        """Refuse an anisotropic element that turns otherwise than the axes do."""
+        if self.turns and self.turns != turns and not self.is_isotropic(0.0):
+            raise ValueError(
+                f"supports: {self.what} is not the same in all directions and turns with "
+                f"{self.turns:g} times the speed of the analysis; give a RotorTrain relative_to "
+                "its rotor, or leave axes='inertial' out"
+            )
 
 
 def is_isotropic_matrix(X: np.ndarray) -> bool:
@@ -185,15 +194,16 @@ def _gear_element(gears: GearMesh, ends: tuple[End, End]) -> Element:
 
 
 def with_own(
-    one: Controlled, end: End, base: End | None, rate: float, own: OwnBody
+    one: Controlled, end: End, bases: Mapping[str, End], rate: float, own: OwnBody
 ) -> list[Element]:
     """Return the elements of a support with coordinates of its own."""
-    at = _part(_relative(end, base), slice(0, 3))
+    at = _part(_relative(end, bases.get(one.interface)), slice(0, 3))
     if isinstance(one, PadSupport):
         return [_pad_element(one, place, at, end, rate, own) for place in range(one.size)]
     ports = [at]
     if isinstance(one, ControlledSupport):
-        ports.append(_part(_relative((end[0], one.sensor), base), slice(0, 3)))
+        sensed = _relative((end[0], one.sensor), bases.get(one.sensor))
+        ports.append(_part(sensed, slice(0, 3)))
     lifted = np.kron(np.eye(len(ports) + own.size // 2), ACROSS)
 
     def matrices(speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -273,8 +283,7 @@ def elements_of(
             elements.append(support_element(one, (name, one.interface), base, ratio, ratio))
         for one in sorted(controlled, key=lambda each: list(WORDS).index(type(each))):
             own.append(own_body(one, len(own) + 1, turns))
-            end, base = (name, one.interface), bases.get(one.interface)
-            elements += with_own(one, end, base, ratio, own[-1])
+            elements += with_own(one, (name, one.interface), bases, ratio, own[-1])
     for link in links:
         first, second = link.ends
         if isinstance(link.connection, GearMesh):

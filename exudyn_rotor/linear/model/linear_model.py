@@ -21,7 +21,6 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, turned
@@ -159,9 +158,7 @@ class LinearModel:
     @cached_property
     def _own_unevenness(self) -> dict[str, float]:
         """Unevenness of each rotor and of the places that something acts on."""
-        return {
-            name: self._alone(name, False).unevenness(self.places(name)) for name in self._used
-        }
+        return {name: self._alone(name, False).unevenness(self.places(name)) for name in self._used}
 
     @cached_property
     def turns(self) -> int:
@@ -187,6 +184,9 @@ class LinearModel:
 
     def _assembled(self, turns: int, at_rest: bool = False, kind: str = "") -> Assembly:
         elements, own = self._elements_for(turns, kind)
+        if not at_rest:
+            for element in elements:
+                element.check_axes(turns)
         bodies = []
         for name in self._used:
             ratio = self.ratios[name]
@@ -333,9 +333,7 @@ class LinearModel:
         """The model with the shapes that the bases of its rotors lack; None if not known."""
         if self.is_richer or any(r.with_attachments is None for r in self.rotors.values()):
             return None
-        return replace(
-            self, is_richer=True, wanted_axes=self.axes, largest_unevenness=np.inf
-        )
+        return replace(self, is_richer=True, wanted_axes=self.axes, largest_unevenness=np.inf)
 
     # ------------------------------------------------------------------ what it consists of
 
@@ -516,9 +514,7 @@ class LinearModel:
                 for columns, part in ((motions, motion), (momenta, momentum)):
                     columns.append(np.zeros(self.size))
                     columns[-1][place] = part
-        motions, momenta = (
-            np.array(each).reshape(-1, self.size).T for each in (motions, momenta)
-        )
+        motions, momenta = (np.array(each).reshape(-1, self.size).T for each in (motions, momenta))
         found = [np.zeros((self.size, 0))] * 2, []
         most = max(np.abs(np.diag(K)).max(initial=0.0), 1e-300)
         for kind in (True, False):  # spins are coupled by gears, shifts by thrust bearings

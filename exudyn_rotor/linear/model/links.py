@@ -79,7 +79,7 @@ class Link:
         """Rotor and interface of both ends."""
         return _end(self.first, "first"), _end(self.second, "second")
 
-    def check_ratios(self, ratios: Mapping[str, float]) -> None:
+    def _check_ratios(self, ratios: Mapping[str, float]) -> None:
         """Refuse gears whose speeds are not in the ratio of their radii.
 
         Raises

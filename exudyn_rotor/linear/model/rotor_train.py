@@ -9,8 +9,8 @@ import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given, check_interfaces, given_supports
-from exudyn_rotor.linear.model.links import Link
 from exudyn_rotor.linear.model.link_places import check_places
+from exudyn_rotor.linear.model.links import Link
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor
 
 
@@ -100,7 +100,7 @@ class RotorTrain:
             for name, interface in link.ends:
                 _known(name, rotors, "links")
                 _known(interface, rotors[name].interfaces, f"links: interfaces of {name!r}")
-            link.check_ratios(ratios)
+            link._check_ratios(ratios)
         positions = {}
         for name, given in checks.mapping(self.positions, "positions", "array_like").items():
             _known(name, rotors, "positions")

@@ -179,7 +179,7 @@ def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.nda
     waves along the axis, which the points do not resolve.
     """
     points, motion = rotor_points(rotor, _POINTS)
-    orders, amplitudes, _ = wave_amplitudes(points, motion)
+    _orders, amplitudes, _ = wave_amplitudes(points, motion)
     weight = np.sqrt(len(points) / max(len(rotor.interfaces), 1))
     for name, place in rotor.interfaces.items():
         U = np.repeat([1.0, place.radius], 3)[:, None] * interface_motion(rotor, name)
@@ -191,9 +191,10 @@ def _energies(rotor: ReducedRotor) -> tuple[np.ndarray, tuple[np.ndarray, np.nda
 
 
 def _groups(omega: np.ndarray, start: int) -> list[np.ndarray]:
-    """Return the columns from `start` on in groups of nearly equal, ascending frequencies."""
-    apart = np.diff(omega[start:]) > _GROUP * omega[start + 1 :]
-    groups = np.split(np.arange(start, len(omega)), np.flatnonzero(apart) + 1)
+    """Return the columns from `start` on in groups of nearly equal frequencies."""
+    order = start + np.argsort(omega[start:], kind="stable")
+    apart = np.diff(omega[order]) > _GROUP * omega[order[1:]]
+    groups = np.split(order, np.flatnonzero(apart) + 1)
     return [group for group in groups if group.size]
 
 

@@ -95,7 +95,7 @@ class BaseResponse(Result):
             lines.append(f"{place:20}{values}  {time:.6g}")
         return "\n".join(lines)
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return time and displacements as columns."""
         checks.choice(units, "units", ("SI", "Hz", "rpm"))
         moved = {

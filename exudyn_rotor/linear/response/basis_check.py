@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from exudyn_rotor.linear.basis_error import is_known
+from exudyn_rotor.linear.modal.basis_error import is_known
 from exudyn_rotor.linear.model.linear_model import LinearModel
 
 _LEAST = 0.1  # of the largest motion at the same speed or frequency: smaller ones count as that

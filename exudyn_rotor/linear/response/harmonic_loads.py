@@ -73,7 +73,7 @@ class HarmonicForce:
         parts = {0: np.concatenate([self.force, self.moment])}
         if self.frame == "rotor":
             _check_turning(model, point)
-            if speed and point.ratio:
+            if speed:
                 parts = {n: R @ parts[0] for n, R in turning_harmonics(6).items()}
         return _pulled(point, parts)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.response import bode
 from exudyn_rotor.linear.response.refinement import resolved_peak, warn_of_coarse_peaks
 from exudyn_rotor.linear.response.run_start import RunStart
@@ -180,7 +180,7 @@ class Response(RunStart, ABC):
         angle = sense * np.linspace(0.0, 2.0 * np.pi, points)
         return (motion * np.exp(1j * angle)[:, None]).real
 
-    def columns(self, units: str = "rpm") -> dict[str, np.ndarray]:
+    def columns(self, units: str = "SI") -> dict[str, np.ndarray]:
         """Return sizes and phases as columns: one row for each point, place and harmonic.
 
         `units` are those of :meth:`table`.

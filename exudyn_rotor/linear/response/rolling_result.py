@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.basis_error import in_table
+from exudyn_rotor.linear.modal.basis_error import in_table
 from exudyn_rotor.linear.response.response import DIRECTIONS
 from exudyn_rotor.linear.response.run_start import RunStart
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody

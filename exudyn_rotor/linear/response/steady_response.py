@@ -17,8 +17,8 @@ from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear import options
-from exudyn_rotor.linear.basis_error import warn
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.modal.basis_error import warn
 from exudyn_rotor.linear.model.build import Target, linear_model, warn_of_left_out_stiffening
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.basis_check import basis_errors

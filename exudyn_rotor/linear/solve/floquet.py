@@ -97,9 +97,7 @@ def floquet_motions(system: PeriodicSystem, made: States) -> Exponents:
             break
         before = values
     found, lost = np.flatnonzero(still), np.flatnonzero(~still)
-    chosen = found[
-        one_of_each_family(values[found], states[:, :, found], orders, system, made)
-    ]
+    chosen = found[one_of_each_family(values[found], states[:, :, found], orders, system, made)]
     chosen = np.r_[chosen, lost][: system.size]
     values = np.where(still, values, np.nan)
     return Exponents(values[chosen], states[:, :, chosen], orders)

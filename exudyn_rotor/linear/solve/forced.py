@@ -291,7 +291,28 @@ def _in_chain(
         X[few] = chained(
             *given, orders, nu[few], lambda i, a, few=few: stiffness(few[i], a), middle
         )
+    for i in np.flatnonzero(np.isnan(X).any(axis=(1, 2))):  # a link by itself may be singular
+        X[i] = _whole(systems[i], loads[i], float(rates[i]), orders, driven)
     return X
+
+
+def _whole(
+    system: PeriodicSystem,
+    load: Harmonics,
+    rate: float,
+    orders: Sequence[int],
+    driven: np.ndarray | None,
+) -> np.ndarray:
+    """Return the harmonics (h, k) of one system from one matrix."""
+    A, nu = coupled_stiffness(system, rate, orders)
+    F = np.concatenate([np.zeros(system.size) + load.get(n, 0.0) for n in orders]) + 0j
+    momenta, still = None, np.flatnonzero(np.array(nu) == 0.0)
+    if still.size and driven is not None:
+        momenta = np.zeros((len(orders), *driven.shape))
+        momenta[still[0]] = driven
+        momenta = momenta.reshape(-1, driven.shape[1])
+    X = _solved(A[None], F[None], np.array([still.size > 0]), momenta)
+    return X.reshape(len(orders), system.size)
 
 
 def coupled_stiffness(

@@ -18,9 +18,9 @@ from exudyn_rotor.linear.solve.state import States
 _SIZES = (2, 3, 4, 6)  # harmonics on either side, in steps of the coefficients
 _LARGEST = 420  # unknowns, beyond which harmonics are not added
 _FAST = 30.0  # decay over Ω above which a motion is over before the coefficients change
-# energy at the edge of the sum that counts as none, over the tolerance: the error of λ is the
-# product of that and of the small part of λ that changes in a turn; and energy that is too much
-_EDGE, _LOST = 1e2, 3e-3
+# energy at the edge of the sum that counts as none, over the tolerance, which is the error of λ
+# where no two motions meet; and energy that is too much
+_EDGE, _LOST = 1.0, 3e-3
 _COPY, _ALIKE = 2e-3, 0.7  # of pΩ, and of a shape: how near a copy of a motion is
 
 

@@ -31,7 +31,7 @@ def states_of(system: PeriodicSystem) -> States:
     """Return the first-order form of a system."""
     M, k = system.M, system.size
     root = None
-    if np.any(M != np.eye(k)):  # Lᵀx are mass-orthonormal coordinates
+    if np.any(np.eye(k) != M):  # Lᵀx are mass-orthonormal coordinates
         root = la.solve_triangular(la.cholesky(M, lower=True), np.eye(k), lower=True).T
     D, K = _terms(system, root)
     symmetric = 0.5 * (K[0] + K[0].T)
@@ -40,9 +40,7 @@ def states_of(system: PeriodicSystem) -> States:
     omega = np.maximum(omega, max(_LEAST * omega.max(initial=0.0), 1e-3))
     A = {}
     for n in sorted({*D, *K}):
-        damping, stiffness = (
-            V.T @ X[n] @ V if n in X else np.zeros((k, k)) for X in (D, K)
-        )
+        damping, stiffness = (V.T @ X[n] @ V if n in X else np.zeros((k, k)) for X in (D, K))
         if n == 0:
             stiffness = V.T @ (K[0] - symmetric) @ V + np.diag(squares)
         A[n] = np.zeros((2 * k, 2 * k), dtype=stiffness.dtype if n == 0 else complex)

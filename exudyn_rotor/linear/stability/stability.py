@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear import basis_error, options
+from exudyn_rotor.linear import options
+from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.tracking import track
 from exudyn_rotor.linear.modal.whirl import UNKNOWN, Content, Named
 from exudyn_rotor.linear.model.build import (

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks, plotting
 from exudyn_rotor.checks import ascending
-from exudyn_rotor.linear import basis_error
-from exudyn_rotor.linear.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.modal import basis_error
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN
 from exudyn_rotor.linear.modal.whirl import (
     UNKNOWN,
     WHIRLS,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import checks, plotting
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table, relative_errors
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table, relative_errors
 from exudyn_rotor.linear.modal.whirl import FAMILIES, WHIRLS, damping_of, families
 from exudyn_rotor.linear.model.linear_model import AXES
 from exudyn_rotor.results import Result, numbers, storable
@@ -117,8 +117,13 @@ class Stability(Result):
             ax.plot(speeds, drawn, ".-", color=color, lw=1.3, label=label)
         low, high = ax.get_ylim()
         ax.fill_between(
-            speeds, low, high, where=~self.stable & self.known, color=plotting.COLORS[1],
-            alpha=0.2, lw=0.0,
+            speeds,
+            low,
+            high,
+            where=~self.stable & self.known,
+            color=plotting.COLORS[1],
+            alpha=0.2,
+            lw=0.0,
         )
         ax.set_ylim(low, high)
         ax.axhline(0.0, color="0.3", lw=0.8)

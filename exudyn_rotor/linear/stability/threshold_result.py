@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_rotor import plotting
-from exudyn_rotor.linear.basis_error import NOT_KNOWN, in_table
+from exudyn_rotor.linear.modal.basis_error import NOT_KNOWN, in_table
 from exudyn_rotor.linear.modal.whirl import WHIRLS, families
 from exudyn_rotor.results import Result, numbers, storable
 from exudyn_rotor.units import Units

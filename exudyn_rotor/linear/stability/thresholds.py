@@ -19,8 +19,8 @@ from scipy.optimize import brentq, minimize_scalar
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.linear import basis_error
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.modal import basis_error
 from exudyn_rotor.linear.modal.whirl import Content, Named
 from exudyn_rotor.linear.model.build import (
     Target,
@@ -361,9 +361,7 @@ def _limits(
     return limits
 
 
-def _shift(
-    model: LinearModel, speed: float, named: Named, which: int, slope: float
-) -> float:
+def _shift(model: LinearModel, speed: float, named: Named, which: int, slope: float) -> float:
     """Return how far a limit moves by the shift of the growth over its slope."""
     if model.is_full:
         return 0.0
@@ -371,9 +369,7 @@ def _shift(
     return float(-shift / slope) if slope else np.nan
 
 
-def _warn_of_basis(
-    limits: list[_Limit], span: float, label: str, accuracy: float | None
-) -> None:
+def _warn_of_basis(limits: list[_Limit], span: float, label: str, accuracy: float | None) -> None:
     """Warn where the basis leaves out too much for the worst of the limits."""
     if accuracy is None or not limits or any(limit.shift is None for limit in limits):
         return

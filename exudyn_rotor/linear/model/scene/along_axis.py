@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe
 from exudyn_rotor.linear.model.scene.scene_coordinates import (
@@ -16,7 +17,6 @@ from exudyn_rotor.linear.model.scene.scene_coordinates import (
     SceneCoordinates,
     nullspace,
 )
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.reduction.mode_kind import ModeKind
 
 _REACHES = (1e-6, 1e-4, 1e-2, 1.0)  # of the rotor's length: a stop may have a gap

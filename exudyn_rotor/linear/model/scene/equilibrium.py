@@ -1,4 +1,4 @@
-"""Equilibria of a scene at rest, at all angles of the rotor, in contact with stops and elements of bearings, too.
+"""Equilibria of a scene at rest, at all angles of the rotor, also in contact with stops.
 
 By Newton's method with a line search. What nothing holds yet is pressed by its load against a
 softness that lets it go farther in every step, until something holds it. Friction follows the
@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.along_axis import held_along_axis
 from exudyn_rotor.linear.model.scene.journal_start import journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, Motion, SceneCoordinates
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.solvers.line_search import step_share
 
 NOISE = 1e-10  # share of the largest entry below which a Fourier term is round-off
@@ -28,7 +28,11 @@ _FIRST_REACH, _FURTHER = 1e-6, 4.0  # m of what nothing holds, and its growth in
 
 
 def motion_at_rest(
-    scene: SceneCoordinates, probe: Probe, tolerance: float, angle: float, begin: Motion | None = None
+    scene: SceneCoordinates,
+    probe: Probe,
+    tolerance: float,
+    angle: float,
+    begin: Motion | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return orders (h,) and harmonics (h, k) of the equilibria at all angles of the rotor.
 

@@ -63,7 +63,7 @@ def film_elements(
         mass = _inertia(scene)
         both = state.void_states.matrices(mass[0])
         film = FilmSupport(name, mass, lambda _, both=both: both, K)
-        found += with_own(film, end, base, 1.0, own[i])
+        found += with_own(film, end, {} if base is None else {name: base}, 1.0, own[i])
     return tuple(found)
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
 from exudyn_rotor.bearings.tilting_pad import TiltingPadBearing
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.multibody.rotor.more_markers import interface_motion
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.multibody.rotor.start_state import spin_at_start

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.linear.equations import UnconvergedError
+from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
 from exudyn_rotor.reduction.mode_kind import RIGID_KINDS, ModeKind
 
 _MARGIN = 2.0  # times its estimate that a stiffness may be none

@@ -19,6 +19,7 @@ from exudyn_rotor.bearings.held_law import (
     TangentShortFilm,
 )
 from exudyn_rotor.bearings.support import BelowTableError
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.differences import (
     CURVATURE,
     chosen_step,
@@ -26,7 +27,6 @@ from exudyn_rotor.linear.model.scene.differences import (
     slopes,
 )
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.solve.state import EPSILON
 from exudyn_rotor.multibody.evaluation import constraint_rows, evaluating
 from exudyn_rotor.multibody.rotor.equations import without_forces

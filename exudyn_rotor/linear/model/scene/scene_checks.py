@@ -6,9 +6,9 @@ import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.probe import Probe
 from exudyn_rotor.linear.model.scene.scene_coordinates import UNHELD, SceneCoordinates
-from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.multibody.drives.connect_rotors import SceneConnection
 from exudyn_rotor.multibody.full.full_body import reduced_body
 from exudyn_rotor.multibody.mark import mark_of

@@ -54,9 +54,7 @@ class SceneModel(LinearModel):
     def of(cls, scene: LinearScene, axes: str) -> SceneModel:
         """Return the model of a scene."""
         source = scene.body.selection.source
-        return cls(
-            {"": source}, {"": 1.0}, {"": ()}, (), None, scene.stiffening, axes, scene=scene
-        )
+        return cls({"": source}, {"": 1.0}, {"": ()}, (), None, scene.stiffening, axes, scene=scene)
 
     # ------------------------------------------------------------------ what it consists of
 
@@ -184,7 +182,9 @@ class SceneModel(LinearModel):
         elements = film_elements(self.scene, journals, speed, assembly, self.is_undamped)
         system = replace(assembly, elements=elements).system(speed)
         W = _Seen.of(self, assembly.bodies[0])
-        samples = zip(*(W.acting(point.rest, speed, self.is_undamped) for point in points))
+        samples = zip(
+            *(W.acting(point.rest, speed, self.is_undamped) for point in points), strict=False
+        )
         M, D, K = (np.array(each) for each in samples)
         k = self._running_size
         own = assembly.M.copy()
@@ -262,9 +262,13 @@ class SceneModel(LinearModel):
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """W(θ): the unknowns of a scene by the coordinates of a model, as Fourier terms (k, l)."""
+    """W(θ): the unknowns of a scene by the coordinates of a model, as Fourier terms (k, l).
+
+    N (l, l): the rates over Ω, seen from outside, of coordinates that turn.
+    """
 
     W: Terms
+    N: np.ndarray
 
     @classmethod
     def of(cls, model: SceneModel, body: RotorBody) -> _Seen:
@@ -295,7 +299,9 @@ class _Seen:
         still[0][others, L.shape[1] + np.arange(len(others))] = 1.0
         if body.turns == 0 and body.ratio and len(scene.pairs):
             cls._turn_pairs(scene, still, others, L.shape[1])
-        return cls(still)
+        N = np.zeros((size, size))
+        N[: L.shape[1], : L.shape[1]] = body.turns * alone.turning.generator
+        return cls(still, N)
 
     @staticmethod
     def _turn_pairs(
@@ -325,11 +331,14 @@ class _Seen:
         Z, Z1 = T @ W[0], T1 @ W[0] + T @ W[1]
         Z2 = T2 @ W[0] + 2.0 * T1 @ W[1] + T @ W[2]
         D, K = _without_noise(rest.D), _without_noise(rest.K)
+        K = W[0].T @ (K @ W[0] + D @ (T.T @ Z1))
+        D = W[0].T @ D @ W[0]
         if undamped:
+            K = K - speed * D @ self.N  # by rates alone
+            D = _without_noise(D)
             D, K = 0.5 * (D - D.T), 0.5 * (K + K.T)
-        D, K = W[0].T @ D, W[0].T @ K @ W[0]
         mass = Z.T @ rest.mass
-        return mass @ Z, 2.0 * mass @ Z1 + D @ W[0], mass @ Z2 + D @ (T.T @ Z1) + K
+        return mass @ Z, 2.0 * mass @ Z1 + D, mass @ Z2 + K
 
 
 def _unresisted(samples: np.ndarray, scale: np.ndarray) -> np.ndarray:

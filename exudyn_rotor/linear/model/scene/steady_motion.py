@@ -59,7 +59,7 @@ def points_about(scene: SceneCoordinates, probe: Probe) -> list[LinearPoint]:
 
     Without the rotor's own unbalance films are those of journals at rest, as in lists of supports.
     Films that conserve mass have a force in them, but no stiffness and no damping:
-    :mod:`.remembering_scene` adds what they have, which depends on the frequency.
+    :mod:`.films` adds what they have, which depends on the frequency.
     """
     check_films(scene, probe)
     rest = scene.about == "equilibrium"
@@ -260,7 +260,7 @@ class _Search:
     def _newton(
         self, Y: np.ndarray, wanted: np.ndarray | float, most: int
     ) -> tuple[list[LinearPoint] | None, np.ndarray]:
-        """Return linearised scene and harmonics whose residual is the one wanted, beginning at Y."""
+        """Return linearised scene and harmonics with the residual wanted, beginning at Y."""
         change, before, shortened = np.zeros_like(Y), np.inf, False
         iteration = -1
         while (iteration := iteration + 1) < most:

@@ -14,11 +14,11 @@ import numpy as np
 
 from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.bearings.rolling import RollingBearing
+from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene.equilibrium import solved
 from exudyn_rotor.linear.model.scene.journal_start import journal_places, journal_start
 from exudyn_rotor.linear.model.scene.probe import Probe, linearised
 from exudyn_rotor.linear.model.scene.scene_coordinates import SceneCoordinates
-from exudyn_rotor.linear.equations import UnconvergedError
 
 _ORDERS = np.arange(-1, 2)
 _MIDDLE = 1e-6  # of the clearance: nearer to a pad's centre a film has no side

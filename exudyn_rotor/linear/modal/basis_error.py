@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
@@ -29,6 +30,7 @@ _ALIKE = 0.2  # likeness of two shapes below which they are not the same motion
 _NEAR = 0.3  # share of a frequency by which the same motion may differ
 _MISSING = 0.1  # share of a flexibility that counts as missing
 _POINTS = 3  # speeds at which the richer model is solved
+_MOST_UNEVEN = 0.02  # unevenness of a richer model, beyond which its mean is not taken
 
 
 def is_known(model: LinearModel, accuracy: float | None) -> bool:
@@ -58,7 +60,7 @@ def shifts_over(
     shape = len(named), len(named[known[0]].inertial)
     if model.is_full:
         return np.zeros(shape, dtype=complex)
-    richer = model.richer
+    richer = _averaged_little(model, model.richer)
     if richer is None:
         return None
     chosen = [known[i] for i in points(len(known))]
@@ -81,6 +83,24 @@ def shifts_over(
     return result
 
 
+def is_averaged_much(richer: LinearModel) -> bool:
+    """Return whether the mean over a turn leaves out too much of a model for an estimate."""
+    return not richer.turns and richer.unevenness > _MOST_UNEVEN
+
+
+def _averaged_little(model: LinearModel, richer: LinearModel | None) -> LinearModel | None:
+    """Return a richer model in which nothing large is averaged; None where there is none.
+
+    The shapes that a basis lacks come in pairs less well than modes do. Where the equations are
+    constant in the axes of the rotor, too, nothing is averaged there.
+    """
+    if richer is None or not is_averaged_much(richer):
+        return richer
+    exact = replace(richer, wanted_axes="rotor")
+    constant = len(model.rotors) == 1 and not model.standing_interfaces
+    return exact if constant and exact.at(1.0).is_constant else None
+
+
 def lifting(model: LinearModel, richer: LinearModel) -> np.ndarray:
     """Return the coordinates of a richer model (l, k) that are those of a model."""
     blocks = []
@@ -100,7 +120,11 @@ def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
     products = np.maximum(np.abs(x.conj().T @ z), np.abs(x.T @ z))
     likeness = (products / np.maximum(sizes, 1e-300)) ** 2
     least = np.maximum(np.abs(given.motions.values), abs(given.motions.speed))[:, None] + 1e-12
-    frequency = np.abs(given.rotor[:, None] - richer.rotor) / least
+    # of a train, which rotor's frame a motion is seen from may differ between both models
+    change = richer.rotor - given.rotor[:, None]
+    seen = richer.inertial - given.inertial[:, None]
+    change = np.where(np.abs(seen) < 0.5 * np.abs(change), seen, change)
+    frequency = np.abs(change) / least
     growth = np.abs(given.motions.values.real[:, None] - richer.motions.values.real) / least
     cost = 1.0 - likeness + np.minimum((frequency + growth) / _NEAR, 2.0)
     rows, columns = linear_sum_assignment(np.nan_to_num(cost, nan=1e3))
@@ -110,7 +134,7 @@ def _shifts(given: Named, richer: Named, lifted: np.ndarray) -> np.ndarray:
     shifts[rows] = (
         richer.motions.values.real[columns]
         - given.motions.values.real[rows]
-        + 1j * (richer.rotor[columns] - given.rotor[rows])
+        + 1j * change[rows, columns]
     )
     return shifts
 
@@ -150,7 +174,7 @@ def judged(
     """
     moving = np.where(frequencies > 0.0, frequencies, np.inf)
     lowest = np.sort(moving, axis=1)[:, :_LOWEST][:, -1:]
-    lowest = np.where(np.isfinite(lowest), lowest, np.nanmax(frequencies, axis=1, keepdims=True))
+    lowest = np.where(np.isfinite(lowest), lowest, np.nan_to_num(frequencies).max(axis=1)[:, None])
     limit = np.maximum(lowest, _RANGE * np.abs(speeds).max(initial=0.0))
     overdamped = (frequencies == 0.0) & (-growth > limit)
     return ((frequencies <= limit) | every) & ~overdamped

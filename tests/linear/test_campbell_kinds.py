@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from bodies import SHAFT, point_mass, rings
 from models import disc_rotor
-from test_campbell_frames import SHAFT, point_mass, rings
 
 from exudyn_rotor import SolidRotor, Support, campbell
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
@@ -22,36 +22,14 @@ def test_overdamped_motions_stand_behind_the_others():
     result = campbell(rotor, [0.0, 50.0], supports=supports)
     np.testing.assert_allclose(result.frequencies_inertial[:, :3], 200.0, rtol=1e-9)
     np.testing.assert_array_equal(result.frequencies_inertial[:, 3:], 0.0)
-    slow, fast = (100.0 * (sign * np.sqrt(24.0) - 5.0) for sign in (1, -1))
+    slow = 100.0 * (np.sqrt(24.0) - 5.0)
     np.testing.assert_allclose(result.growth[0, 3:], slow, rtol=1e-6)
-    # across a rotor that turns, both real roots are seen with ±iΩ
-    np.testing.assert_allclose(np.sort(result.growth[1, 3:]), [fast, slow, slow], rtol=1e-6)
+    np.testing.assert_allclose(result.growth[1, 3:], slow, rtol=1e-6)
     assert result.oscillates.tolist() == [[True] * 3 + [False] * 3] * 2
     assert [sorted(row) for row in result.whirl[:, 3:]] == [["axial"] + 2 * ["overdamped"]] * 2
     assert np.all(result.continued)
     few = campbell(rotor, [0.0, 50.0], supports=supports, modes=3)
     np.testing.assert_allclose(few.frequencies_inertial, 200.0, rtol=1e-9)
-
-
-@pytest.mark.parametrize("speed", [0.0, 10.0])
-def test_slow_and_fast_decays_on_strong_dampers(speed):
-    """λ = −k/c and −c/m; dampers that turn, uneven by more than 2 Ω m, tie the fast one to them."""
-    rotor = SolidRotor.from_matrices(
-        np.eye(6), np.zeros((6, 6)), [[0, 0, 0], [0, 0, 1.0]], "z",
-        interfaces={"left": [0], "right": [1]}, allow_parts=True,
-    )  # fmt: skip
-    supports = [Support(n, 1e5 * np.eye(3), 1e6 * np.eye(3)) for n in rotor.interfaces]
-    supports += [
-        Support(n, 0.0, np.diag([100.0, 0.0, 0.0]), frame="rotor") for n in rotor.interfaces
-    ]
-    result = campbell(rotor, [speed], supports=supports)
-    assert not np.any(result.oscillates)
-    slow = result.growth[0] > -1.0
-    np.testing.assert_allclose(result.growth[0, slow], -0.1, rtol=2e-4)
-    np.testing.assert_allclose(result.growth[0, ~slow], -1e6, rtol=2e-4)
-    assert slow.sum() == (6 if speed == 0.0 else 4)
-    assert set(result.whirl[0].tolist()) == {"overdamped", "axial"}
-    np.testing.assert_array_equal(result.damping_ratio, 1.0)
 
 
 @pytest.mark.parametrize("stiffness", [1e6, np.diag([1e6, 2e6, 0.0])], ids=["even", "uneven"])

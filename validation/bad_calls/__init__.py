@@ -1,1 +1,0 @@
-"""Bad calls made from signatures, and how each of them was answered."""

@@ -1,1 +1,0 @@
-"""Wrong physics, one line at a time, that the tests must notice."""
