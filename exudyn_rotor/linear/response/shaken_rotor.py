@@ -223,7 +223,7 @@ def _follow(moved: np.ndarray) -> bool:
 
 
 def _followed(each: np.ndarray, given: np.ndarray) -> np.ndarray:
-    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), with E_n of a turn again and again.
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), E_n of a turn again and again.
 
     Two steps at a time are one step of another recurrence, which takes whole arrays.
     """
