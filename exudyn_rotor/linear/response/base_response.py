@@ -130,7 +130,7 @@ def base_response(
     at: Sequence[At] | At | None = None,
     end_time: float | None = None,
     stiffening: str = "auto",
-    tolerance: float = 1e-5,
+    tolerance: float = 1e-4,
     axes: str = "auto",
 ) -> BaseResponse:
     """Compute the motion of a rotor at constant speed while a record shakes the ground.

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("n1", "n2", "e", "tilt n1", "tilt n2", "twist")
 CIRCULAR = ("forward", "backward")
+_STILL = 1e-12  # share of the largest frequency that is none
 _DRAWN = (*DIRECTIONS, *CIRCULAR)
 
 
@@ -41,7 +42,8 @@ class Response(RunStart, ABC):
     motion : ndarray of complex, shape (s, p, h, 6)
         Amplitudes a_n of the displacement along (n1, n2, e) [m] and the rotation about them [rad]:
         peak values, half of peak to peak. Rotations of a node are NaN, and all where there is no
-        steady motion. No two harmonics have one frequency: their sum is one of them.
+        steady motion. No two harmonics have one frequency: their sum is one of them. Of a harmonic
+        whose rate is zero the real part moves, which all methods give.
     frame : {'inertial', 'rotor'}
         Whether (n1, n2, e) of :attr:`SpinAxis.plane` stand still or turn with the rotor.
     basis_errors : ndarray, shape (s, p), or None
@@ -391,8 +393,13 @@ class Response(RunStart, ABC):
 
     def _harmonic(self, place: str | None, order: int | None) -> np.ndarray:
         """Return the amplitudes (s, 6) of one harmonic at one place."""
-        index = list(self.orders).index(self._order(order))
-        return self.motion[:, self.places.index(self._place(place)), index]
+        order = self._order(order)
+        motion = self.motion[
+            :, self.places.index(self._place(place)), list(self.orders).index(order)
+        ]
+        rates = np.abs(self.rates(order))
+        constant = rates <= _STILL * np.abs(self.abscissa).max()
+        return np.where(constant[:, None], motion.real, motion)
 
     def _place(self, place: str | None) -> str:
         """Return the name of a place, the first one by default."""

@@ -32,6 +32,7 @@ from exudyn_rotor.threads import one_thread
 _PER_TURN, _IN_ALL = 24, 200  # least numbers of steps in a revolution and in a record
 _MOST_STEPS = 2_000_000
 _ANGLES, _MOST_ANGLES = 16, 512  # of a revolution, at which a step is computed
+_ONE_BY_ONE = 512  # steps that are taken one after the other
 _KEPT = 512  # steps in a revolution that are kept as matrices
 _HALVED = 16.0  # a halved step of fifth order errs by a sixteenth of the change, at most
 _TAIL, _ROUNDING = 1e-10, 1e-12  # shares of a step by Fourier terms that are left out
@@ -137,27 +138,20 @@ class ShakenRotor:
         count = every * max(1, int(np.floor((end - start) / (every * step) + 1e-9)))
         times = start + step * np.arange(count + 1)
         angles = self.speed * (times - start)
-        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
         lines = self._lines(times, step)
+        by_state, by_line = self._exact(step) if self.is_constant else self._radau(step)
         waves = {n: np.exp(1j * n * angles) for n in {*by_line, *by_state, *_orders(self.seen)}}
-        given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
-        states = np.zeros((count + 1, len(self.A[0])))
         turn = 1 if self.is_constant else round(2.0 * np.pi / abs(self.speed) / step)
+        steps = {n: wave[:turn, None, None] for n, wave in waves.items()}
         with np.errstate(over="ignore", invalid="ignore"):  # told by who asked
-            if turn <= _KEPT:
-                each = sum(waves[n][:turn, None, None] * X for n, X in by_state.items()).real
-                for n in range(count):
-                    states[n + 1] = each[n % turn] @ states[n] + given[n]
+            if turn > _KEPT or self.is_constant:
+                given = sum((waves[n][:-1, None] * (lines @ P.T)).real for n, P in by_line.items())
             else:
-                # Φ(θ) = Φ₀ + Σ 2 Re Φ_n cos nθ − 2 Im Φ_n sin nθ, as one tall matrix
-                later = [n for n in by_state if n > 0]
-                parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
-                tall = np.vstack([by_state[0].real, *parts])
-                parts = (w for n in later for w in (waves[n].real, waves[n].imag))
-                weights = np.column_stack([np.ones(count + 1), *parts])
-                for n in range(count):
-                    stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
-                    states[n + 1] = weights[n] @ stepped + given[n]
+                given = _each(sum(steps[n] * P for n, P in by_line.items()).real, lines)
+            if turn <= _KEPT:
+                states = _followed(sum(steps[n] * X for n, X in by_state.items()).real, given)
+            else:
+                states = _followed_slowly(by_state, waves, given)
             motion = np.zeros((count + 1, len(self.seen), 6))
             for place, seen in enumerate(self.seen):
                 for n, U in seen.items():
@@ -226,6 +220,54 @@ def _follow(moved: np.ndarray) -> bool:
     The largest displacement is one.
     """
     return bool(np.abs(moved[1::2] - 0.5 * (moved[:-1:2] + moved[2::2])).max() <= _BETWEEN)
+
+
+def _followed(each: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """Return ``z_{n+1} = E_n z_n + g_n`` from rest, (t + 1, 2k), E_n of a turn again and again.
+
+    Two steps at a time are one step of another recurrence, which takes whole arrays.
+    """
+    count, size = given.shape
+    states = np.zeros((count + 1, size))
+    if count <= _ONE_BY_ONE:
+        for n in range(count):
+            states[n + 1] = each[n % len(each)] @ states[n] + given[n]
+        return states
+    if len(each) % 2:
+        each = np.concatenate([each, each])
+    first, second = each[::2], each[1::2]
+    given = np.concatenate([given, np.zeros((count % 2, size))])
+    pairs = _each(second, given[::2]) + given[1::2]
+    even = _followed(second @ first, pairs)
+    states = np.zeros((len(given) + 1, size))
+    states[::2] = even
+    states[1::2] = _each(first, even[:-1]) + given[::2]
+    return states[: count + 1]
+
+
+def _followed_slowly(by_state: dict, waves: dict, given: np.ndarray) -> np.ndarray:
+    """Return what :func:`_followed` does, of a turn of very many steps.
+
+    ``E(θ) = E₀ + Σ 2 Re E_n cos nθ − 2 Im E_n sin nθ`` is one tall matrix with weights.
+    """
+    later = [n for n in by_state if n > 0]
+    parts = (2.0 * X for n in later for X in (by_state[n].real, -by_state[n].imag))
+    tall = np.vstack([by_state[0].real, *parts])
+    parts = (w for n in later for w in (waves[n].real, waves[n].imag))
+    weights = np.column_stack([np.ones(len(given) + 1), *parts])
+    states = np.zeros((len(given) + 1, given.shape[1]))
+    for n, one in enumerate(given):
+        stepped = (tall @ states[n]).reshape(weights.shape[1], -1)
+        states[n + 1] = weights[n] @ stepped + one
+    return states
+
+
+def _each(E: np.ndarray, X: np.ndarray) -> np.ndarray:
+    """Return ``E_n x_n`` of rows (t, 2k), with the matrices over and over."""
+    result = np.empty((len(X), E.shape[1]))
+    for n, matrix in enumerate(E):
+        result[n :: len(E)] = X[n :: len(E)] @ matrix.T
+    return result
 
 
 def _orders(seen: Sequence[Terms]) -> set[int]:

@@ -362,12 +362,11 @@ def _joined(motions: Motions, frequencies: np.ndarray, speed: float) -> Motions:
     """Return motions of harmonics ω + nΩ in which no two have one frequency.
 
     Where ω + nΩ = −(ω + mΩ), the conjugate of the harmonic with the negative rate is added to the
-    other one; a constant motion is real.
+    other one.
     """
-    joined = {n: a.copy() for n, a in motions.items()}
     if speed == 0.0:
-        joined[0][frequencies == 0.0] = joined[0][frequencies == 0.0].real
-        return joined
+        return motions
+    joined = {n: a.copy() for n, a in motions.items()}
     twice = 2.0 * frequencies / speed
     whole = np.abs(twice - np.round(twice)) <= _WHOLE * np.maximum(np.abs(twice), 1.0)
     for row in np.flatnonzero(whole):
@@ -380,8 +379,6 @@ def _joined(motions: Motions, frequencies: np.ndarray, speed: float) -> Motions:
                     joined[partner] = np.zeros_like(motions[n])
                 joined[partner][row] += added
                 joined[n][row] = 0.0
-            elif partner == n:
-                joined[n][row] = joined[n][row].real
     return joined
 
 
