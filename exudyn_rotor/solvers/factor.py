@@ -12,7 +12,6 @@ import scipy.sparse as sp
 from ngsolve.la import SparseMatrixd
 
 from exudyn_rotor.solvers import pardiso
-from exudyn_rotor.threads import shared
 
 Solve = Callable[[np.ndarray], np.ndarray]
 
@@ -124,7 +123,7 @@ def _sparse(matrix: sp.csr_array) -> Solve:
     def solve(vector: np.ndarray) -> np.ndarray:
         if vector.ndim == 2:
             columns = vector.T
-            solved = list(map(solve, columns)) if threaded else shared(solve, columns)
+            solved = [solve(column) for column in columns]
             return np.column_stack(solved or [vector])
         # new ones each time: several threads may share a factor
         right, solution = ngsolve.BaseVector(len(vector)), ngsolve.BaseVector(len(vector))
