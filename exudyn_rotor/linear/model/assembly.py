@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, without_rounding
 from exudyn_rotor.linear.model.body import Body, RotorBody
 from exudyn_rotor.linear.model.element import Element, End, OwnBody

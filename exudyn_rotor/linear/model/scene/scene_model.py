@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, add, turned
 from exudyn_rotor.linear.model.assembly import Assembly
 from exudyn_rotor.linear.model.body import RotorAlone, RotorBody, StandingBody, rotor_body
