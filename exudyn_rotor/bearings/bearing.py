@@ -21,6 +21,7 @@ _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearin
 
 Law = Callable[[float, float, float, float, float, float], tuple[float, float]]
 ClearanceAlong = Callable[..., float]  # by a direction (2,), which may be left out
+LawAlong = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
 LawWithTorque = Callable[[float, float, float, float, float, float], tuple[float, float, float]]
 
 
@@ -106,6 +107,15 @@ class Bearing(LoadedBearing):
         return None
 
     @property
+    def law_along(self) -> LawAlong:
+        """For harmonic balance: forces and their derivatives by motions (t, 4), unchecked.
+
+        Of displacements and velocities [m], [m/s], spin angles (t,) and the spin speed: forces
+        (t, 2) [N], and minus their derivatives by the motion, (t, 2, 4).
+        """
+        return self._along
+
+    @property
     def clearance_along(self) -> ClearanceAlong:
         """For scenes: how far that way, of length 1 (2,), or at least, the journal may go [m].
 
@@ -145,11 +155,7 @@ class Bearing(LoadedBearing):
     def _along(
         self, motion: np.ndarray, angles: np.ndarray, speed: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return forces (t, 2) [N] along a motion, and minus their derivatives by it (t, 2, 4).
-
-        `motion` (t, 4) is displacement and velocity [m], [m/s] at spin angles (t,). By differences,
-        unless a law knows better.
-        """
+        """See :attr:`law_along`; by differences, unless a law knows better."""
         law, sizes = self.law, np.abs(motion).max(axis=0)
         steps = _DIFFERENCE * np.repeat([max(*sizes[:2], _STILL), max(*sizes[2:], _STILL)], 2)
         force, slopes = np.empty((len(motion), 2)), np.empty((len(motion), 2, 4))

@@ -19,12 +19,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.rolling import RollingBearing
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.nonlinear.rest import Rest
 
@@ -63,7 +63,9 @@ class Laws:
         found = []
         for b, bearing in enumerate(self.bearings):
             turns = self.passes and isinstance(bearing, RollingBearing)
-            found.append(bearing._along(motion[:, b], phi / self.passes if turns else theta, speed))
+            found.append(
+                bearing.law_along(motion[:, b], phi / self.passes if turns else theta, speed)
+            )
         forces, slopes = zip(*found, strict=True)
         return np.stack(forces, axis=1), np.stack(slopes, axis=1)
 
@@ -229,11 +231,12 @@ class Balance:
     def left_out(self, c: np.ndarray) -> tuple[float, float]:
         """Return the size of harmonics beyond K, and beyond N, relative to the motion.
 
-        First order in what is left out, on laws with their mean derivative.
+        First order in what is left out, on laws with their mean derivative. Contacts that turn
+        against the spin may skip harmonics: those up to 15 are looked at.
         """
         g, slopes = self.forces(c)
         K, N = self.reach
-        wide = tuple(2 * top if top else 0 for top in (K, N))
+        wide = tuple(max(2 * top, _FEWEST // 2 - 1) if top else 0 for top in (K, N))
         beyond = Balance(self.laws, self.rest, wide, self.damper)
         k, n = beyond.orders.T
         out = (np.abs(k) > K) | (np.abs(n) > N)
@@ -244,7 +247,7 @@ class Balance:
         for b in range(len(mean)):
             pair = slice(2 * b, 2 * b + 2)
             G[:, pair, pair] = mean[b, :, :2] + 1j * beyond.nu[:, None, None] * mean[b, :, 2:]
-        rows, columns, H = beyond.receptances[0]
+        rows, _, H = beyond.receptances[0]
         J = np.eye(c.shape[1]) - H @ G[rows]
         moved = np.linalg.solve(J, moved[rows][..., None])[..., 0]
         whirls = np.any(self.orders, axis=1)

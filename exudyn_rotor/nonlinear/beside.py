@@ -16,10 +16,10 @@ those over a time in which both nearly repeat.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.nonlinear.balance import Balance
 
 _PER_CYCLE = 16  # steps in a cycle of the fastest motion on the laws
@@ -47,10 +47,8 @@ class Beside:
         _, sizes, V = np.linalg.svd(rows, full_matrices=False)
         return V[sizes > _DEPENDENT * sizes[0]]
 
-    def _changes(
-        self, phi: np.ndarray, theta: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping (t, p, p) of the laws less springs and dampers, at phases."""
+    def _changes(self, phi: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping (t, p, p) of laws less springs and dampers, at phases."""
         balance, rest = self.balance, self.balance.rest
         k, n = balance.orders.T
         waves = np.exp(1j * (np.outer(phi, k) + np.outer(theta / rest.revolutions, n)))
@@ -59,7 +57,9 @@ class Beside:
         motion = motion.reshape(len(q), -1, 4)
         laws = balance.laws
         slopes = laws.along(motion, phi, theta, rest.speed)[1]
-        pairs = [each.reshape(-1, 2)[:, :, None] * np.eye(2) for each in (laws.springs, laws.dampers)]
+        pairs = [
+            each.reshape(-1, 2)[:, :, None] * np.eye(2) for each in (laws.springs, laws.dampers)
+        ]
         G, G_t = slopes[..., :2] - pairs[0], slopes[..., 2:] - pairs[1]
         C = np.zeros((len(q), len(laws.springs), len(self._places)), dtype=complex)
         C_t = np.zeros_like(C)

@@ -1,4 +1,4 @@
-"""Points of branches as a result: motions of places, forces, and what a run needs to begin there."""
+"""Points of branches as a result: motions of places, forces, and where runs begin."""
 
 from __future__ import annotations
 
@@ -83,9 +83,7 @@ def _seen(coordinates: Harmonics, observed: Sequence[Place], revolutions: int) -
 def _half(both: Mapping[tuple[int, int], np.ndarray]) -> Harmonics:
     """Return harmonics of ``Re Σ`` from those of both signs."""
     return {
-        order: a * (1.0 if order == (0, 0) else 2.0)
-        for order, a in both.items()
-        if order >= (0, 0)
+        order: a * (1.0 if order == (0, 0) else 2.0) for order, a in both.items() if order >= (0, 0)
     }
 
 
@@ -125,9 +123,7 @@ def _at_bearings(point: Point) -> np.ndarray:
     return np.array(found).T
 
 
-def in_rotor_axes(
-    model: LinearModel, coordinates: Harmonics, revolutions: int
-) -> Harmonics | None:
+def in_rotor_axes(model: LinearModel, coordinates: Harmonics, revolutions: int) -> Harmonics | None:
     """Return coordinates of the reduced rotor, in its own axes, and of what is beside it.
 
     From axes that stand still, ``x = exp(−Nθ) η`` of :mod:`exudyn_rotor.linear.model.turning`. None

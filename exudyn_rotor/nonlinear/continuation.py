@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -107,7 +108,6 @@ class Family:
 
     def _system(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
         """Return what is left (n,), and its derivative (n, n + 1), without the last row of (1)."""
-        h, d = point.c.shape
         left, J = point.balance.linearised(point.c)
         by_parameters = []
         for place, span in enumerate(self.spans):
@@ -212,9 +212,7 @@ class Family:
 
     # ------------------------------------------------------------ a branch
 
-    def followed(
-        self, start: Point, values: np.ndarray, sense: float
-    ) -> Iterator[Point]:
+    def followed(self, start: Point, values: np.ndarray, sense: float) -> Iterator[Point]:
         """Yield the points of a branch from a solution on, until it leaves the range of values."""
         c = start.c
         if start.tangent is None:
@@ -230,7 +228,7 @@ class Family:
                 self.lost.append(f"{point.value:.6g}")
                 return
             section = [point, *self._changes(point, after), after]
-            for first, second in zip(section, section[1:], strict=False):
+            for first, second in pairwise(section):
                 yield from self._landed(first, second, values)
                 if second is not after or low <= after.value <= high:
                     yield second

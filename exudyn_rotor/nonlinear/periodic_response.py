@@ -33,7 +33,7 @@ from exudyn_rotor.threads import one_thread
 
 _LABELS = {"speed": "spin speed [rad/s]", "unbalance": "unbalance"}
 _MOST = (24, 48)  # harmonics of the second phase, and of the spin in a revolution
-_MOST_WITH_PASSES = 12  # harmonics of the spin beside the ball pass
+_MOST_WITH_PASSES = 24  # harmonics of the spin beside the ball pass
 _FAILS = (UnconvergedError, NoCoefficientsError, ArithmeticError, np.linalg.LinAlgError)
 Over = str | Callable[[float], Sequence[Given] | Given]
 
@@ -119,22 +119,24 @@ def periodic_response(
 
     Examples
     --------
-    A mass of 20 kg on a centred squeeze-film damper, at 500 rad/s: beyond an unbalance of 2.1
-    kg mm two stable orbits and an unstable one between them exist.
+    A mass of 20 kg on a centred squeeze-film damper, at 500 rad/s: between unbalances of 0.95 and
+    1.27 kg mm there are two stable orbits, and an unstable one between them.
 
     >>> import numpy as np
     >>> from exudyn_rotor import SolidRotor, SqueezeFilmDamper, Unbalance, periodic_response
     >>> mass = SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
     >>> damper = SqueezeFilmDamper(
-    ...     interface="seat", radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.01,
+    ...     interface="seat", radius=0.06, length=0.02, clearance=1.5e-4, viscosity=0.003,
     ...     centring_stiffness=1e6,
     ... )
     >>> found = periodic_response(
-    ...     mass.with_interface("seat", [0]).reduce(0), [0.0, 1.0, 2.0], Unbalance("seat", 1e-3),
+    ...     mass.with_interface("seat", [0]).reduce(0), [0.0, 1.1, 2.0], Unbalance("seat", 1e-3),
     ...     supports=damper, over="unbalance", speed=500.0,
     ... )
-    >>> found.amplitudes("seat")[found.at(1.0)].round(7)
-    array([7.37e-05])
+    >>> found.amplitudes("seat")[found.at(1.1)].round(7)
+    array([7.520e-05, 1.158e-04, 1.265e-04])
+    >>> found.stable[found.at(1.1)].tolist()
+    [True, False, True]
     """
     unbalances = checks.instances(unbalances, "unbalances", Unbalance)
     loads = checks.instances(loads, "loads", HarmonicForce)

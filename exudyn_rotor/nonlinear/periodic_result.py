@@ -117,6 +117,15 @@ class PeriodicResponse(RunStart):
     label: str
     coordinate_orders: np.ndarray = numbers("harmonics", 2, dtype=int)
 
+    def __repr__(self) -> str:
+        """Return one line."""
+        count = len(np.unique(self.branches))
+        span = f"{self.values.min():g} to {self.values.max():g}"
+        return (
+            f"PeriodicResponse({len(self.values)} points on {count} branches over the "
+            f"{self.label}, {span})"
+        )
+
     @property
     def abscissa(self) -> np.ndarray:
         """The parameter at the points."""
@@ -328,8 +337,7 @@ class PeriodicResponse(RunStart):
         )  # fmt: skip
         for value, branch, amplitude, force, gap, growth, stable, kind in rows:
             if every or kind != "computed":
-                motion = "stable" if stable else "unstable"
-                motion += f", {kind}" if kind in _MARKERS else ""
+                motion = kind if kind in _MARKERS else "stable" if stable else "unstable"
                 lines.append(
                     f"{value:20.6g} {branch:6d} {amplitude:13.4e} {force:10.4g} {gap:10.3e} "
                     f"{growth:12.4g}  {motion}"

@@ -88,7 +88,7 @@ def springs_of(laws: Sequence[Bearing], speed: float) -> tuple[np.ndarray, np.nd
         elif not one.carries and hasattr(one, "stiffness"):
             found.append((one.stiffness, 0.0))
             continue
-        slopes = one._along(np.array([[where, 0.0, 0.0, 0.0]]), np.zeros(1), speed)[1][0]
+        slopes = one.law_along(np.array([[where, 0.0, 0.0, 0.0]]), np.zeros(1), speed)[1][0]
         k, d = np.linalg.norm(slopes[:, :2], 2), abs(np.trace(slopes[:, 2:])) / 2.0
         found.append((max(k, 0.1 * d * abs(speed)), d))
     return tuple(np.repeat(np.array(found).reshape(-1, 2), 2, axis=0).T)

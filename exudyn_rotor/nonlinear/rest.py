@@ -16,10 +16,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 
@@ -178,7 +178,7 @@ class Rest:
             for a, other in enumerate(waves):
                 p = m + other
                 columns = inside[np.abs(inside + self.revolutions * p) <= N]
-                H = known[:, columns + self.revolutions * m + wide, a, :, b, :]
+                H = known[:, columns + self.revolutions * m + wide][:, :, a, :, b]
                 place = (np.arange(2 * K + 1)[:, None] * (2 * N + 1) + columns + N).ravel()
                 H = H.reshape(-1, d, d)
                 if p in found:

@@ -35,8 +35,8 @@ MAY_BE_NAN = {
 }
 # results whose rows are NaN where nothing could be computed
 WITH_GAPS = (
-    "Campbell", "CriticalSpeedMap", "RollingBearingResponse", "SeparationMargins", "Sensitivity",
-    "Stability", "StabilityMap",
+    "Campbell", "CriticalSpeedMap", "PeriodicResponse", "RollingBearingResponse",
+    "SeparationMargins", "Sensitivity", "Stability", "StabilityMap",
 )  # fmt: skip
 
 
