@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.modal.whirl import Content, Named, damping_of
 from exudyn_rotor.linear.model.build import linear_model
 from exudyn_rotor.linear.model.linear_model import LinearModel

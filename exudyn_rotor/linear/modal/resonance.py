@@ -21,6 +21,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -30,7 +31,6 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
 from exudyn_rotor.linear.modal.whirl import Content, signed_diameters

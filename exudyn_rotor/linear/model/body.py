@@ -14,11 +14,12 @@ w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import cached_property, kept
+from exudyn_rotor.cached import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration
