@@ -2,7 +2,6 @@
 
 import os
 import stat
-import threading
 
 import numpy as np
 import pytest
@@ -12,31 +11,27 @@ from small_results import STORED
 
 from exudyn_rotor import plotting
 from exudyn_rotor.storage import read_arrays, write_arrays
-from validation import savers
 
 
 @pytest.mark.parametrize(
     ("path", "kind", "message"),
     [
         ("none/a.npz", FileNotFoundError, r"path: the folder '.*none' does not exist"),
-        ("none/../a.npz", FileNotFoundError, r"path: the folder '.*none/\.\.' does not exist"),
         (".", IsADirectoryError, "path: needs the name of a file"),
         ("none/", IsADirectoryError, "path: needs the name of a file, 'none/' is a folder"),
         (3, TypeError, "path: needs the path of a file"),
         ("", ValueError, "path: needs the path of a file"),
-        ("loop", OSError, "path: 'loop' is a link that leads to itself"),
         ("pipe", OSError, "path: needs the name of a file, 'pipe' is a device"),
     ],
 )
-@pytest.mark.skipif(os.name == "nt", reason="links and pipes of POSIX")
+@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
 def test_paths_that_cannot_be_saved_to(path, kind, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    os.symlink("loop", "loop")
     os.mkfifo("pipe")
     for name in ("ReducedRotor", "Campbell"):
         with pytest.raises(kind, match=message):
             STORED[name].save(path)
-    assert sorted(os.listdir()) == ["loop", "pipe"]
+    assert sorted(os.listdir()) == ["pipe"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="modes of POSIX")
@@ -153,32 +148,3 @@ def test_a_script_that_saves_pictures_keeps_none(tmp_path, monkeypatch):
     shown = maps.plot()
     plotting.save(shown, tmp_path / "a.png")
     assert shown.figure.number in pyplot.get_fignums()
-
-
-def test_killed_savers_and_a_reader_lose_nothing(tmp_path):
-    pairs = savers.killed_pairs(tmp_path, 2)
-    assert (pairs.lost, pairs.unreadable) == (0, 0)
-    reader = savers.beside_a_reader(tmp_path, 1.0)
-    assert (reader.lost, reader.unreadable) == (0, 0)
-    assert min(pairs.saves, reader.saves, reader.loads) >= 3
-
-
-def test_savers_in_threads_beside_readers_lose_nothing(tmp_path):
-    path, failed = tmp_path / "a.npz", []
-    write_arrays(path, savers.KIND, savers.content(9, 0))
-
-    def work(saver):
-        try:
-            for count in range(3):
-                write_arrays(path, savers.KIND, savers.content(saver, count))
-                savers.check(path)
-        except Exception as error:
-            failed.append(error)
-
-    threads = [threading.Thread(target=work, args=(saver,)) for saver in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failed
-    assert os.listdir(tmp_path) == ["a.npz"]

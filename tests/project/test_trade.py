@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from validation.trade import error as trade_error
+from validation.trade import linear as trade_linear
 from validation.trade import picture as trade_picture
 from validation.trade import plan as trade_plan
 from validation.trade import run as trade_run
@@ -145,6 +146,15 @@ def test_limits_by_direction():
     assert row["axial"] == pytest.approx(2e-3)
     assert row["lateral"] == pytest.approx(2e-3**0.5)
     assert trade.strict(row)["rim"] is None
+
+
+def test_static_modes_beat_free_modes(bench, monkeypatch):
+    bases = {trade_scene.FREE: (12,), trade_scene.CRAIG_BAMPTON: (12,)}
+    monkeypatch.setattr(trade_linear, "QUICK_BASES", bases)
+    free, static, softened = trade_linear.reduction_errors(bench.rotor, quick=True)
+    assert static["error"] < 1e-3
+    assert free["error"] > 5.0 * static["error"]
+    assert softened["error"] > static["error"]
 
 
 @pytest.mark.parametrize("quick", [True, False])

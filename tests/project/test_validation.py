@@ -42,11 +42,11 @@ def test_documents_name_scripts_that_exist():
 
 def test_options_reach_the_script(monkeypatch, capsys):
     monkeypatch.delitem(sys.modules, "validation.__main__")  # it is run as a program
-    monkeypatch.setattr(sys, "argv", ["validation", "savers", "--help"])
+    monkeypatch.setattr(sys, "argv", ["validation", "trade", "--help"])
     with pytest.raises(SystemExit) as ended:
         runpy.run_module("validation", run_name="__main__")
     assert ended.value.code == 0
-    assert "usage: python -m validation savers" in capsys.readouterr().out
-    monkeypatch.setattr(sys, "argv", ["validation", "sabers"])
-    with pytest.raises(SystemExit, match="'sabers' is unknown; there are: speed"):
+    assert "usage: python -m validation trade" in capsys.readouterr().out
+    monkeypatch.setattr(sys, "argv", ["validation", "trades"])
+    with pytest.raises(SystemExit, match="'trades' is unknown; there are: speed"):
         runpy.run_module("validation", run_name="__main__")
