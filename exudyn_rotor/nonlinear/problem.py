@@ -102,6 +102,8 @@ class Problem:
     ----------
     model : LinearModel
         With springs and dampers in place of the laws.
+    standing : LinearModel or None
+        The same in axes that stand still.
     laws : Laws
     static : mapping of int to ndarray (k,)
         Harmonics of θ, both signs, of gravity and constant forces.
@@ -111,6 +113,7 @@ class Problem:
     """
 
     model: LinearModel
+    standing: LinearModel | None
     laws: Laws
     static: Mapping[int, np.ndarray]
     unbalance: Mapping[int, np.ndarray]
@@ -131,12 +134,11 @@ class Problem:
         stiffening: str,
         speed: float,
         revolutions: int = 1,
-        stands: bool = False,
     ) -> Problem:
         """Return the equations of a rotor; `speed` is the highest.
 
         In axes in which the rest is constant: those of the rotor, in which nothing is averaged, if
-        it can be; axes that stand still if `stands`.
+        it can be.
 
         Raises
         ------
@@ -150,7 +152,7 @@ class Problem:
         ]
         options = {"foundation": foundation, "stiffening": stiffening}
         model = linear_model(target, supports=[*stand_ins, *linear], **options)
-        model = _constant(model, speed or 1.0, stands)
+        model, standing = _constant(model, speed or 1.0)
         _check_held(model, given)
         weight = parts_across(axes_of(next(iter(model.rotors.values())).axis), gravity)
         steady = [*([BaseAcceleration(-weight)] if np.any(weight) else []), *loads]
@@ -164,7 +166,7 @@ class Problem:
             unbalance = {}
         unbalance = {n: F for n, F in of_both_signs(unbalance).items() if np.any(F)}
         laws = Laws(bearings, springs, dampers, passes_of(bearings))
-        return cls(model, laws, static, unbalance, revolutions)
+        return cls(model, standing, laws, static, unbalance, revolutions)
 
     @property
     def reach(self) -> tuple[int, int]:
@@ -201,7 +203,7 @@ class Problem:
             while len(self._rests) >= _RESTS:
                 self._rests.pop(next(iter(self._rests)))
             names = [one.interface for one in self.laws.bearings]
-            self._rests[speed] = Unloaded(self.model, names, speed)
+            self._rests[speed] = Unloaded(self.model, names, speed, self.standing)
         return self._rests[speed]
 
     # ------------------------------------------------------------ where a search begins
@@ -282,18 +284,19 @@ def _resting(one: Bearing, speed: float, load: np.ndarray) -> np.ndarray:
         return np.zeros(2)
 
 
-def _constant(model: LinearModel, speed: float, stands: bool) -> LinearModel:
-    """Return a model whose equations are constant."""
-    for one in () if stands else (model.for_responses,):
-        if one.at(speed).is_constant:
-            return one
-    if not model.at(speed).is_constant or (stands and model.turns):
+def _constant(model: LinearModel, speed: float) -> tuple[LinearModel, LinearModel | None]:
+    """Return a model whose equations are constant, and one in axes that stand still."""
+    constant = model.at(speed).is_constant
+    standing = model if constant and not model.turns else None
+    turning = model.for_responses
+    if turning.at(speed).is_constant:
+        return turning, standing
+    if not constant:
         raise ValueError(
-            "target, supports: an uneven rotor on uneven linear supports, or with a whirl of its "
-            "own frequency, has equations that repeat every revolution; give a finer mesh, or "
-            "supports that are alike in all directions"
+            "target, supports: an uneven rotor on uneven linear supports has equations that repeat "
+            "every revolution; give a finer mesh, or supports that are alike in all directions"
         )
-    return model
+    return model, standing
 
 
 def _check_held(model: LinearModel, given: Sequence[Given]) -> None:
