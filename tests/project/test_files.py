@@ -1,15 +1,12 @@
 """Files: loading refuses all that is not whole."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from small_results import STORED
 
-from exudyn_rotor import Campbell, ReducedRotor, load_result, storage
+from exudyn_rotor import Campbell, ReducedRotor, load_result
 from exudyn_rotor.storage import write_arrays
 
 # what a response has at nodes, at rest, without damping, beyond the last critical speed or peak
@@ -33,8 +30,8 @@ MAY_BE_NAN = {
 }
 # results whose rows are NaN where nothing could be computed
 WITH_GAPS = (
-    "Campbell", "CriticalSpeedMap", "RollingBearingResponse", "SeparationMargins", "Sensitivity",
-    "Stability", "StabilityMap",
+    "Campbell", "CriticalSpeedMap", "PeriodicResponse", "RollingBearingResponse",
+    "SeparationMargins", "Sensitivity", "Stability", "StabilityMap",
 )  # fmt: skip
 
 
@@ -53,10 +50,11 @@ def saved(name: str, folder: Path) -> tuple[Path, dict[str, np.ndarray]]:
     return path, entries(path)
 
 
-def forge(path: Path, data: dict[str, np.ndarray]) -> None:
-    """Write entries with the checksum that belongs to them, as another program might."""
-    whole = {key: np.asarray(value) for key, value in data.items() if key != "sha256"}
-    np.savez(path, sha256=storage._checksum(whole), **whole)
+def assert_same(found: dict[str, np.ndarray], expected: dict[str, np.ndarray]) -> None:
+    assert found.keys() == expected.keys()
+    for name, value in expected.items():
+        assert found[name].dtype == value.dtype
+        np.testing.assert_array_equal(found[name], value)
 
 
 def wrong_values(key: str, value: np.ndarray, owner: str) -> dict[str, np.ndarray]:
@@ -85,19 +83,15 @@ def wrong_values(key: str, value: np.ndarray, owner: str) -> dict[str, np.ndarra
 
 @pytest.mark.parametrize("name", STORED)
 def test_no_replaced_entry_loads(name, tmp_path):
-    """Neither beside the old checksum, which tells damage, nor with one of its own."""
     path, data = saved(name, tmp_path)
     tried, loaded = 0, []
     for key, value in data.items():
-        if key in ("sha256", "format"):
+        if key == "format":
             continue
-        np.savez(path, **data | {key: value[None]})
-        with pytest.raises(ValueError, match=r"kept\.npz: damaged"):
-            load(name, path)
         for label, wrong in wrong_values(key, value, name).items():
             if not value.size and np.array_equal(wrong, value):
                 continue
-            forge(path, data | {key: wrong})
+            np.savez(path, **data | {key: wrong})
             try:
                 load(name, path)
                 loaded.append((key, label))
@@ -105,23 +99,20 @@ def test_no_replaced_entry_loads(name, tmp_path):
                 assert "kept.npz: " in str(error)  # noqa: PT017
             tried += 1
     assert loaded == []
-    assert tried > 4 * (len(data) - 2)
+    assert tried > 4 * (len(data) - 1)
 
 
 @pytest.mark.parametrize("name", STORED)
 def test_no_missing_or_added_entry_loads(name, tmp_path):
     path, data = saved(name, tmp_path)
     for key in data:
-        forge(path, {other: value for other, value in data.items() if other != key})
-        if key == "sha256":  # forged again
-            load(name, path)
-            continue
+        np.savez(path, **{other: value for other, value in data.items() if other != key})
         optional = key.endswith(MAY_BE_MISSING) or "centrifugal." in key
         if not optional:
             with pytest.raises(ValueError, match=r"kept\.npz: "):
                 pytest.fail(f"without {key}: loaded as {load(name, path)!r}")
     for key in ("added", "field.added", "invariants.added"):
-        forge(path, data | {key: np.zeros(3)})
+        np.savez(path, **data | {key: np.zeros(3)})
         with pytest.raises(ValueError, match=r"added' are unknown|added' is unknown"):
             load(name, path)
 
@@ -144,7 +135,7 @@ def test_no_missing_or_added_entry_loads(name, tmp_path):
 )
 def test_values_that_contradict_each_other_are_refused(name, changes, tmp_path):
     path, data = saved(name, tmp_path)
-    forge(path, data | changes)
+    np.savez(path, **data | changes)
     with pytest.raises(ValueError, match=r"kept\.npz: describes no "):
         load(name, path)
 
@@ -152,39 +143,19 @@ def test_values_that_contradict_each_other_are_refused(name, changes, tmp_path):
 # ------------------------------------------------------------------ damage
 
 
-@dataclass(repr=False)
-class Whole:
-    """A file to damage, and what it was before."""
-
-    path: Path
-    content: bytes
-    checksum: str
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> Whole:
-    path, data = saved("ReducedRotor", tmp_path_factory.mktemp("whole"))
-    return Whole(path, path.read_bytes(), str(data["sha256"]))
-
-
-def refused_or_same(path: Path, checksum: str) -> None:
-    """Load a file: it is refused by our message, or what it holds did not change."""
+@pytest.mark.parametrize("share", np.linspace(0.01, 0.99, 20))
+def test_flipped_bytes_are_noticed_or_harmless(share, tmp_path):
+    path, data = saved("ReducedRotor", tmp_path)
+    changed = bytearray(path.read_bytes())
+    changed[int(share * len(changed))] ^= 255
+    path.write_bytes(bytes(changed))
     try:
         found = ReducedRotor.load(path)
     except ValueError as error:
         assert "kept.npz: " in str(error)  # noqa: PT017
         return
-    found.save(path.with_name("found.npz"))
-    assert str(entries(path.with_name("found.npz"))["sha256"]) == checksum
-
-
-@settings(deadline=None)
-@given(share=st.floats(0.0, 1.0, exclude_max=True), flip=st.integers(1, 255))
-def test_flipped_bytes_are_noticed_or_harmless(whole, share, flip):
-    changed = bytearray(whole.content)
-    changed[int(share * len(changed))] ^= flip
-    whole.path.write_bytes(bytes(changed))
-    refused_or_same(whole.path, whole.checksum)
+    found.save(path)
+    assert_same(entries(path), data)
 
 
 class Trap:
@@ -225,7 +196,7 @@ def test_other_files_are_told_apart(tmp_path):
     with pytest.raises(ValueError, match="holds no result, but a reduced rotor"):
         load_result(path)
     for version in (1, 3):
-        forge(path, entries(path) | {"format": f"exudyn_rotor reduced rotor {version}"})
+        np.savez(path, **entries(path) | {"format": f"exudyn_rotor reduced rotor {version}"})
         with pytest.raises(ValueError, match="written by another version"):
             ReducedRotor.load(path)
     np.savez(path, format="exudyn_rotor reduced rotor 1", mode_mass=np.eye(3))
