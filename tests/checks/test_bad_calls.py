@@ -25,7 +25,6 @@ import exudyn_rotor as er
 ALL = os.environ.get("EXUDYN_ROTOR_BAD_CALLS") == "all"
 SAMPLE = {"valid": 20, "wrong": 250}  # of some hundreds, and some thousands
 
-pytestmark = pytest.mark.filterwarnings("ignore")
 
 NUMBERS = {"float", "int"}
 ARRAY = re.compile(r"ArrayLike|np\.ndarray|Sequence\[(float|int)\]|tuple\[float|csr_array|Matrix")
