@@ -30,6 +30,7 @@ def motions_over(
     held: bool = False,
     method: str = "auto",
     tolerance: float = 1e-6,
+    least_stable: bool = False,
     progress: bool = False,
     label: str = "",
 ) -> list[Motions | None]:
@@ -41,7 +42,7 @@ def motions_over(
     speeds : sequence of float
     held : bool, optional
         Whether a spin that nothing holds follows θ = Ωt and is no motion.
-    method, tolerance
+    method, tolerance, least_stable
         See :func:`motions_of`.
     progress : bool, optional
         Show a progress bar with the `label`.
@@ -62,7 +63,7 @@ def motions_over(
         few = systems[first : first + (1 if progress else count)]
         if basis is not None:
             few = [None if system is None else system.projected(basis) for system in few]
-        solved = motions_of(few, method, tolerance)
+        solved = motions_of(few, method, tolerance, least_stable=least_stable)
         found += solved if basis is None else [_in_all(each, basis, neutral) for each in solved]
     _warn_of_lost([each for each in found if each is not None])
     return found

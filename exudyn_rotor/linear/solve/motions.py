@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
-from exudyn_rotor.linear.solve.floquet import floquet_growth, floquet_motions
+from exudyn_rotor.linear.equations import PeriodicSystem
+from exudyn_rotor.linear.solve.floquet import floquet_motions
 from exudyn_rotor.linear.solve.hill import Exponents, hill_motions
 from exudyn_rotor.linear.solve.state import EPSILON, States, free_directions, others, states_of
 
@@ -60,7 +60,11 @@ class Motions:
 
 
 def motions_of(
-    systems: Sequence[PeriodicSystem | None], method: str = "auto", tolerance: float = 1e-6
+    systems: Sequence[PeriodicSystem | None],
+    method: str = "auto",
+    tolerance: float = 1e-6,
+    *,
+    least_stable: bool = False,
 ) -> list[Motions | None]:
     """Return the motions of systems of the same coordinates; None where a system is None.
 
@@ -71,17 +75,14 @@ def motions_of(
         For periodic equations: harmonics, or the monodromy matrix.
     tolerance : float
         Largest relative error of λ by harmonics that are left out.
-
-    Raises
-    ------
-    UnconvergedError
-        Where no speed has an answer.
+    least_stable : bool
+        Whether harmonics need to suffice for the least stable motion only.
     """
     known = [system for system in systems if system is not None]
     if not known:
         return [None] * len(systems)
     reduced, free, basis = _resisted(known)
-    solved = iter(_solved(reduced, method, tolerance))
+    solved = iter(_solved(reduced, method, tolerance, least_stable))
     if basis is not None:
         solved = (_beside(found, free, basis) for found in solved)
     return [None if system is None else next(solved) for system in systems]
@@ -93,8 +94,7 @@ def margins_of(
     """Return by how much the least stable motion of each system grows beyond its bound [1/s].
 
     Of motions that are not neutral; less the bound where all are. The same as from
-    :func:`motions_of`, in a fraction of the time: of periodic equations by Floquet's method without
-    shapes, and by Hill's where that does not settle.
+    :func:`motions_of` for the least stable motion, of constant equations without shapes.
     """
     reduced, _, _ = _resisted(systems)
     found = [-0.0] * len(systems)
@@ -105,14 +105,9 @@ def margins_of(
             constant, np.linalg.eigvals(np.stack([each.A[0] for each in made])), made, strict=True
         ):
             found[i] = _margin(values, _bound(each))
-    rest, steps = [], 0
-    for i in (i for i, s in enumerate(reduced) if not s.is_constant and s.size):
-        made = states_of(reduced[i])
-        growth, bound, steps = floquet_growth(reduced[i], made, tolerance, steps)
-        found[i] = _margin(growth, max(bound, _bound(made)))
-        if method == "hill" or np.any(np.isnan(growth)):
-            rest.append(i)
-    for i, each in zip(rest, _solved([reduced[i] for i in rest], method, tolerance), strict=True):
+    rest = [i for i, s in enumerate(reduced) if not s.is_constant and s.size]
+    solved = _solved([reduced[i] for i in rest], method, tolerance, least_stable=True)
+    for i, each in zip(rest, solved, strict=True):
         found[i] = _margin(each.values, each.bound)
     return found
 
@@ -133,7 +128,9 @@ def _resisted(
     return [system.projected(basis) for system in systems], free, basis
 
 
-def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> list[Motions]:
+def _solved(
+    systems: list[PeriodicSystem], method: str, tolerance: float, least_stable: bool = False
+) -> list[Motions]:
     """Return the motions of each system that something resists everywhere."""
     made = [states_of(system) for system in systems]
     found: list[Motions | None] = [None] * len(systems)
@@ -153,7 +150,8 @@ def _solved(systems: list[PeriodicSystem], method: str, tolerance: float) -> lis
         if method == "floquet":
             exponents = floquet_motions(system, made[i])
         else:
-            exponents, size = hill_motions(system, made[i], tolerance, size)
+            neutral = _bound(made[i]) if least_stable else None
+            exponents, size = hill_motions(system, made[i], tolerance, size, neutral)
         found[i] = _periodic(system.speed, exponents, made[i])
     return found
 
@@ -201,4 +199,4 @@ def _beside(found: Motions, free: np.ndarray, basis: np.ndarray) -> Motions:
     return Motions(found.speed, values, joined, found.orders, found.bound)
 
 
-__all__ = ["METHODS", "Motions", "UnconvergedError", "motions_of", "one_of_each_pair"]
+__all__ = ["METHODS", "Motions", "margins_of", "motions_of", "one_of_each_pair"]

@@ -352,9 +352,10 @@ def _motions(
     built: PeriodicSystem | tuple[LinearModel, float], method: str, tolerance: float
 ) -> Motions:
     if isinstance(built, PeriodicSystem):
-        return motions_of([built], method, tolerance)[0]
+        return motions_of([built], method, tolerance, least_stable=True)[0]
     model, speed = built
-    return motions_over(model, [speed], held=True, method=method, tolerance=tolerance)[0]
+    given = {"method": method, "tolerance": tolerance, "least_stable": True}
+    return motions_over(model, [speed], held=True, **given)[0]
 
 
 def _content_of(model: LinearModel, contents: dict) -> Content:
