@@ -45,7 +45,6 @@ SCRIPTS = {
     "basis": Script("basis", ""),
     "full_bodies": Script("full_bodies", ""),
     "extremes": Script("extremes.table", "the extremes"),
-    "savers": Script("savers", "no file lost"),
     "kernels": Script("kernels", ""),
 }
 
