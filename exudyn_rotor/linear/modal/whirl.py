@@ -257,12 +257,12 @@ class Content:
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
         span = span.reshape(vectors.shape)
         across = np.swapaxes(span.conj(), 2, 3)
-        form, whole = (
-            np.sum(across @ F @ span, axis=1) for F in (self._mean, self.whole + self.standing)
-        )
+        every = self.whole + self.standing
+        form, whole = (np.sum(across @ F @ span, axis=1) for F in (self._mean, every))
         # what moves nothing that has waves has the mean zero
-        largest = np.abs(whole).max(axis=(1, 2), initial=1e-300)[:, None, None]
-        unit = np.linalg.inv(np.linalg.cholesky(whole + 1e-9 * largest * np.eye(len(whole[0]))))
+        floor = 1e-9 * np.abs(whole).max(axis=(1, 2), keepdims=True)
+        floor = floor + 1e-12 * np.abs(every).max() + 1e-200
+        unit = np.linalg.inv(np.linalg.cholesky(whole + floor * np.eye(len(whole[0]))))
         across = np.swapaxes(unit.conj(), 1, 2)
         turn = across @ np.linalg.eigh(unit @ form @ across)[1]
         turned = span @ (turn / np.abs(turn).max(axis=1, keepdims=True))[:, None]
