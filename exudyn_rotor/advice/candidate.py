@@ -5,13 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.body import RotorBody as LinearBody
 from exudyn_rotor.linear.model.build import linear_model

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.advice.candidate import Candidate
 from exudyn_rotor.advice.request import Request
-from exudyn_rotor.cached import cached_property
 
 GROWTH = 0.05  # per radian
 _FREQUENCIES = 9

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import exudyn
 import numpy as np
@@ -10,7 +11,6 @@ import scipy.linalg
 
 from exudyn_rotor.advice.request import PERIOD_ERROR
 from exudyn_rotor.bearings.bearing import Bearing
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.rotor.record import Record, Solver, last_solver
 from exudyn_rotor.multibody.rotor.rotor_body import RotorBody
 from exudyn_rotor.reduction.mode_kind import ModeKind

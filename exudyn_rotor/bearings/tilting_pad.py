@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -35,7 +36,6 @@ from exudyn_rotor.bearings.film.state import FilmState
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
 from exudyn_rotor.bearings.pad_tilt import shift_of_pad, stiffness_unit
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
 
 _STEPS, _SHORTER, _VAIN = 60, 8, 12  # of Newton's method, halvings of one, steps in vain

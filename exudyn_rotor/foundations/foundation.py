@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.foundations.mount import Mount
 from exudyn_rotor.reduction.craig_bampton import craig_bampton_modes
 from exudyn_rotor.reduction.reduced_rotor import ReducedRotor

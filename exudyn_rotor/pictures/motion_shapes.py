@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_rotor import checks
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.pictures.drawing import Orbit, animated, draw_motion
 from exudyn_rotor.results import Result, numbers, storable, words
 from exudyn_rotor.solid.interface import Interface

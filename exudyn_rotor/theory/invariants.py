@@ -10,12 +10,12 @@ Equation numbers: Zwölfer, Rasmussen, Santos, SSRN 4830498.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from exudyn_rotor import checks
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.theory.nodal import skew, turned
 
 Matrix = np.ndarray | sp.csr_array

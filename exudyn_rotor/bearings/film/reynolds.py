@@ -20,12 +20,12 @@ what stands for it in a void, and changes sides when its unknown turns negative.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg.lapack import dgbsv, zgbsv
 
 from exudyn_rotor.bearings.film.grid import Grid
-from exudyn_rotor.cached import cached_property
 
 CAVITATION = ("none", "half-sommerfeld", "reynolds", "mass-conserving")
 _ITERATIONS = 200

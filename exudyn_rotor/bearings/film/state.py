@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
@@ -11,7 +12,6 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.data import FilmData
 from exudyn_rotor.bearings.film.reynolds import Solution
 from exudyn_rotor.bearings.film.void_states import VoidStates
-from exudyn_rotor.cached import cached_property
 
 _AT_ONCE = 1e12  # of the speed: rate at which voids let go what they take up
 _WHIRLS = np.geomspace(0.05, 2.0, 24)  # ratios between which that of a limit is looked for

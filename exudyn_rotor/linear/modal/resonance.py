@@ -21,6 +21,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -30,7 +31,6 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
 from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
@@ -591,8 +591,10 @@ def named(found: Sequence[Resonance], content: Content) -> tuple[list[Resonance]
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         # all frequencies go with the speed, so that one speed stands for all
         values = np.full(len(places), 1j * center)
-        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
-        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+        given = values[None], vectors[None], orders, np.zeros(1)
+        names = content.named(Motions(np.ones(1), *given), apart=True)
+        codes[places], diameters[places] = names.codes[0], names.diameters[0]
+        rotor[places] = names.rotor[0]
     ascending = np.argsort([one.speed for one in found], kind="stable")
     senses = signed_diameters(codes, diameters)[ascending]
     groups = same_speed([found[i].speed for i in ascending])

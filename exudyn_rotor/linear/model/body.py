@@ -14,11 +14,12 @@ w = 0. A point mass, with N = [[0, −1], [1, 0]], G = mN and C = m, has ``M ÿ 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg as la
 
-from exudyn_rotor.cached import cached_property, kept
+from exudyn_rotor.cached import kept
 from exudyn_rotor.foundations.foundation import Foundation
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.points import interface_motion, radius_of_gyration
@@ -248,6 +249,8 @@ class RotorBody(Body):
     def supported(self, name: str) -> dict[int, np.ndarray]:
         """Return the motion of an interface that a support acts on, seen from outside, (6, k)."""
         U = self.motion(name)
+        if self.spin is not None:
+            U = self.spin.centred(U, self.alone.invariants.mass, self.is_apart)
         return turned({0: self.alone.turning.motion(U)[0] if self.mean else U}, self.turns)
 
     @cached_property

@@ -22,12 +22,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
 
 from exudyn_rotor.bearings.rolling import RollingBearing, contacts, depth_under
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.response.contact_rest import Harmonics, Rest
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, difference, stacked
 from exudyn_rotor.linear.model.linear_model import ON_FOUNDATION, LinearModel
 from exudyn_rotor.linear.solve.forced import coupled_stiffness

@@ -19,11 +19,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.response.contact_balance import ContactBalance

@@ -13,11 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
-
-from exudyn_rotor.cached import cached_property
 
 _CHUNK = 512  # steps whose matrices are made at once
 _FELT = 1e-6  # of the fastest frequency: an exponent that changes by less is not felt

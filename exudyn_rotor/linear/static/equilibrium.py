@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as la
 
 from exudyn_rotor.bearings.resting import (
     Nonlinear,
@@ -28,6 +27,7 @@ from exudyn_rotor.bearings.resting import (
 )
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.solve.forced import static_motion
+from exudyn_rotor.linear.solve.state import others
 
 _MOST, _CONVERGED = 100, 1e-10  # of Newton's steps; of the largest force and place
 _SLOW = 15  # steps from which they are halved: contacts that open and close by turns
@@ -79,7 +79,7 @@ def equilibrium(
     UnconvergedError
         Where there is no equilibrium.
     """
-    basis = la.null_space(driven.T) if driven.shape[1] else np.eye(len(K))
+    basis = others(driven, np.eye(len(K)))
     K, load = basis.T @ K @ basis, basis.T @ load
     rows = [(one.U @ basis, one.U_s @ basis) for one in journals]
 

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from exudyn_rotor.bearings.given import Given, check_interfaces
 from exudyn_rotor.bearings.resting import Nonlinear
 from exudyn_rotor.bearings.support import Support
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.equations import Terms, turned
 from exudyn_rotor.linear.model.body import RotorBody, rigid_columns_of
 from exudyn_rotor.linear.model.build import linear_model

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from math import hypot, inf
 
 import exudyn
@@ -23,7 +24,6 @@ from exudyn_rotor.bearings.bearing import Bearing
 from exudyn_rotor.bearings.clearance_stop import ClearanceStop
 from exudyn_rotor.bearings.held_law import HeldLaw
 from exudyn_rotor.bearings.magnetic import MagneticBearing
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.multibody.calls.sparse_solver import check_solver
 from exudyn_rotor.multibody.mark import Mark, mark_of
 from exudyn_rotor.multibody.rotor.rotor_items import RotorItems

@@ -13,13 +13,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 
 import exudyn
 import numpy as np
 
 from exudyn_rotor import checks
 from exudyn_rotor.bearings.journal_bearing import JournalBearing
-from exudyn_rotor.cached import cached_property
 from exudyn_rotor.linear.model.scene.equilibrium import motion_at_rest
 from exudyn_rotor.linear.model.scene.probe import LinearPoint, Probe, probing
 from exudyn_rotor.linear.model.scene.scene_checks import check_period, check_scene
