@@ -20,6 +20,7 @@ SCRIPTS = {
     "speed": Script("speed.speed", "cost of a step"),
     "set_up": Script("speed.set_up", "time of the set-up"),
     "linear": Script("speed.linear", "time of linear analyses"),
+    "beside_ross": Script("speed.beside_ross", "beside ROSS"),
     "trade": Script("trade.trade", "accuracy for the time"),
     "against_3d": Script("exudyn_3d.against_3d", "agreement with the 3D body"),
     "full_3d": Script("exudyn_3d.full_3d", "agreement of full bodies with the full 3D body"),
