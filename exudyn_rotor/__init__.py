@@ -77,12 +77,6 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce as HarmonicForce
     from exudyn_rotor.linear.response.responses import HarmonicResponse as HarmonicResponse
     from exudyn_rotor.linear.response.responses import UnbalanceResponse as UnbalanceResponse
-    from exudyn_rotor.linear.response.rolling_response import (
-        rolling_bearing_response as rolling_bearing_response,
-    )
-    from exudyn_rotor.linear.response.rolling_result import (
-        RollingBearingResponse as RollingBearingResponse,
-    )
     from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
     from exudyn_rotor.linear.response.steady_response import (
         unbalance_response as unbalance_response,
@@ -204,8 +198,6 @@ _NAMES = {
     "linear.response.base_response": "BaseResponse base_response",
     "linear.response.harmonic_loads": "BaseAcceleration HarmonicForce",
     "linear.response.responses": "HarmonicResponse UnbalanceResponse",
-    "linear.response.rolling_response": "rolling_bearing_response",
-    "linear.response.rolling_result": "RollingBearingResponse",
     "linear.response.steady_response": "harmonic_response unbalance_response",
     "linear.response.steady_state": "SteadyState steady_state",
     "linear.response.unbalance": "Unbalance permissible_unbalance",

@@ -15,7 +15,6 @@ from exudyn_rotor import (
     MotionShapes,
     PeriodicResponse,
     ReducedRotor,
-    RollingBearingResponse,
     Sensitivity,
     SeparationMargins,
     Spectra,
@@ -71,10 +70,6 @@ def results() -> list:
         CriticalSpeedMap(speeds, table, codes, 1.0, "none"),
         UnbalanceResponse(("left", "node 2"), np.array([1]), motion, "inertial", speeds),
         HarmonicResponse(("left", "node 2"), np.array([0]), motion, "rotor", speeds, 90.0),
-        RollingBearingResponse(
-            ("left", "node 2"), speeds, np.array([[0, 0], [1, -1]]), np.repeat(motion, 2, axis=2),
-            3.3, ("left", "right"), table, table - 1.0, *[speeds] * 4, np.array([[0, 1], [2, -3]]),
-            coordinates=RNG.normal(size=(3, 2, 5)) + 1j, basis="rotor"),
         PeriodicResponse(
             ("left", "node 2"), speeds, [0, 0, 1], ("value", "fold", "computed"), speeds,
             np.column_stack([speeds, 0.5 * speeds]), [[0, 0], [1, -1]],

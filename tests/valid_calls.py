@@ -108,7 +108,7 @@ RETURNED = {
     **{"HarmonicResponse": "harmonic_response", "MotionShapes": "mode_shapes"},
     **{"PrescribedMotion": "PrescribedMotion.run_up", "Prestress": "SolidRotor.prestress"},
     **{"PeriodicResponse": "periodic_response"},
-    **{"Proposal": "propose", "RollingBearingResponse": "rolling_bearing_response"},
+    **{"Proposal": "propose"},
     **{"RunCheck": "check_run", "SceneFoundation": "add_foundation", "Sensitivity": "sensitivity"},
     **{"SeparationMargins": "separation_margins", "SolidRotor": "SolidRotor.from_ngsolve"},
     **{"Spectra": "spectra", "Stability": "stability", "StabilityLevelOne": "stability_level_one"},
@@ -254,8 +254,6 @@ CALLS = {
     "PeriodicResponse.displacement": {"point": 0, "time": [0.0, 0.1]},
     "PeriodicResponse.orbit": {"point": 0},
     "PeriodicResponse.state": {"point": 0},
-    "RollingBearingResponse.displacement": {"speed": 20.0, "time": [0.0, 0.1]},
-    "RollingBearingResponse.state": {"speed": 20.0},
     "RotorBody.start_recording": lambda w: {"self": w.free_body},
     "RotorTrain": lambda w: {
         "rotors": {"first": w.ReducedRotor, "second": w.ReducedRotor},
@@ -347,11 +345,6 @@ CALLS = {
             )
             for end in ENDS
         ],
-    },
-    "rolling_bearing_response": lambda w: {
-        "speeds": [20.0],
-        "supports": [w.RollingBearing, *w.supports],
-        "gravity": DOWN,
     },
     "sensitivity": lambda w: {"supports": [*w.magnets, *w.supports]},
     "separation_margins": {"operating_range": (500.0, 800.0)},

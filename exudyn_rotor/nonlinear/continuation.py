@@ -245,7 +245,8 @@ class Family:
             except (UnconvergedError, np.linalg.LinAlgError, ArithmeticError, ValueError):
                 step *= 0.5
                 continue
-            row = self._row(point.tangent, point.c)
+            like = self.widened(point, after.balance.reach).tangent
+            row = self._row(like, point.c)
             turn = np.vdot(row[0], after.tangent[0]).real + row[1] @ after.tangent[1]
             if turn < _TURN and step > _SMOOTH:
                 step *= 0.5
