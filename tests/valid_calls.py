@@ -124,6 +124,7 @@ RETURNED = {
     **{"Spectra": "spectra", "Stability": "stability", "StabilityLevelOne": "stability_level_one"},
     **{"StabilityMap": "stability_map", "StabilityThresholds": "stability_threshold"},
     **{"StartState": "SteadyState.state", "SteadyState": "steady_state"},
+    **{"StaticResponse": "static_response"},
     **{"StressField": "StressField.of", "StressHistory": "stress_history"},
     **{"UnbalanceResponse": "unbalance_response"},
 }
@@ -290,6 +291,7 @@ CALLS = {
         "nodes": w.SolidRotor.nodes,
         "interfaces": {"left": [0, 1, 2, 3]},
     },
+    "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
     "SolidRotor.prestress": {"euler": True},
@@ -366,6 +368,7 @@ CALLS = {
     "separation_margins": {"operating_range": (500.0, 800.0)},
     "spectra": {"time": 1e-3 * np.arange(40), "motion": np.ones((40, 2)), "length": 0.02},
     "spinning_modes": lambda w: {"rotor": w.stressed, "speeds": (5.0, 10.0)},
+    "static_response": {"loads": {"left": [1.0, 2.0, 0.0]}, "gravity": DOWN},
     "stability_level_one": {"cross_coupling": 1e4},
     "stability_threshold": lambda w: {
         "low": 10.0,
