@@ -28,6 +28,8 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import SolidRotor, add_rotor, check_run
 
+pytestmark = pytest.mark.filterwarnings("ignore::exudyn_rotor.ConnectionWarning")
+
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
 # z axis to the mesh's spin axis, and mesh to space

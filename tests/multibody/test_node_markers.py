@@ -16,6 +16,8 @@ from scipy.spatial.transform import Rotation
 
 from exudyn_rotor import SolidRotor, add_rotor
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*no node of Exudyn turns")
+
 KINDS = exu.OutputVariableType
 SKEW = Rotation.from_euler("XYZ", [0.7, -0.4, 1.1]).as_matrix()
 TO_X = Rotation.from_euler("y", np.pi / 2).as_matrix()
