@@ -7,9 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
-from exudyn_rotor.linear.equations import PeriodicSystem, UnconvergedError
+from exudyn_rotor.linear.equations import PeriodicSystem
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.motions import Motions, margins_of, motions_of
 from exudyn_rotor.threads import one_thread
@@ -18,32 +17,9 @@ _AT_ONCE = 2_000_000  # entries of matrices that are made at once
 
 
 def systems_at(model: LinearModel, speeds: Sequence[float]) -> list[PeriodicSystem | None]:
-    """Return the equations at speeds [rad/s]; None where there are none, with one warning.
-
-    Raises
-    ------
-    ValueError
-        Where there are equations at none of the speeds.
-    """
-    systems, refused, first = [], [], None
-    for speed in speeds:
-        try:
-            systems.append(model.at(float(speed)))
-        except (NoCoefficientsError, UnconvergedError) as error:
-            first = first or error
-            refused.append(float(speed))
-            systems.append(None)
-    if len(refused) == len(systems):
-        raise first
-    if refused:
-        shown = ", ".join(f"{speed:.5g}" for speed in refused[:5])
-        more = " …" if len(refused) > 5 else ""
-        warnings.warn(
-            f"no values at {shown}{more} rad/s, which are NaN: {first}",
-            UserWarning,
-            stacklevel=user_level(),
-        )
-    return systems
+    """Return the equations at speeds [rad/s]; None where there are none, with one warning."""
+    stack = model.at_all(speeds)
+    return [stack[i] if known else None for i, known in enumerate(stack.known)]
 
 
 @one_thread()

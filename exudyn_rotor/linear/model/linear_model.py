@@ -13,6 +13,7 @@ At rest nothing turns, and nothing is averaged.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -22,8 +23,9 @@ import numpy as np
 import scipy.linalg as la
 
 from exudyn_rotor import checks
+from exudyn_rotor.callers import user_level
 from exudyn_rotor.foundations.foundation import Foundation
-from exudyn_rotor.linear.equations import PeriodicSystem, Terms, turned
+from exudyn_rotor.linear.equations import PeriodicSystem, Terms, spread, turned
 from exudyn_rotor.linear.model.assembly import Assembly, rotors_of
 from exudyn_rotor.linear.model.body import (
     EVEN,
@@ -250,6 +252,33 @@ class LinearModel:
             For a speed beyond a table, or at which a film carries nothing.
         """
         return self.assembly(speed).system(speed)
+
+    def at_all(self, speeds: Sequence[float]) -> PeriodicSystem:
+        """Return the equations at spin speeds (s,) [rad/s] as one stack.
+
+        NaN at speeds where there are none, of which one warning tells.
+
+        Raises
+        ------
+        NoCoefficientsError, UnconvergedError
+            Where there are equations at none of the speeds.
+        """
+        speeds = np.asarray(speeds, dtype=float)
+        parts, refused = [], {}
+        for places in (np.flatnonzero(speeds), np.flatnonzero(speeds == 0.0)):
+            if places.size:
+                part, errors = self._systems(speeds[places])
+                refused |= {int(places[i]): error for i, error in errors.items()}
+                if part is not None:
+                    parts.append((np.delete(places, list(errors)), part))
+        if not parts:
+            raise refused[min(refused)]
+        _warn_of_refused(speeds, refused)
+        return spread(speeds, parts)
+
+    def _systems(self, speeds: np.ndarray) -> tuple[PeriodicSystem | None, dict[int, Exception]]:
+        """Return the stack at speeds (s,), all zero or none, and why there are none at some."""
+        return self.assembly(speeds[0]).systems(speeds)
 
     def matrices(self, speed: float) -> Matrices:
         """Return mass, damping and stiffness at a spin speed [rad/s].
@@ -571,6 +600,18 @@ class LinearModel:
         lines.append("free motions: " + (", ".join(self.free_motions) or "none"))
         lines.append(f"stiffening: {self.stiffening}, unevenness {self.unevenness:.1e}")
         return "\n".join(lines)
+
+
+def _warn_of_refused(speeds: np.ndarray, refused: Mapping[int, Exception]) -> None:
+    if refused:
+        places = sorted(refused)
+        shown = ", ".join(f"{speeds[i]:.5g}" for i in places[:5])
+        more = " …" if len(places) > 5 else ""
+        warnings.warn(
+            f"no values at {shown}{more} rad/s, which are NaN: {refused[places[0]]}",
+            UserWarning,
+            stacklevel=user_level(),
+        )
 
 
 def beside(momenta: np.ndarray) -> np.ndarray | None:

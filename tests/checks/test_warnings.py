@@ -305,7 +305,7 @@ PLACES = {
         campbell_with_one_mode, UserWarning, "errs by about"),
     "linear/response/steady_response.py:_with_warning": (
         response_with_one_mode, UserWarning, "errs by about"),
-    "linear/over.py:systems_at": (
+    "linear/model/linear_model.py:_warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
     "linear/modal/resonance.py:_warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),

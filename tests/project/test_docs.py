@@ -16,7 +16,7 @@ from test_warnings import TEXTS
 import exudyn_rotor
 from validation.__main__ import SCRIPTS
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 
 import exudyn_rotor
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 def read(name: str) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 from validation.__main__ import SCRIPTS, listing
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

@@ -2,17 +2,14 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from models import ALUMINIUM as LIGHT
 from models import STEEL, two_material_cylinder
 from netgen.occ import Box, OCCGeometry
 from ngsolve import Mesh
-from ngsolve.la import SparseMatrixd
 
 from exudyn_rotor import SolidRotor, craig_bampton_modes, free_modes, spinning_modes
 from exudyn_rotor.reduction.attachment import attachment_modes
 from exudyn_rotor.solvers import choice, conjugate_gradients, davidson, memory
-from exudyn_rotor.solvers.fill import estimated_fill
 from exudyn_rotor.solvers.inertia_relief import inertia_relief
 from exudyn_rotor.solvers.memory import TooLittleMemoryError
 
@@ -129,19 +126,6 @@ def test_linear_elements_hold_linear_displacements(cube):
     positions = cube.nodes.ravel()
     np.testing.assert_allclose(matrix @ positions[: matrix.shape[1]], positions, atol=1e-12)
     assert matrix.shape[1] == 3 * cube.elements.mesh.nv
-
-
-def test_fill_is_estimated(cube):
-    """NGSolve's own minimum degree ordering fills a cube about as much, by its count of entries."""
-    rotor = cube
-    lower = sp.coo_array(sp.tril(rotor.stiffness + 1e8 * rotor.mass))
-    rows, columns = (index.astype(np.int32) for index in lower.coords)
-    matrix = SparseMatrixd.CreateFromCOO(rows, columns, lower.data, *lower.shape)
-    entries = matrix.Inverse(inverse="sparsecholesky").nze
-    fill = estimated_fill(rotor.stiffness, rotor.nodes)
-    assert 0.8 < fill.entries / entries < 2.0
-    # Σ l² over the columns is at least (Σ l)² / n
-    assert fill.operations > fill.entries**2 / lower.shape[0]
 
 
 def test_too_little_memory_is_told_before_anything_is_computed(cylinder, monkeypatch):
