@@ -134,9 +134,9 @@ class Content:
         nu = np.abs(np.nan_to_num(values.imag))
         vectors = np.where(values.imag < 0.0, motions.vectors[::-1].conj(), motions.vectors)
         vectors = np.nan_to_num(vectors)
-        energy = _energy(self.forms, vectors)  # (h, w, k)
+        energy = energy_of(self.forms, vectors)  # (h, w, k)
         standing, whole = (
-            _energy(form[None], vectors).sum(axis=(0, 1)) for form in (self.standing, self.whole)
+            energy_of(form[None], vectors).sum(axis=(0, 1)) for form in (self.standing, self.whole)
         )
         seen = nu + (motions.orders[:, None, None] + self.shifts[None, :, None]) * speed
         n = self.waves[None, :, None]
@@ -157,7 +157,7 @@ class Content:
         still = wave == 0
         codes[(turns.reshape(-1, len(values))[best, columns] == 0) & ~still] = STATIC
         components = [
-            _energy(form[None], vectors).sum(axis=(0, 1))
+            energy_of(form[None], vectors).sum(axis=(0, 1))
             for form in (self.axial, self.tangential, self.radial)
         ]
         named = np.array([AXIAL, TORSIONAL, RADIAL])[np.argmax(components, axis=0)]
@@ -196,15 +196,18 @@ class Content:
             group = [i for i in left if abs(values[i] - values[first]) <= scale[first]]
             left = [i for i in left if i not in group]
             if len(group) > 1:
-                turned = self._extremal(vectors[:, :, group], motions.orders)
+                turned = self.extremal(vectors[:, :, group])
                 changed = vectors.astype(complex) if changed is vectors else changed
                 changed[:, :, group] = turned
         if changed is vectors:
             return motions
         return Motions(motions.speed, values, changed, motions.orders, motions.bound)
 
-    def _extremal(self, vectors: np.ndarray, orders: np.ndarray) -> np.ndarray:
-        """Return combinations of motions (h, c, g) whose mean wave number is extremal."""
+    def extremal(self, vectors: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+        """Return combinations of motions (h, c, g) whose mean wave number is extremal.
+
+        Or the mean of other weights (h, w) of harmonics and forms.
+        """
         flat = vectors.reshape(-1, vectors.shape[2])
         flat = flat / np.abs(flat).max(axis=0)
         span, lengths, _ = np.linalg.svd(flat, full_matrices=False)
@@ -212,10 +215,10 @@ class Content:
             return vectors
         span = span.reshape(vectors.shape)
         # 0.4 lies between the waves, so that axial motion parts from torsion
-        mean = sum(n * self.forms[i] for i, n in enumerate(self.waves)) + 0.4 * self.axial
-        form, whole = (
-            sum(x.conj().T @ F @ x for x in span) for F in (mean, self.whole + self.standing)
-        )
+        weights = np.tile(self.waves, (len(span), 1)) if weights is None else weights
+        means = np.tensordot(weights, self.forms, axes=1) + 0.4 * self.axial
+        form = sum(x.conj().T @ F @ x for x, F in zip(span, means, strict=True))
+        whole = sum(x.conj().T @ (self.whole + self.standing) @ x for x in span)
         sizes, parts = la.eigh(0.5 * (whole + whole.conj().T))
         seen = sizes > 1e-9 * max(sizes[-1], 1e-300)  # others move nothing that has waves
         unit = parts[:, seen] / np.sqrt(sizes[seen])
@@ -252,7 +255,7 @@ def _components(points: np.ndarray, motion: np.ndarray, axial: np.ndarray) -> di
     }
 
 
-def _energy(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+def energy_of(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Return the energies (h, w, k) of harmonics (h, c, k)."""
     moved = forms[None] @ vectors[:, None]
     return np.sum(vectors[:, None].conj() * moved, axis=2).real
