@@ -27,6 +27,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg as la
 from scipy.optimize import brentq
 
 from exudyn_rotor.bearings.support import NoCoefficientsError
@@ -50,7 +51,7 @@ _NO_INERTIA = 1e-6  # share of the largest inertia
 _BRACKETS = 200  # speeds at which signs of eigenvalues are looked at; half of them for blocks
 _SLOW, _RATIO = 12, 2.0**0.25  # speeds on each side of the first of these, and their ratio
 _FINE = 1e-10  # of the largest speed, to which zeros are refined
-_FEW, _MOST = 2, 8  # blocks on each side of the middle one
+_FEW, _MOST = 4, 16  # harmonics on each side of the middle one
 _ITERATIONS = 8
 _OFF = 0.03  # by which films that are linear between speeds may err
 _FAR = 0.5  # share of a critical speed by which the same motion may differ
@@ -135,6 +136,18 @@ class Stiffness:
             H[a, :, a] -= (f * speed) ** 2 * system.M
         return H.reshape(h * system.size, -1)
 
+    def _solve(self, H: np.ndarray, load: np.ndarray, speed: float) -> np.ndarray:
+        """Return ``H⁻¹ load`` at a speed, of blocks of which only near ones are coupled."""
+        system = self.system(speed)
+        reach = max(abs(n) for terms in (system.D, system.K) for n in terms)
+        width = system.size * (1 + reach // (system.step or 1)) - 1
+        if 4 * width > len(H):
+            return np.linalg.solve(H, load)
+        band = np.zeros((2 * width + 1, len(H)), dtype=complex)
+        for d in range(-width, width + 1):
+            band[width - d, max(d, 0) : len(H) + min(d, 0)] = np.diagonal(H, d)
+        return la.solve_banded((width, width), band, load)
+
     def motions(self, vector: np.ndarray, multiples: np.ndarray) -> np.ndarray:
         """Return vectors (h·k, …) of H as harmonics (h, c, …) in all coordinates of the model."""
         basis = self.model.moving_basis
@@ -155,7 +168,7 @@ class Stiffness:
             later = H if slope is None else slope(speed, multiples)
             earlier = (slope or self)(speed * (1.0 - _STEP), multiples)
             try:
-                moved = np.linalg.solve(H, (later - earlier) @ x / (speed * _STEP))
+                moved = self._solve(H, (later - earlier) @ x / (speed * _STEP), speed)
             except np.linalg.LinAlgError:  # there already
                 break
             change = (np.vdot(x, x) / np.vdot(x, moved)).real
@@ -233,10 +246,10 @@ class Search:
             Where a support has a negative stiffness.
         """
         varies, step = self.stiffness.model.stiffness_varies, self._step
-        stiffness = replace(self.stiffness, factor=factor)
+        stiffness, most = replace(self.stiffness, factor=factor), _FEW // (step or 1)
         found: list[Resonance] = []
         for center in self._centers(step):
-            few = center + step * np.arange(-_FEW, _FEW + 1) if step else np.array([center])
+            few = center + step * np.arange(-most, most + 1) if step else np.array([center])
             met = Excitation(self.content, self.order, self.diameters, few)
             pairs = self._zeros(stiffness, met) if varies else _direct(*_quadratic(stiffness, few))
             pairs = [
@@ -277,7 +290,7 @@ class Search:
     def _settled(self, stiffness: Stiffness, found: Resonance) -> Resonance | None:
         """Add harmonics to a motion until its critical speed does not change; None if it does."""
         change, begin = np.inf, found.speed
-        for _ in range(_FEW, _MOST, 2):
+        for _ in range(_FEW, _MOST, 2 * self._step):
             last, multiples, before = found.speed, found.multiples, change
             beyond = self._step * np.array([1, 2])
             multiples = np.r_[multiples[0] - beyond[::-1], multiples, multiples[-1] + beyond]
@@ -422,7 +435,7 @@ class Search:
         if self.lost:
             told.append(
                 f"near {_shown(self.lost)} rad/s they still change with harmonics up to the "
-                f"{_MOST * self._step}th, and are left out"
+                f"{_MOST}th, and are left out"
             )
         if self.jumps:
             told.append(
