@@ -307,7 +307,7 @@ PLACES = {
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/model/linear_model.py:_warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
-    "linear/modal/resonance.py:_warn": (
+    "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
     "linear/response/steady_response.py:_warn_of_missing": (
         response_below_a_table, UserWarning, "no steady motion at .* NaN there"),
