@@ -78,12 +78,6 @@ if TYPE_CHECKING:
     from exudyn_rotor.linear.response.harmonic_loads import HarmonicForce as HarmonicForce
     from exudyn_rotor.linear.response.responses import HarmonicResponse as HarmonicResponse
     from exudyn_rotor.linear.response.responses import UnbalanceResponse as UnbalanceResponse
-    from exudyn_rotor.linear.response.rolling_response import (
-        rolling_bearing_response as rolling_bearing_response,
-    )
-    from exudyn_rotor.linear.response.rolling_result import (
-        RollingBearingResponse as RollingBearingResponse,
-    )
     from exudyn_rotor.linear.response.steady_response import harmonic_response as harmonic_response
     from exudyn_rotor.linear.response.steady_response import (
         unbalance_response as unbalance_response,
@@ -123,6 +117,8 @@ if TYPE_CHECKING:
     from exudyn_rotor.multibody.twins.exudyn_interface import (
         ObjectFixedAxisFFRFreducedOrderInterface as ObjectFixedAxisFFRFreducedOrderInterface,
     )
+    from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
+    from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
     from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
     from exudyn_rotor.pictures.shapes import mode_shapes as mode_shapes
     from exudyn_rotor.pictures.shapes import response_shapes as response_shapes
@@ -200,8 +196,6 @@ _NAMES = {
     "linear.response.base_response": "BaseResponse base_response",
     "linear.response.harmonic_loads": "BaseAcceleration HarmonicForce",
     "linear.response.responses": "HarmonicResponse UnbalanceResponse",
-    "linear.response.rolling_response": "rolling_bearing_response",
-    "linear.response.rolling_result": "RollingBearingResponse",
     "linear.response.steady_response": "harmonic_response unbalance_response",
     "linear.response.steady_state": "SteadyState steady_state",
     "linear.response.unbalance": "Unbalance permissible_unbalance",
@@ -225,6 +219,8 @@ _NAMES = {
     "multibody.supports.foundation_body": "SceneFoundation add_foundation",
     "multibody.twins.exudyn_call": "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "multibody.twins.exudyn_interface": "ObjectFixedAxisFFRFreducedOrderInterface",
+    "nonlinear.periodic_response": "periodic_response",
+    "nonlinear.periodic_result": "PeriodicResponse",
     "pictures.motion_shapes": "MotionShapes",
     "pictures.shapes": "mode_shapes response_shapes",
     "pictures.spectra": "Spectra plot_orbit spectra",

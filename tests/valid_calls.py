@@ -107,7 +107,8 @@ RETURNED = {
     **{"EnergyBalance": "energy_balance", "Foundation": "Foundation.from_modes"},
     **{"HarmonicResponse": "harmonic_response", "MotionShapes": "mode_shapes"},
     **{"PrescribedMotion": "PrescribedMotion.run_up", "Prestress": "SolidRotor.prestress"},
-    **{"Proposal": "propose", "RollingBearingResponse": "rolling_bearing_response"},
+    **{"PeriodicResponse": "periodic_response"},
+    **{"Proposal": "propose"},
     **{"RunCheck": "check_run", "SceneFoundation": "add_foundation", "Sensitivity": "sensitivity"},
     **{"SeparationMargins": "separation_margins", "SolidRotor": "SolidRotor.from_ngsolve"},
     **{"Spectra": "spectra", "Stability": "stability", "StabilityLevelOne": "stability_level_one"},
@@ -249,8 +250,9 @@ CALLS = {
         "stiffness": 7e9,
         "load": [0.0, -500.0],
     },
-    "RollingBearingResponse.displacement": {"speed": 20.0, "time": [0.0, 0.1]},
-    "RollingBearingResponse.state": {"speed": 20.0},
+    "PeriodicResponse.displacement": {"point": 0, "time": [0.0, 0.1]},
+    "PeriodicResponse.orbit": {"point": 0},
+    "PeriodicResponse.state": {"point": 0},
     "RotorBody.start_recording": lambda w: {"self": w.free_body},
     "RotorTrain": lambda w: {
         "rotors": {"first": w.ReducedRotor, "second": w.ReducedRotor},
@@ -328,10 +330,19 @@ CALLS = {
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
     "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
-    "rolling_bearing_response": lambda w: {
-        "speeds": [20.0],
-        "supports": [w.RollingBearing, *w.supports],
-        "gravity": DOWN,
+    "periodic_response": {
+        "values": [10.0, 20.0],
+        "supports": [
+            er.SqueezeFilmDamper(
+                interface=end,
+                radius=0.06,
+                length=0.02,
+                clearance=1e-4,
+                viscosity=0.01,
+                centring_stiffness=1e6,
+            )
+            for end in ENDS
+        ],
     },
     "sensitivity": lambda w: {"supports": [*w.magnets, *w.supports]},
     "separation_margins": {"operating_range": (500.0, 800.0)},

@@ -33,7 +33,7 @@ from scipy.optimize import brentq
 from exudyn_rotor.bearings.support import NoCoefficientsError
 from exudyn_rotor.callers import user_level
 from exudyn_rotor.linear.equations import PeriodicSystem, Terms, UnconvergedError, add
-from exudyn_rotor.linear.modal.whirl import Content, energy_of, signed_diameters
+from exudyn_rotor.linear.modal.whirl import Content, signed_diameters
 from exudyn_rotor.linear.model.assembly import rotors_of
 from exudyn_rotor.linear.model.linear_model import LinearModel
 from exudyn_rotor.linear.solve.hill import real_waves
@@ -519,11 +519,9 @@ class Excitation:
         The mean order is over p; it is negative of the conjugate of another motion.
         """
         content, p = self.content, self.order
-        energy = energy_of(content.forms, vectors)
-        standing, total = (
-            energy_of(F[None], vectors)[:, 0] for F in (content.standing, content.whole)
-        )
-        total = np.maximum(total.sum(axis=0), 1e-300)
+        energies = content.energies(vectors[None])[0]
+        energy, standing = energies[:, :-5], energies[:, -1]
+        total = np.maximum(energies[:, -2].sum(axis=0), 1e-300)
         meets = (np.abs(np.abs(self.seen) - p) < 1e-9) & np.isin(
             np.abs(content.waves), self.diameters
         )
@@ -554,7 +552,7 @@ class Excitation:
     def _one_sense(self, vectors: np.ndarray) -> np.ndarray:
         """Return motions (h, k, g) of one speed so that each turns one way in time, or in space."""
         seen = np.where(np.abs(self.seen) < 1e-9, 0.0, self.seen)
-        return self.content.extremal(vectors, 10.0 * np.sign(seen) + self.content.waves)
+        return self.content.extremal(vectors[None], 10.0 * np.sign(seen) + self.content.waves)[0]
 
 
 def named(
@@ -576,8 +574,10 @@ def named(
         vectors = vectors / np.linalg.norm(vectors, axis=(0, 1))
         # all frequencies go with the speed, so that one speed stands for all
         values = np.full(len(places), 1j * center)
-        names = content.named(Motions(1.0, values, vectors, orders, 0.0), apart=True)
-        codes[places], diameters[places], rotor[places] = names.codes, names.diameters, names.rotor
+        given = values[None], vectors[None], orders, np.zeros(1)
+        names = content.named(Motions(np.ones(1), *given), apart=True)
+        codes[places], diameters[places] = names.codes[0], names.diameters[0]
+        rotor[places] = names.rotor[0]
     ascending = np.argsort([one.speed for one in found], kind="stable")
     senses = signed_diameters(codes, diameters)[ascending]
     groups = same_speed([found[i].speed for i in ascending])
