@@ -26,6 +26,16 @@ def _bar():
     return Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.15))
 
 
+def _point():
+    mass = er.SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    return mass.with_interface("left", [0]).reduce(0)
+
+
+_FILM = er.ShortJournalBearing(
+    interface="left", radius=0.03, length=0.02, clearance=6e-5, viscosity=0.02, load=[0.0, -196.2]
+)
+
+
 def _fem(w):
     fem = FEMinterface()
     named = {"materials": {"steel": STEEL}, "boundaryNamesList": ["left", "right"]}
@@ -114,6 +124,7 @@ RETURNED = {
     **{"Spectra": "spectra", "Stability": "stability", "StabilityLevelOne": "stability_level_one"},
     **{"StabilityMap": "stability_map", "StabilityThresholds": "stability_threshold"},
     **{"StartState": "SteadyState.state", "SteadyState": "steady_state"},
+    **{"StaticResponse": "static_response"},
     **{"StressField": "StressField.of", "StressHistory": "stress_history"},
     **{"UnbalanceResponse": "unbalance_response"},
 }
@@ -280,6 +291,7 @@ CALLS = {
         "nodes": w.SolidRotor.nodes,
         "interfaces": {"left": [0, 1, 2, 3]},
     },
+    "ReducedRotor.stress_of": lambda w: {"coordinates": np.zeros(w.ReducedRotor.size)},
     "SolidRotor.from_ngsolve": {"materials": {"steel": STEEL}, "order": 1},
     "SolidRotor.interface_at": {"name": "seat", "position": 0.15, "width": 0.4},
     "SolidRotor.prestress": {"euler": True},
@@ -330,6 +342,14 @@ CALLS = {
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
     "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
+    "limit_cycles": lambda w: {
+        "target": _point(),
+        "speeds": [1150.0],
+        "onset": er.stability_threshold(_point(), 100.0, 2000.0, supports=_FILM),
+        "supports": _FILM,
+        "gravity": DOWN,
+        "at": "left",
+    },
     "periodic_response": {
         "values": [10.0, 20.0],
         "supports": [
@@ -348,6 +368,7 @@ CALLS = {
     "separation_margins": {"operating_range": (500.0, 800.0)},
     "spectra": {"time": 1e-3 * np.arange(40), "motion": np.ones((40, 2)), "length": 0.02},
     "spinning_modes": lambda w: {"rotor": w.stressed, "speeds": (5.0, 10.0)},
+    "static_response": {"loads": {"left": [1.0, 2.0, 0.0]}, "gravity": DOWN},
     "stability_level_one": {"cross_coupling": 1e4},
     "stability_threshold": lambda w: {
         "low": 10.0,

@@ -311,7 +311,7 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "linear/response/refinement.py:warn_of_coarse_peaks": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
-    "nonlinear/periodic_response.py:_warn": (
+    "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
         response_below_the_operating_range, UserWarning, "count, and the response is known from"),
