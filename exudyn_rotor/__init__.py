@@ -119,6 +119,7 @@ if TYPE_CHECKING:
     from exudyn_rotor.multibody.twins.exudyn_interface import (
         ObjectFixedAxisFFRFreducedOrderInterface as ObjectFixedAxisFFRFreducedOrderInterface,
     )
+    from exudyn_rotor.nonlinear.limit_cycles import limit_cycles as limit_cycles
     from exudyn_rotor.nonlinear.periodic_response import periodic_response as periodic_response
     from exudyn_rotor.nonlinear.periodic_result import PeriodicResponse as PeriodicResponse
     from exudyn_rotor.pictures.motion_shapes import MotionShapes as MotionShapes
@@ -224,6 +225,7 @@ _NAMES = {
     "multibody.supports.foundation_body": "SceneFoundation add_foundation",
     "multibody.twins.exudyn_call": "MainSystemCreateFixedAxisFFRFReducedOrderObject",
     "multibody.twins.exudyn_interface": "ObjectFixedAxisFFRFreducedOrderInterface",
+    "nonlinear.limit_cycles": "limit_cycles",
     "nonlinear.periodic_response": "periodic_response",
     "nonlinear.periodic_result": "PeriodicResponse",
     "pictures.motion_shapes": "MotionShapes",

@@ -26,6 +26,16 @@ def _bar():
     return Mesh(OCCGeometry(bar).GenerateMesh(maxh=0.15))
 
 
+def _point():
+    mass = er.SolidRotor.from_matrices(20.0 * np.eye(3), np.zeros((3, 3)), [[0.0, 0, 0]], "z")
+    return mass.with_interface("left", [0]).reduce(0)
+
+
+_FILM = er.ShortJournalBearing(
+    interface="left", radius=0.03, length=0.02, clearance=6e-5, viscosity=0.02, load=[0.0, -196.2]
+)
+
+
 def _fem(w):
     fem = FEMinterface()
     named = {"materials": {"steel": STEEL}, "boundaryNamesList": ["left", "right"]}
@@ -332,6 +342,14 @@ CALLS = {
     "recommended_settings": {"end_time": 1.0, "step": 1e-3},
     "report": lambda w: {"path": w.folder / "report.html", "contents": [w.ReducedRotor]},
     "response_shapes": lambda w: {"unbalances": [w.Unbalance]},
+    "limit_cycles": lambda w: {
+        "target": _point(),
+        "speeds": [1150.0],
+        "onset": er.stability_threshold(_point(), 100.0, 2000.0, supports=_FILM),
+        "supports": _FILM,
+        "gravity": DOWN,
+        "at": "left",
+    },
     "periodic_response": {
         "values": [10.0, 20.0],
         "supports": [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -189,7 +190,7 @@ def periodic_response(
     first = problem_at(float(values[0]))
     span = np.array([np.ptp(values) or abs(values[0]) or 1.0])
     family = Family(
-        balance, span, _size(first), _measured, tolerance,
+        balance, span, size_of(first), _measured, tolerance,
         (_MOST[0], _MOST_WITH_PASSES if first.laws.passes else _MOST[1] * revolutions),
     )  # fmt: skip
     with one_thread():
@@ -197,7 +198,7 @@ def periodic_response(
         if branches is None:
             branches = [_one_by_one(family, problem_at, values)]
         found = [point for branch in branches for point in branch]
-        _warn(family, found, follow)
+        warn_of(family, found, follow)
         numbers = np.repeat(np.arange(len(branches)), [len(each) for each in branches])
         label = _LABELS.get(over, "parameter") if isinstance(over, str) else "parameter"
         return collected(found, numbers, label, asked)
@@ -217,7 +218,7 @@ def _checked_parameter(
     return checks.ascending(values, "values"), checks.number(speed, "speed", "rad/s", least=0.0)
 
 
-def _size(problem: Problem) -> float:
+def size_of(problem: Problem) -> float:
     """Return the size of a motion that matters [m]: a clearance, or that of the loads."""
     gaps = [one.clearance_along() for one in problem.laws.bearings]
     gaps = [gap for gap in gaps if np.isfinite(gap)]
@@ -226,8 +227,6 @@ def _size(problem: Problem) -> float:
 
 def _measured(point: Point) -> Point:
     """Return a point with what motions beside it do."""
-    from dataclasses import replace
-
     growth, multiplier = Beside(point.balance, point.c).growth()
     return replace(point, growth=growth, multiplier=multiplier)
 
@@ -298,7 +297,8 @@ def _one_by_one(
     return found
 
 
-def _warn(family: Family, found: Sequence[Point], follow: bool) -> None:
+def warn_of(family: Family, found: Sequence[Point], follow: bool = True) -> None:
+    """Tell what is lost, lacking, or, unless branches are followed, unstable."""
     told = []
     unstable = [f"{one.value:g}" for one in found if one.growth > 0.0]
     if unstable and not follow:

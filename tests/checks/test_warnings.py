@@ -301,7 +301,7 @@ PLACES = {
         response_with_one_mode, UserWarning, "errs by about"),
     "linear/model/linear_model.py:_warn_of_refused": (
         campbell_below_a_table, UserWarning, "no values at .* which are NaN"),
-    "linear/modal/resonance.py:_warn": (
+    "linear/modal/resonance.py:warn": (
         critical_speeds_below_a_table, UserWarning, "none are looked for"),
     "linear/response/steady_response.py:_warn_of_missing": (
         response_below_a_table, UserWarning, "no steady motion at .* NaN there"),
@@ -311,7 +311,7 @@ PLACES = {
         curved_elements, UserWarning, "are replaced by mid nodes"),
     "linear/response/refinement.py:warn_of_coarse_peaks": (
         peak_between_few_speeds, UserWarning, "too far apart to give its size and width"),
-    "nonlinear/periodic_response.py:_warn": (
+    "nonlinear/periodic_response.py:warn_of": (
         unstable_motion_on_rolling_bearings, UserWarning, "values .* the motion is unstable"),
     "evaluation/separation.py:_warn_of_speeds_left_out": (
         response_below_the_operating_range, UserWarning, "count, and the response is known from"),
