@@ -18,7 +18,6 @@ from exudyn_rotor import (
     grooved_pads,
     linear_model,
 )
-from exudyn_rotor.bearings.held_law import HeldBearing, HeldLaw
 
 GAPS = np.radians([10.0, 130.0, 250.0])
 PADS = OilFilm(0.02, 0.02, 0.1, grooved_pads(2e-4, GAPS, 0.2, 0.5), "none", nodes=48, axial_nodes=0)
@@ -60,34 +59,3 @@ def test_films_under_an_uneven_mesh_are_taken_about_rest(left, right):
     """Journals move by ε of the clearance under the weight; exponents would by the order of ε²."""
     in_scene, in_list = models(left, right, False)
     assert apart(in_scene, in_list, SPEED) < 1e-6
-
-
-def test_a_law_that_is_held_has_its_torque_there_alone():
-    """Beside the place a torque would tilt with the journal, which linear equations leave out."""
-    bearing = KINDS["short"](interface="left")
-    law, place = HeldLaw(bearing), (5e-5, -2e-5, 1e-3, 0.0, 0.0, SPEED)
-    law.hold(True)
-    assert law.law_with_torque(*place) == bearing.law_with_torque(*place)
-    moved = (6e-5, *place[1:])
-    assert law.law_with_torque(*moved) == (*bearing.law(*moved), 0.0)
-    law.hold(False)
-    assert law.law_with_torque(*moved) == bearing.law_with_torque(*moved)
-
-
-def test_films_go_on_as_from_rest_under_their_mean_force():
-    """A motion across a film has its mean force where the journal rests beside its mean place."""
-    held = HeldBearing.of(KINDS["short"](interface="left"))
-    (law,), places = held.laws, np.array([[4e-5, -5e-5], [4.4e-5, -5.4e-5]])
-    for place in places:
-        law.hold(True)
-        law.law(*place, 0.0, 0.0, 0.0, SPEED)
-    assert held.settles
-    held.settle(SPEED)
-    mean = np.mean([force for _, force in law.seen], axis=0)
-    np.testing.assert_allclose(law.tangent, held.bearing.coefficients(SPEED, -mean), rtol=1e-12)
-    law.hold(True)
-    start = np.array(law.law(*places[0], 0.0, 0.0, 0.0, SPEED))
-    change = np.array(law.law(*(places[0] + [1e-6, 0.0]), 0.0, 0.0, 0.0, SPEED)) - start
-    np.testing.assert_allclose(change, -1e-6 * law.tangent[0][:, 0], rtol=1e-9)
-    held.release()
-    assert law.tangent is None

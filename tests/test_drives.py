@@ -161,7 +161,7 @@ def test_who_evaluates_is_reported():
     add_drive(body, MOTOR, "left")
     curve = add_drive(body, TorqueCurve(([0.0, 1.0], [1.0, 0.0])))
     assert curve.uses_python
-    assert "DirectCurrentMotor at left by symbolic function; TorqueCurve by Python" in body.report()
+    assert "DirectCurrentMotor at left by Python function; TorqueCurve by Python" in body.report()
     mbs.Assemble()
     assert body.check_connections() == ()
 

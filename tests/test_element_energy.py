@@ -55,7 +55,7 @@ def watched(mbs, body, added, axes):
     ends = [[body.add_interface_sensor(name, output) for output in ACROSS] for name in ENDS]
     spin, energy, own = body.add_spin_sensor(), body.add_energy_sensor(), []
     for one in added:
-        nodes = mbs.GetObject(one.objects[-1]).get("nodeNumbers", [])
+        nodes = one.connector.nodes[-1:] if one.connector.own else []
         own.append([number for node in nodes for number in states(mbs, node)])
 
     def read():

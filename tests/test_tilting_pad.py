@@ -203,7 +203,7 @@ def run(mbs, end_time, step):
 def test_a_run_stays_in_the_equilibrium():
     rotor, supports, gravity = on_pads()
     mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
-    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
+    places = added[0].own_coordinates(mbs)
     start, tilts = steady_state(body).state(), supports[0].tilts(SPEED)
     np.testing.assert_allclose(start.q[places], tilts, rtol=1e-6)
     body.start_from(start)
@@ -215,7 +215,7 @@ def test_a_response_sets_the_tilts():
     """Those of the response of the scene itself, about the same equilibrium."""
     rotor, supports, gravity = on_pads()
     mbs, body, added = scene(rotor, supports, gravity, spin=SPEED)
-    places = mbs.systemData.GetObjectLTGODE2(added[0].objects[-1])
+    places = added[0].own_coordinates(mbs)
     linear, own = (
         unbalance_response(model, [SPEED], Unbalance("left", 1e-3), accuracy=None)
         .state(SPEED, body)

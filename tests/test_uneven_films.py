@@ -10,7 +10,6 @@ from void_films import CLEARANCE, SKEW, TO_X, bearings, oil, rotor, scene
 from void_films import SPEED as RIGID_SPEED
 
 from exudyn_rotor import Foundation, JournalBearing, Mount, Support, bearing_loads, linear_model
-from exudyn_rotor.bearings.held_law import TangentFilm
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import films
 
@@ -90,14 +89,3 @@ def test_a_journal_that_moves_is_linearised_about_rest_as_long_as_it_moves_littl
                 model.at(RIGID_SPEED)
         else:
             assert apart(model, in_list, RIGID_SPEED) < 1e-6
-
-
-def test_friction_of_a_film_is_at_the_place_where_it_is_held():
-    bearing = JournalBearing(interface="left", film=oil(cavitation="reynolds"))
-    film, place = TangentFilm(bearing), 0.5 * CLEARANCE
-    film.hold(True)
-    torque = film.law_with_torque(place, 0.0, 0.0, 0.0, 0.0, SPEED)[2]
-    assert torque == -bearing.film.state([place, 0.0], [0.0, 0.0], SPEED).torque
-    x_force, _, moved = film.law_with_torque(1.01 * place, 0.0, 0.0, 0.0, 0.0, SPEED)
-    assert moved == 0.0
-    assert x_force != film.law(place, 0.0, 0.0, 0.0, 0.0, SPEED)[0]

@@ -18,8 +18,6 @@ from exudyn_rotor import (
     linear_model,
     steady_state,
 )
-from exudyn_rotor.bearings.held_law import HeldBearing
-from exudyn_rotor.bearings.rolling import contacts
 from exudyn_rotor.linear.equations import UnconvergedError
 from exudyn_rotor.linear.model.scene import steady_motion
 
@@ -80,18 +78,6 @@ def linearisations(monkeypatch):
 
 
 # ------------------------------------------------------------------ elements
-
-
-@pytest.mark.parametrize("place", [[0.0, -1.2e-5], [7e-6, 3e-6], [0.0, 0.0]])
-def test_contacts_are_linear_by_their_stiffness_once_held(place):
-    bearing = balls(5e-6)("left")
-    law = HeldBearing.of(bearing).laws[0]
-    law.hold(True)
-    start = np.array(law.law(*place, 0.0, 0.0, 0.3, 100.0))
-    dx, dv = np.array([3e-6, -2e-6]), np.array([0.1, 0.2])
-    moved = np.array(law.law(*(place + dx), *dv, 0.3, 100.0))
-    K = contacts(bearing, np.array(place), 0.3)[2]
-    np.testing.assert_allclose(moved - start, -K @ dx - 10.0 * dv, rtol=1e-12, atol=1e-9)
 
 
 def test_contacts_that_just_touch_need_no_more_angles(linearisations):

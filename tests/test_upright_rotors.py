@@ -20,7 +20,8 @@ from exudyn_rotor import (
     grooved_pads,
     steady_state,
 )
-from exudyn_rotor.bearings.held_law import HeldBearing
+from exudyn_rotor.bearings.rolling import contacts
+from exudyn_rotor.linear.model.scene.attached import ROUNDED
 from exudyn_rotor.theory.rotating_axes import axes_of, parts_across
 
 pytestmark = [
@@ -131,7 +132,6 @@ def test_balanced_upright_rotor_stays_in_the_middle_of_its_films(made):
 
 def test_elements_that_touch_by_rounding_have_no_stiffness():
     """1e-17 m of depth, what rounding leaves of positions of 0.1 m, are 1e7 N/m of a roller."""
-    law = HeldBearing.of(rolling("rollers")("left")).laws[0]
-    law.hold(True)
-    law.law(1e-17, 0.0, 0.0, 0.0, 0.0, 0.0)
-    assert law.law(1e-6, 0.0, 0.0, 0.0, 0.0, 0.0) == pytest.approx((0.0, 0.0), abs=1e-9)
+    bearing = rolling("rollers")("left")
+    found = contacts(bearing, np.array([1e-17, 0.0]), 0.0, ROUNDED)[2]
+    np.testing.assert_array_equal(found, np.zeros((2, 2)))

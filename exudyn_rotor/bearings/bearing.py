@@ -15,6 +15,7 @@ from exudyn_rotor import checks
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.support import COEFFICIENTS, NoCoefficientsError, Support
 
+_STEP = 1e-4  # of the clearance, or of the velocity there
 _REMEMBERED = 1000  # coefficients of a bearing
 _HIGHER = 10.0 ** np.arange(7)  # rad/s, where only the directions that a bearing holds count
 
@@ -142,6 +143,12 @@ class Bearing(LoadedBearing):
         """Return the force on the journal [N]."""
 
     @abstractmethod
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """For scenes: less the derivatives (2, 2) of :attr:`law` by place and by velocity."""
+
+    @abstractmethod
     def coefficients(
         self, speed: float, load: ArrayLike | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -237,3 +244,19 @@ def by_tangent(
     inside = force((most - step) * ex, (most - step) * ey)
     beyond = (eccentricity - most) / step
     return tuple(f + beyond * (f - g) for f, g in zip(edge, inside, strict=True))
+
+
+def slopes_outside(
+    law: Callable[..., tuple[float, ...]], motion: tuple[float, ...], size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return less the derivatives (2, 2) of a law by place and velocity, outside its film.
+
+    By differences over a share of the clearance `size`: the force is straight along the way out.
+    """
+    *place, vx, vy, angle, speed = motion
+    moves = _STEP * size * np.array([1.0, 1.0, *[max(abs(speed), hypot(vx, vy) / size)] * 2])
+    start, found = law(*motion)[:2], []
+    for move in np.diag(moves):
+        ahead = law(*(np.array([*place, vx, vy]) + move).tolist(), angle, speed)
+        found.append(np.subtract(start, ahead[:2]) / move.sum())
+    return np.array(found[:2]).T, np.array(found[2:]).T

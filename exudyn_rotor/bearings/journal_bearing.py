@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, Law, LawWithTorque, Linearised, by_tangent
+from exudyn_rotor.bearings.bearing import (
+    Bearing,
+    Law,
+    LawWithTorque,
+    Linearised,
+    by_tangent,
+    slopes_outside,
+)
 from exudyn_rotor.bearings.controlled_support import FilmSupport
 from exudyn_rotor.bearings.film.equilibria import Equilibria
 from exudyn_rotor.bearings.film.film import OilFilm
@@ -107,6 +114,12 @@ class JournalBearing(Bearing):
             )
         return FilmLaw(self.film, torque)
 
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """For scenes: less the derivatives of the film's force, as :meth:`Bearing.slopes`."""
+        return self._film_law(torque=False).slopes(x, y, vx, vy, angle, speed)
+
     def equilibrium(self, speed: float, load: ArrayLike | None = None) -> np.ndarray:
         """Return where the journal rests under a static load [m], shape (2,).
 
@@ -195,12 +208,18 @@ class FilmLaw:
         inside = hypot(x, y) <= most
         return force(x, y) if inside else by_tangent(force, x, y, most, self._step)
 
-    def tangent(self, x: float, y: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Return stiffness [N/m] and damping [N s/m] at the place of the last call, each (2, 2).
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness [N/m] and damping [N s/m], each (2, 2), as :meth:`Bearing.slopes`."""
+        if hypot(x, y) > self._to_the_edge(x, y):
+            return slopes_outside(self, (x, y, vx, vy, angle, speed), self._film.clearance)
+        return self._state(np.array([x, y]), np.array([vx, vy]), speed).tangent
 
-        None where the film is too thin.
-        """
-        return self._last.tangent if hypot(x, y) <= self._to_the_edge(x, y) else None
+    def torque(self, x: float, y: float, vx: float, vy: float, angle: float, speed: float) -> float:
+        """Return the torque on the journal [N m]; beyond the film that at its end."""
+        self(x, y, vx, vy, angle, speed)
+        return -self._last.torque
 
     def _to_the_edge(self, x: float, y: float) -> float:
         """Return how far the journal may go on its way out, the film resolved [m]."""

@@ -178,6 +178,12 @@ class RollingBearing(Bearing):
         px, py = float(loads @ c), float(loads @ s)
         return -px - d * vx, -py - d * vy, self.cage_ratio * (x * py - y * px)
 
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """For scenes: stiffness of the contacts and damping, as :meth:`Bearing.slopes`."""
+        return self._tangent(np.array([x, y]), angle), self.damping * np.eye(2)
+
     def equilibrium(
         self, speed: float, load: ArrayLike | None = None, angle: float = 0.0
     ) -> np.ndarray:

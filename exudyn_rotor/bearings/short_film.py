@@ -31,7 +31,6 @@ F. W. Ocvirk, NACA TN 2808 (1952); G. Capone, L'Energia Elettrica 68 (1991).
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from math import atan, hypot, pi, sqrt
 
@@ -39,7 +38,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_rotor import checks
-from exudyn_rotor.bearings.bearing import Bearing, by_tangent
+from exudyn_rotor.bearings.bearing import Bearing, by_tangent, slopes_outside
 
 _REST = 1e-6  # of Ω: the rate w of a journal at rest
 THINNEST = 1.0 - 0.01  # of the clearance: beyond, a film goes on by its tangent
@@ -176,17 +175,18 @@ class ShortFilmBearing(Bearing):
             fx, fy = by_tangent(lambda a, b: film_force(a, b, vx, vy, speed), x, y, THINNEST, _STEP)
         return size * fx, size * fy
 
-    @abstractmethod
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        """Return stiffness [N/m] and damping [N s/m] of the law, each (2, 2).
+    def _film_tangent(
+        self, motion: tuple[float, ...], speed: float, spin: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the tangent of a film that turns with `speed`, of a rotor with that of `spin`.
 
-        None outside the film. `motion` (4,) is displacement and velocity [m], [m/s].
+        `motion` is displacement and velocity [m], [m/s].
         """
-
-    def _film_tangent(self, motion: np.ndarray, speed: float, spin: float) -> Tangent | None:
-        """Return the tangent of a film that turns with `speed`, of a rotor with that of `spin`."""
-        x, y, vx, vy = motion / self.clearance
+        x, y, vx, vy = (value / self.clearance for value in motion)
         if hypot(x, y) > THINNEST:
-            return None
-        found = self._size / self.clearance * film_tangent(x, y, vx, vy, speed, _REST * abs(spin))
+            return slopes_outside(
+                lambda *at: self._film(*at[:4], speed), (*motion, 0.0, speed), self.clearance
+            )
+        found = film_tangent(x, y, vx, vy, speed, _REST * abs(spin))
+        found = self._size / self.clearance * found
         return found[:, :2], found[:, 2:]

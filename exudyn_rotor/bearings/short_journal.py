@@ -93,8 +93,11 @@ class ShortJournalBearing(ShortFilmBearing):
     ) -> tuple[float, float]:
         return self._film(x, y, vx, vy, speed)
 
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        return self._film_tangent(motion, speed, speed)
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> Tangent:
+        """For scenes: less the derivatives of the film's force, as :meth:`Bearing.slopes`."""
+        return self._film_tangent((x, y, vx, vy), speed, speed)
 
     @property
     def law_with_torque(self) -> LawWithTorque:

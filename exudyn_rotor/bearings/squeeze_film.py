@@ -118,9 +118,12 @@ class SqueezeFilmDamper(ShortFilmBearing):
         fx, fy = self._film(x, y, vx, vy, 0.0)
         return fx - k * x, fy - k * y
 
-    def _law_tangent(self, motion: np.ndarray, speed: float) -> Tangent | None:
-        found = self._film_tangent(motion, 0.0, speed)
-        return found and (self.centring_stiffness * np.eye(2) + found[0], found[1])
+    def slopes(
+        self, x: float, y: float, vx: float, vy: float, angle: float, speed: float
+    ) -> Tangent:
+        """For scenes: less the derivatives of film and spring, as :meth:`Bearing.slopes`."""
+        K, D = self._film_tangent((x, y, vx, vy), 0.0, speed)
+        return self.centring_stiffness * np.eye(2) + K, D
 
     def _law_of_small_motions(
         self, x: float, y: float, vx: float, vy: float, angle: float, speed: float

@@ -111,6 +111,16 @@ class TiltingPadBearing(Bearing):
                 "another cavitation than 'mass-conserving'"
             )
 
+    def check_coordinates(self) -> None:
+        """Refuse a scene pads without inertia, whose tilts are no coordinates.
+
+        Raises
+        ------
+        ValueError
+        """
+        if self.pad_inertia is None:
+            _ = self.law
+
     @property
     def _law(self) -> Law:
         raise ValueError(
@@ -118,6 +128,11 @@ class TiltingPadBearing(Bearing):
             "alone; give pad_inertia, and their tilts become coordinates, or give the scene its "
             "linearised()"
         )
+
+    @property
+    def slopes(self) -> Law:
+        """None by place and velocity alone: an error, as of :attr:`law`."""
+        return self._law
 
     @property
     def tangents(self) -> np.ndarray:
